@@ -1,0 +1,118 @@
+//! Why a position does not exist, in the sentence the user sees.
+
+use core::fmt;
+
+/// A mechanism of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The five-bar between A1 and A2.
+    Head,
+    /// The five-bar between A4 and A3.
+    Tail,
+    /// The slider between A1 and A4.
+    Left,
+    /// The slider between A2 and A3.
+    Right,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Head => "head",
+            Self::Tail => "tail",
+            Self::Left => "left side",
+            Self::Right => "right side",
+        })
+    }
+}
+
+/// Why one loop has no position, or no single one. Lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    /// An input is infinite or not a number.
+    NotFinite,
+    /// The crank tips are further apart than both couplers reach.
+    Apart {
+        /// Distance between the crank tips.
+        gap: f64,
+        /// Sum of the couplers.
+        reach: f64,
+    },
+    /// The crank tips are closer than the couplers differ in length.
+    Nested {
+        /// Distance between the crank tips.
+        gap: f64,
+        /// Difference of the couplers.
+        least: f64,
+    },
+    /// The crank tips coincide (d = 0): the apex can be anywhere on a circle.
+    Coincident,
+    /// A point is outside the ring that one crank and its coupler reach.
+    OutOfReach {
+        /// Which crank, seen along the loop's own y axis.
+        left: bool,
+        /// Distance of the point from that crank's shaft.
+        distance: f64,
+        /// Nearest distance that it reaches.
+        least: f64,
+        /// Furthest distance that it reaches.
+        most: f64,
+    },
+    /// A point lies on a shaft whose crank and coupler are equally long, so
+    /// that any crank angle will do.
+    OnShaft,
+    /// The arm tips of a slider coincide, so that it has no direction.
+    Collapsed,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotFinite => f.write_str("a value is not a finite number"),
+            Self::Apart { gap, reach } => write!(
+                f,
+                "the crank tips are {gap:.3} mm apart, the couplers reach {reach:.3} mm"
+            ),
+            Self::Nested { gap, least } => write!(
+                f,
+                "the crank tips are {gap:.3} mm apart, the couplers need {least:.3} mm"
+            ),
+            Self::Coincident => {
+                f.write_str("singular: the crank tips coincide, the apex is free on a circle")
+            }
+            Self::OutOfReach {
+                left,
+                distance,
+                least,
+                most,
+            } => write!(
+                f,
+                "the point is {distance:.3} mm from the {} shaft, which reaches {least:.3} to {most:.3} mm",
+                if left { "left" } else { "right" }
+            ),
+            Self::OnShaft => {
+                f.write_str("singular: the point lies on a shaft, any crank angle will do")
+            }
+            Self::Collapsed => f.write_str("singular: the arm tips of the slider coincide"),
+        }
+    }
+}
+
+impl core::error::Error for Fault {}
+
+/// Why the robot cannot take a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Infeasible {
+    /// The mechanism that does not close.
+    pub part: Part,
+    /// What is wrong with it.
+    pub fault: Fault,
+}
+
+impl fmt::Display for Infeasible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.part, self.fault)
+    }
+}
+
+impl core::error::Error for Infeasible {}

@@ -1,0 +1,49 @@
+//! Where every joint of the robotic lizard is, given its four servo angles.
+//!
+//! The body is a planar mechanism: two five-bars (RRRRR) carry the head and the
+//! tail, two five-bars with a slider (RRPRR) are the flanks, and four
+//! parallelograms are the legs. Four servos drive it all. Each loop is two
+//! circles that meet, so each has a closed form; this crate states those forms
+//! geometrically, which keeps their accuracy in the places where the paper's
+//! half-angle formulas divide zero by zero.
+//!
+//! # Conventions
+//! - Chassis frame: origin in the middle of the chassis, x to the robot's right,
+//!   y forward, angles counter-clockwise from +x seen from above.
+//! - Degrees and millimetres in every signature. Radians never leave this crate,
+//!   except in rates and Jacobians, which say so.
+//! - Servo order A1, A2, A3, A4 = theta1, theta4, theta8, theta5: clockwise from
+//!   the front left.
+//! - Symbols (l0..l19, theta1..theta16, lg) are the paper's: *Optimal Kinematic
+//!   Design of a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. Where
+//!   a printed equation does not hold, the item that replaces it says so;
+//!   `lizard errata` measures by how much.
+//!
+//! # Determinism
+//! Only `libm` and IEEE basic operations are used, so the same input gives the
+//! same bits on every host, and a build script, a test and a web page agree.
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod angle;
+mod fault;
+mod five_bar;
+mod leg;
+mod limits;
+mod links;
+mod lizard;
+mod margins;
+mod slider;
+mod vector;
+
+pub use angle::{sin_cos, wrap};
+pub use fault::{Fault, Infeasible, Part};
+pub use five_bar::{Assembly, Branch, Elbow, FiveBar, FiveBarPose};
+pub use leg::{Leg, LegPose};
+pub use limits::{Limits, Violation};
+pub use links::Links;
+pub use lizard::{Lizard, Pose, Solution};
+pub use margins::{Check, Margins};
+pub use slider::{Slider, SliderPose};
+pub use vector::Vector;

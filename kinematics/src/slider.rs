@@ -1,0 +1,83 @@
+//! A telescope between two arms: the RRPRR flank.
+//!
+//! Both arms are rigid with a crank, so their tips are known, and the slider is
+//! simply the line from the rear tip to the front one: length d = l12 + l13 + s,
+//! direction phi. It has no singularity but d = 0; what limits it is its stroke.
+//!
+//! The paper takes theta10 + theta11 = 0 for the two halves; with angles counted
+//! counter-clockwise the halves are opposite, theta11 = theta10 + 180, and the
+//! unknowns are phi = theta10 and s.
+
+use crate::fault::Fault;
+use crate::vector::Vector;
+
+/// Link lengths of a flank in mm. The origin is the rear shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slider {
+    /// x of the front shaft relative to the rear one: 0 if head and tail have
+    /// equally wide bases.
+    pub offset: f64,
+    /// y of the front shaft relative to the rear one: l10, l15.
+    pub base: f64,
+    /// Front arm: l14, l19.
+    pub front: f64,
+    /// Rear arm: l11, l16.
+    pub rear: f64,
+    /// Distance of the arm tips at s = 0: l12 + l13, l17 + l18.
+    pub nominal: f64,
+}
+
+/// A closed flank. Points in mm from the rear shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SliderPose {
+    /// Tip of the rear arm.
+    pub rear_tip: Vector,
+    /// Tip of the front arm.
+    pub front_tip: Vector,
+    /// From the rear tip to the front one.
+    pub span: Vector,
+    /// Length of the span, d.
+    pub d: f64,
+    /// Slider travel s from nominal.
+    pub s: f64,
+}
+
+impl SliderPose {
+    /// theta10 (right: theta14): direction of the slider from rear to front,
+    /// degrees.
+    pub fn phi(&self) -> f64 {
+        self.span.angle()
+    }
+}
+
+impl Slider {
+    /// The slider between arms at two angles in degrees (theta9 and theta12 on
+    /// the left, theta13 and theta16 on the right).
+    pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
+        self.close(
+            Vector::direction(theta_rear),
+            Vector::direction(theta_front),
+        )
+    }
+
+    /// The slider between arms of two directions of length one.
+    pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
+        let rear_tip = rear * self.rear;
+        let front_tip = Vector::new(self.offset, self.base) + front * self.front;
+        let span = front_tip - rear_tip;
+        let d = span.length();
+        if !d.is_finite() {
+            return Err(Fault::NotFinite);
+        }
+        if d == 0.0 {
+            return Err(Fault::Collapsed);
+        }
+        Ok(SliderPose {
+            rear_tip,
+            front_tip,
+            span,
+            d,
+            s: d - self.nominal,
+        })
+    }
+}

@@ -1,0 +1,217 @@
+//! The five-bar against Newton's method and the law of cosines.
+
+use crate::reference::{HEAD, apex, loop_gap, newton};
+use lizard_kinematics::{Branch, Elbow, Fault, FiveBar, Vector, wrap};
+use proptest::prelude::*;
+
+/// Any five-bar, symmetrical or not, from 5 to 200 mm a link.
+fn any_five_bar() -> impl Strategy<Value = FiveBar> {
+    [
+        5.0..200.0,
+        5.0..200.0,
+        5.0..200.0,
+        5.0..200.0,
+        5.0..200.0f64,
+    ]
+    .prop_map(|l| FiveBar {
+        base: l[0],
+        crank_left: l[1],
+        coupler_left: l[2],
+        coupler_right: l[3],
+        crank_right: l[4],
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_loop_that_closes_closes_to_a_billionth_of_a_millimetre(
+        bars in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
+    ) {
+        for branch in [Branch::Ahead, Branch::Behind] {
+            if let Ok(pose) = bars.forward_on(branch, left, right) {
+                let [x, y] = loop_gap(
+                    &bars,
+                    [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
+                );
+                prop_assert!(x.hypot(y) < 1e-9, "{branch:?} gapes by {x} {y}");
+                let reach = (pose.apex - pose.right_tip).length();
+                prop_assert!((reach - bars.coupler_right).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn it_finds_a_position_exactly_where_the_law_of_cosines_does(
+        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+    ) {
+        match (bars.forward(left, right), apex(&bars, left, right)) {
+            (Ok(pose), Some([x, y])) => {
+                // acos loses half the digits when the triangle is flat.
+                let tolerance = 1e-9 / pose.type2.max(1e-9);
+                prop_assert!((pose.apex.x - x).hypot(pose.apex.y - y) < tolerance);
+            }
+            (Err(Fault::Apart { .. } | Fault::Nested { .. }), None) => {}
+            (ours, theirs) => prop_assert!(false, "{ours:?} against {theirs:?}"),
+        }
+    }
+
+    #[test]
+    fn newton_from_a_perturbed_start_returns_to_the_closed_form(
+        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+        nudge in [-6.0..6.0, -6.0..6.0f64],
+    ) {
+        if let Ok(pose) = bars.forward(left, right) && pose.type2 > 0.3 {
+            let truth = [pose.theta_left_coupler(), pose.theta_right_coupler()];
+            let start = [truth[0] + nudge[0], truth[1] + nudge[1]];
+            let found = newton(&bars, [left, right], start).expect("Newton converges");
+            for (a, b) in truth.iter().zip(found) {
+                prop_assert!(wrap(a - b).abs() < 1e-9, "{truth:?} {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn margins_are_the_sines_that_their_names_say(
+        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+    ) {
+        if let Ok(pose) = bars.forward(left, right) {
+            let (t2, t3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
+            let sine = |degrees: f64| degrees.to_radians().sin();
+            prop_assert!((pose.type2 - sine(t3 - t2)).abs() < 1e-7);
+            prop_assert!((pose.type1_left() - sine(left - t2)).abs() < 1e-9);
+            prop_assert!((pose.type1_right() - sine(t3 - right)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn forward_after_inverse_returns_to_the_point_in_every_assembly(
+        bars in any_five_bar(), x in -300.0..300.0f64, y in -300.0..300.0f64,
+    ) {
+        let point = Vector::new(x, y);
+        if let Ok(assemblies) = bars.inverse(point) {
+            for a in assemblies {
+                let pose = bars.forward_on(a.branch, a.theta_left, a.theta_right).unwrap();
+                // Where the tips nearly meet, the apex is nearly free.
+                let tolerance = 1e-9_f64.max(1e-12 * 1e3 / pose.gap.length());
+                prop_assert!((pose.apex - point).length() < tolerance, "{a:?} {pose:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn inverse_after_forward_returns_to_the_angles(
+        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+    ) {
+        if let Ok(pose) = bars.forward(left, right) {
+            let (l, r) = (pose.type1_left(), pose.type1_right());
+            // At a type-1 singularity the angle is a square root of the point.
+            prop_assume!(l.abs() > 1e-2 && r.abs() > 1e-2 && pose.type2 > 1e-3);
+            // A shaft under the apex leaves that crank's angle free.
+            prop_assume!((pose.apex - bars.left_shaft()).length() > 1.0);
+            prop_assume!((pose.apex - bars.right_shaft()).length() > 1.0);
+            let elbow = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
+            let back = bars.inverse(pose.apex).unwrap().into_iter()
+                .find(|a| a.left == elbow(l) && a.right == elbow(r)).unwrap();
+            prop_assert_eq!(back.branch, Branch::Ahead);
+            prop_assert!(wrap(back.theta_left - left).abs() < 1e-9, "{:?}", back);
+            prop_assert!(wrap(back.theta_right - right).abs() < 1e-9, "{:?}", back);
+        }
+    }
+}
+
+#[test]
+fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
+    let mut worst = 0.0_f64;
+    for i in -90..=90 {
+        for j in 0..=90 {
+            let point = Vector::new(f64::from(i), f64::from(j));
+            let Ok([outward, ..]) = HEAD.inverse(point) else {
+                continue;
+            };
+            let there = HEAD
+                .forward_on(outward.branch, outward.theta_left, outward.theta_right)
+                .unwrap();
+            worst = worst.max((there.apex - point).length());
+        }
+    }
+    assert!(worst < 1e-9, "worst {worst} mm");
+}
+
+#[test]
+fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
+    // sin = cos of a 3-4-5-like triangle: tips meet at (0, 20 sqrt 2).
+    let theta = (1.0f64 / 3.0).acos().to_degrees();
+    match HEAD.forward(theta, 180.0 - theta) {
+        Err(Fault::Coincident) => {}
+        Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.apex.is_finite()),
+        Err(other) => panic!("{other}"),
+    }
+    let degenerate = FiveBar { base: 0.0, ..HEAD };
+    assert_eq!(degenerate.forward(50.0, 50.0), Err(Fault::Coincident));
+}
+
+#[test]
+fn where_the_papers_a_vanishes_nothing_happens() {
+    // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
+    let mut least = f64::INFINITY;
+    for step in 0..=1800 {
+        let theta4 = f64::from(step) / 10.0;
+        for theta1 in [100.0, 120.0, 138.59, 150.0] {
+            let Ok(pose) = HEAD.forward(theta1, theta4) else {
+                continue;
+            };
+            least = least.min((pose.gap.square() - 100.0 * pose.gap.x).abs());
+            let gap = loop_gap(
+                &HEAD,
+                [
+                    theta1,
+                    pose.theta_left_coupler(),
+                    pose.theta_right_coupler(),
+                    theta4,
+                ],
+            );
+            assert!(gap[0].hypot(gap[1]) < 1e-12);
+        }
+    }
+    assert!(least < 10.0, "the sweep passes A = 0 nearby, {least}");
+}
+
+#[test]
+fn unreachable_points_and_bad_numbers_say_why() {
+    let says = |result: Result<_, Fault>| result.map(|_: [_; 4]| ()).unwrap_err().to_string();
+    assert_eq!(
+        says(HEAD.inverse(Vector::new(0.0, 90.0))),
+        "the point is 90.554 mm from the left shaft, which reaches 20.000 to 80.000 mm"
+    );
+    assert_eq!(
+        says(HEAD.inverse(Vector::new(10.0, 5.0))),
+        "the point is 5.000 mm from the right shaft, which reaches 20.000 to 80.000 mm"
+    );
+    assert_eq!(
+        says(HEAD.inverse(Vector::new(f64::NAN, 5.0))),
+        "a value is not a finite number"
+    );
+    let short = FiveBar {
+        coupler_left: 10.0,
+        coupler_right: 15.0,
+        ..HEAD
+    };
+    assert_eq!(
+        short.forward(180.0, 0.0).unwrap_err().to_string(),
+        "the crank tips are 80.000 mm apart, the couplers reach 25.000 mm"
+    );
+    let unequal = FiveBar {
+        coupler_left: 80.0,
+        ..HEAD
+    };
+    assert_eq!(
+        unequal.forward(90.0, 90.0).unwrap_err().to_string(),
+        "the crank tips are 20.000 mm apart, the couplers need 30.000 mm"
+    );
+    assert_eq!(
+        HEAD.forward(f64::INFINITY, 0.0).unwrap_err(),
+        Fault::NotFinite
+    );
+}

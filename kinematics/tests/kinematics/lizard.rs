@@ -1,0 +1,157 @@
+//! The whole robot: loops, conventions, neutral pose, limits.
+
+use crate::reference::{lizard, loop_gap};
+use lizard_kinematics::{Check, Limits, Pose, Vector, wrap};
+use proptest::prelude::*;
+
+const NEUTRAL: [f64; 4] = [138.590378, 41.409622, 318.590378, 221.409622];
+
+const LIMITS: Limits = Limits {
+    type2: 0.3,
+    type1: 0.3,
+    leg: 0.3,
+    stroke_min: -15.0,
+    stroke_max: 45.0,
+};
+
+fn cis(degrees: f64) -> Vector {
+    Vector::new(degrees.to_radians().cos(), degrees.to_radians().sin())
+}
+
+#[test]
+fn at_the_neutral_pose_the_sliders_are_at_nominal_and_the_head_at_57_840() {
+    let solution = lizard().solve(&NEUTRAL.into()).unwrap();
+    assert!(solution.left.s.abs() < 1e-6 && solution.right.s.abs() < 1e-6);
+    assert!((solution.head.gap.length() - 65.0).abs() < 1e-6);
+    assert!((solution.head.apex - Vector::new(0.0, 57.840)).length() < 1e-3);
+    assert!((solution.head_point() - Vector::new(0.0, 125.340)).length() < 1e-3);
+    assert!((solution.tail_point() - Vector::new(0.0, -125.340)).length() < 1e-3);
+    assert!((solution.margins.apex_head - 0.98791).abs() < 1e-5);
+    assert!((solution.left.phi() - 90.0).abs() < 1e-9);
+    assert!(LIMITS.allow(&solution));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn all_four_loops_close_in_the_chassis_frame(
+        t1 in 0.0..360.0f64, t4 in 0.0..360.0f64, t8 in 0.0..360.0f64, t5 in 0.0..360.0f64,
+    ) {
+        let robot = lizard();
+        let pose = Pose::from([t1, t4, t8, t5]);
+        prop_assume!(robot.solve(&pose).is_ok());
+        let s = robot.solve(&pose).unwrap();
+        // In chassis angles the tail's loop is the head's with other signs only
+        // in its frame, so one vector loop serves both.
+        let head = loop_gap(&robot.head(), [t1, s.theta2(), s.theta3(), t4]);
+        let tail = loop_gap(&robot.tail(), [t5, s.theta6(), s.theta7(), t8]);
+        prop_assert!(head[0].hypot(head[1]) < 1e-9);
+        prop_assert!(tail[0].hypot(tail[1]) < 1e-9);
+        // R10 + R14 = R11 + R12 + R13, and alike on the right.
+        let [a1, a2, a3, a4] = robot.shafts();
+        let left = a1 + cis(t1 + 90.0) * 30.0
+            - a4 - cis(t5 - 90.0) * 30.0 - cis(s.left.phi()) * (90.0 + s.left.s);
+        let right = a2 + cis(t4 - 90.0) * 30.0
+            - a3 - cis(t8 + 90.0) * 30.0 - cis(s.right.phi()) * (90.0 + s.right.s);
+        prop_assert!(left.length() < 1e-9, "{left:?}");
+        prop_assert!(right.length() < 1e-9, "{right:?}");
+        // Points: from each shaft along crank and coupler.
+        let head = a1 + cis(t1) * 30.0 + cis(s.theta2()) * 50.0;
+        let tail = a3 + cis(t8) * 30.0 + cis(s.theta7()) * 50.0;
+        prop_assert!((s.head_point() - head).length() < 1e-9);
+        prop_assert!((s.tail_point() - tail).length() < 1e-9);
+        for (leg, theta) in s.legs.iter().zip([t1, t4, t8, t5]) {
+            prop_assert!(wrap(leg.follower() - theta).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn swapping_left_and_right_mirrors_the_robot(
+        t1 in 80.0..170.0f64, t4 in 10.0..100.0f64, t8 in 260.0..350.0f64, t5 in 190.0..280.0f64,
+    ) {
+        let robot = lizard();
+        let one = robot.solve(&[t1, t4, t8, t5].into());
+        let two = robot.solve(&[180.0 - t4, 180.0 - t1, 540.0 - t5, 540.0 - t8].into());
+        prop_assume!(one.is_ok());
+        let (one, two) = (one.unwrap(), two.unwrap());
+        prop_assert!((one.head_point().x + two.head_point().x).abs() < 1e-9);
+        prop_assert!((one.left.s - two.right.s).abs() < 1e-9);
+        prop_assert!((one.margins.type1_a1 - two.margins.type1_a2).abs() < 1e-9);
+        prop_assert!((one.margins.type1_a3 - two.margins.type1_a4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_box_of_safe_poses_keeps_every_margin(
+        t1 in 94.0..162.0f64, t4 in 18.0..86.0f64, t8 in 18.0..86.0f64, t5 in 94.0..162.0f64,
+    ) {
+        let solution = lizard().solve(&[t1, t4, -t8, -t5].into()).unwrap();
+        let broken: Vec<_> = LIMITS.violations(&solution).map(|v| v.to_string()).collect();
+        prop_assert!(broken.is_empty(), "{broken:?}");
+        prop_assert!(solution.margins.min().1 >= 0.3);
+    }
+}
+
+#[test]
+fn head_and_tail_angles_lead_back_to_the_points() {
+    let robot = lizard();
+    let [a1, a2] = robot.head_angles(Vector::new(8.0, 52.0)).unwrap();
+    let [a3, a4] = robot.tail_angles(Vector::new(-5.0, 60.0)).unwrap();
+    let solution = robot.solve(&[a1, a2, a3, a4].into()).unwrap();
+    assert!((solution.head_point() - Vector::new(8.0, 119.5)).length() < 1e-9);
+    assert!((solution.tail_point() - Vector::new(-5.0, -127.5)).length() < 1e-9);
+    assert!(LIMITS.allow(&solution));
+}
+
+#[test]
+fn each_broken_limit_has_its_sentence() {
+    let says = |pose: [f64; 4]| -> Vec<String> {
+        let solution = lizard().solve(&pose.into()).unwrap();
+        LIMITS
+            .violations(&solution)
+            .map(|v| v.to_string())
+            .collect()
+    };
+    let [_, a2, a3, a4] = NEUTRAL;
+    assert_eq!(
+        says([176.0, a2, a3, a4]),
+        ["margin leg_fl 0.070 is below 0.300"]
+    );
+    assert_eq!(
+        says([60.0, 60.0, a3, a4])[0],
+        "margin type1_a1 -0.317 is below 0.300"
+    );
+    assert_eq!(
+        says([88.0, a2, a3, 272.0]),
+        ["left slider travel +47.09 mm is above +45.00 mm"]
+    );
+    assert_eq!(
+        says([50.0, 130.0, a3, a4]),
+        ["head crank tips are crossed: -18.57 mm from left to right"]
+    );
+}
+
+#[test]
+fn a_pose_that_is_not_a_number_is_refused_by_part() {
+    let refused = lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
+    assert_eq!(
+        refused.unwrap_err().to_string(),
+        "head: a value is not a finite number"
+    );
+}
+
+#[test]
+fn margins_have_ten_names_and_a_least() {
+    let margins = lizard().margins(&NEUTRAL.into()).unwrap();
+    let names: Vec<_> = margins.iter().map(|(check, _)| check.name()).collect();
+    assert_eq!(
+        names.join(" "),
+        "apex_head apex_tail type1_a1 type1_a2 type1_a3 type1_a4 leg_fl leg_fr leg_br leg_bl"
+    );
+    let (least, value) = margins.min();
+    assert!(matches!(
+        least,
+        Check::LegFl | Check::LegFr | Check::LegBr | Check::LegBl
+    ));
+    assert!((value - 41.409622f64.to_radians().sin()).abs() < 1e-12);
+}

@@ -1,0 +1,5 @@
+//! The closed forms against solvers that share nothing with them but lengths.
+
+mod five_bar;
+mod lizard;
+mod reference;
