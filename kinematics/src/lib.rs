@@ -27,6 +27,8 @@
 #![deny(missing_docs)]
 
 mod angle;
+mod conditioning;
+mod constraints;
 mod fault;
 mod five_bar;
 mod leg;
@@ -34,10 +36,14 @@ mod limits;
 mod links;
 mod lizard;
 mod margins;
+mod motion;
 mod slider;
 mod vector;
+mod workspace;
 
 pub use angle::{sin_cos, wrap};
+pub use conditioning::Jacobian;
+pub use constraints::{Blocks, Passive};
 pub use fault::{Fault, Infeasible, Part};
 pub use five_bar::{Assembly, Branch, Elbow, FiveBar, FiveBarPose};
 pub use leg::{Leg, LegPose};
@@ -45,5 +51,7 @@ pub use limits::{Limits, Violation};
 pub use links::Links;
 pub use lizard::{Lizard, Pose, Solution};
 pub use margins::{Check, Margins};
+pub use motion::{Derivative, Drive, Motion};
 pub use slider::{Slider, SliderPose};
 pub use vector::Vector;
+pub use workspace::{Circle, Workspace};

@@ -34,6 +34,8 @@ pub struct SliderPose {
     pub rear_tip: Vector,
     /// Tip of the front arm.
     pub front_tip: Vector,
+    /// The front shaft.
+    pub front_shaft: Vector,
     /// From the rear tip to the front one.
     pub span: Vector,
     /// Length of the span, d.
@@ -47,6 +49,11 @@ impl SliderPose {
     /// degrees.
     pub fn phi(&self) -> f64 {
         self.span.angle()
+    }
+
+    /// The front arm, from its shaft to its tip.
+    pub fn front_arm(&self) -> Vector {
+        self.front_tip - self.front_shaft
     }
 }
 
@@ -63,7 +70,8 @@ impl Slider {
     /// The slider between arms of two directions of length one.
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
         let rear_tip = rear * self.rear;
-        let front_tip = Vector::new(self.offset, self.base) + front * self.front;
+        let front_shaft = Vector::new(self.offset, self.base);
+        let front_tip = front_shaft + front * self.front;
         let span = front_tip - rear_tip;
         let d = span.length();
         if !d.is_finite() {
@@ -75,6 +83,7 @@ impl Slider {
         Ok(SliderPose {
             rear_tip,
             front_tip,
+            front_shaft,
             span,
             d,
             s: d - self.nominal,

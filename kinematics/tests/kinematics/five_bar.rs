@@ -60,7 +60,7 @@ proptest! {
     #[test]
     fn newton_from_a_perturbed_start_returns_to_the_closed_form(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
-        nudge in [-6.0..6.0, -6.0..6.0f64],
+        nudge in [-2.0..2.0, -2.0..2.0f64],
     ) {
         if let Ok(pose) = bars.forward(left, right) && pose.type2 > 0.3 {
             let truth = [pose.theta_left_coupler(), pose.theta_right_coupler()];
@@ -93,8 +93,10 @@ proptest! {
         if let Ok(assemblies) = bars.inverse(point) {
             for a in assemblies {
                 let pose = bars.forward_on(a.branch, a.theta_left, a.theta_right).unwrap();
-                // Where the tips nearly meet, the apex is nearly free.
-                let tolerance = 1e-9_f64.max(1e-12 * 1e3 / pose.gap.length());
+                // The apex is nearly free where the tips nearly meet, and where the
+                // couplers nearly line up.
+                let stiff = (pose.gap.length() / 1e3).min(pose.type2.abs());
+                let tolerance = 1e-9_f64.max(1e-12 / stiff);
                 prop_assert!((pose.apex - point).length() < tolerance, "{a:?} {pose:?}");
             }
         }

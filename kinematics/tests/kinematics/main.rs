@@ -2,4 +2,6 @@
 
 mod five_bar;
 mod lizard;
+mod motion;
 mod reference;
+mod workspace;

@@ -4,7 +4,8 @@
 
 use std::f64::consts::PI;
 
-use lizard_kinematics::FiveBar;
+use lizard_kinematics::{FiveBar, Leg, Lizard};
+use proptest::prelude::*;
 
 /// The robot of the paper.
 pub const HEAD: FiveBar = FiveBar {
@@ -15,7 +16,7 @@ pub const HEAD: FiveBar = FiveBar {
     crank_right: 30.0,
 };
 
-pub fn lizard() -> lizard_kinematics::Lizard {
+pub fn lizard() -> Lizard {
     let mut l = [30.0; 20];
     for (length, links) in [
         (20.0, &[0, 5][..]),
@@ -27,9 +28,9 @@ pub fn lizard() -> lizard_kinematics::Lizard {
             l[i] = length;
         }
     }
-    lizard_kinematics::Lizard {
+    Lizard {
         links: l.into(),
-        leg: lizard_kinematics::Leg {
+        leg: Leg {
             ground: 50.0,
             crank: 45.0,
             coupler: 50.0,
@@ -89,4 +90,20 @@ pub fn apex(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2
     }
     let t2 = (cy - by).atan2(cx - bx) + cosine.acos();
     Some([bx + l2 * t2.cos(), by + l2 * t2.sin()])
+}
+
+/// Robots of any proportions that come together: random links, l10 = l15.
+pub fn any_lizard() -> impl Strategy<Value = Lizard> {
+    proptest::collection::vec(0.6..1.6f64, 20).prop_map(|factors| {
+        let paper = lizard();
+        let mut l = paper.links.to_array();
+        for (length, factor) in l.iter_mut().zip(factors) {
+            *length *= factor;
+        }
+        l[15] = l[10];
+        Lizard {
+            links: l.into(),
+            ..paper
+        }
+    })
 }

@@ -1,0 +1,75 @@
+//! How well the two servos steer the apex: the Jacobian of a five-bar and its
+//! local conditioning index.
+
+use crate::five_bar::FiveBarPose;
+use crate::vector::Vector;
+
+/// Apex velocity for each servo's rate, mm per radian: J = A^-1 B with
+/// A (apex velocity) = B (crank rates).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jacobian {
+    /// Apex displacement per radian of the left crank.
+    pub left: Vector,
+    /// Apex displacement per radian of the right crank.
+    pub right: Vector,
+}
+
+impl Jacobian {
+    /// det J, mm^2: apex area swept per unit of crank area.
+    pub fn determinant(&self) -> f64 {
+        self.left.cross(self.right)
+    }
+
+    /// Largest and smallest singular value, mm per radian.
+    pub fn singular_values(&self) -> [f64; 2] {
+        let (sum, det) = (
+            self.left.square() + self.right.square(),
+            self.determinant().abs(),
+        );
+        let largest = (libm::sqrt(sum + 2.0 * det) + libm::sqrt((sum - 2.0 * det).max(0.0))) / 2.0;
+        // The difference of the roots would cancel near a singularity.
+        let smallest = if largest > 0.0 { det / largest } else { 0.0 };
+        [largest, smallest]
+    }
+}
+
+impl FiveBarPose {
+    /// The Jacobian. Each coupler passes on only the velocity along itself, so
+    /// the row for the left one reads l2 . v = l2 . (rate of its crank tip).
+    /// Not finite at a type-2 singularity, where the apex is loose.
+    pub fn jacobian(&self) -> Jacobian {
+        let (left, right) = self.pull();
+        Jacobian {
+            left: self.right_coupler.right() * (left / self.type2),
+            right: self.left_coupler.left() * (right / self.type2),
+        }
+    }
+
+    /// Local conditioning index: smallest over largest singular value of the
+    /// Jacobian (spectral norm), 0 at a singularity of either type, 1 where the
+    /// servos steer the apex equally well in every direction.
+    pub fn lci(&self) -> f64 {
+        // The index has no scale, so the factor 1/type2 is left out and nothing
+        // blows up near the type-2 singularity.
+        let (left, right) = self.pull();
+        let scaled = Jacobian {
+            left: self.right_coupler.right() * left,
+            right: self.left_coupler.left() * right,
+        };
+        let [largest, smallest] = scaled.singular_values();
+        if largest > 0.0 {
+            smallest / largest
+        } else {
+            0.0
+        }
+    }
+
+    /// Velocity along each coupler per rate of its crank, mm per radian: the
+    /// diagonal of B.
+    fn pull(&self) -> (f64, f64) {
+        (
+            -self.bars.crank_left * self.type1_left(),
+            self.bars.crank_right * self.type1_right(),
+        )
+    }
+}

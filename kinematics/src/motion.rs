@@ -1,0 +1,178 @@
+//! Passive rates and accelerations from those of the servos.
+//!
+//! The paper announces the acceleration analysis and leaves it out. Both orders
+//! are linear in what is unknown, with the same matrix K*: projecting a loop
+//! equation on one coupler removes the other, and a 2x2 system falls apart into
+//! two divisions by sin(theta3 - theta2).
+
+use core::f64::consts::PI;
+
+use crate::five_bar::FiveBarPose;
+use crate::lizard::Solution;
+use crate::slider::SliderPose;
+use crate::vector::Vector;
+
+/// How the four servos move, in servo order A1, A2, A3, A4, chassis frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// deg/s.
+    pub rate: [f64; 4],
+    /// deg/s^2.
+    pub acceleration: [f64; 4],
+}
+
+/// First and second time derivative of a quantity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Derivative<T> {
+    /// Per second: deg/s or mm/s.
+    pub rate: T,
+    /// Per second squared: deg/s^2 or mm/s^2.
+    pub acceleration: T,
+}
+
+/// How everything passive moves, chassis frame. Legs follow their servos.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Head couplers.
+    pub theta2: Derivative<f64>,
+    /// Head couplers.
+    pub theta3: Derivative<f64>,
+    /// Tail couplers.
+    pub theta6: Derivative<f64>,
+    /// Tail couplers.
+    pub theta7: Derivative<f64>,
+    /// Head point.
+    pub head: Derivative<Vector>,
+    /// Tail point.
+    pub tail: Derivative<Vector>,
+    /// Direction of the left slider.
+    pub phi_left: Derivative<f64>,
+    /// Travel of the left slider.
+    pub s_left: Derivative<f64>,
+    /// Direction of the right slider.
+    pub phi_right: Derivative<f64>,
+    /// Travel of the right slider.
+    pub s_right: Derivative<f64>,
+}
+
+/// Angular rate and acceleration in radians.
+type Spin = Derivative<f64>;
+
+impl Solution {
+    /// How the passive joints move with the servos. Not finite at a type-2
+    /// singularity, where no rates follow from the servos'.
+    pub fn motion(&self, drive: &Drive) -> Motion {
+        let spin = |servo: usize| Spin {
+            rate: drive.rate[servo] * (PI / 180.0),
+            acceleration: drive.acceleration[servo] * (PI / 180.0),
+        };
+        let [a1, a2, a3, a4] = [spin(0), spin(1), spin(2), spin(3)];
+        let head = loop_motion(&self.head, a1, a2);
+        // The tail is solved in its own frame, where every angle is mirrored.
+        let tail = loop_motion(&self.tail, a4.map(|w| -w), a3.map(|w| -w));
+        let (phi_left, s_left) = slider_motion(
+            &self.left,
+            (self.left.rear_tip, a4),
+            (self.left.front_arm(), a1),
+        );
+        let (phi_right, s_right) = slider_motion(
+            &self.right,
+            (self.right.rear_tip, a3),
+            (self.right.front_arm(), a2),
+        );
+        Motion {
+            theta2: head.left.map(degrees),
+            theta3: head.right.map(degrees),
+            theta6: tail.left.map(|w| degrees(-w)),
+            theta7: tail.right.map(|w| degrees(-w)),
+            head: head.apex,
+            tail: tail.apex.map(Vector::mirrored),
+            phi_left: phi_left.map(degrees),
+            s_left,
+            phi_right: phi_right.map(degrees),
+            s_right,
+        }
+    }
+}
+
+impl<T> Derivative<T> {
+    fn map<U>(self, f: impl Fn(T) -> U) -> Derivative<U> {
+        Derivative {
+            rate: f(self.rate),
+            acceleration: f(self.acceleration),
+        }
+    }
+}
+
+fn degrees(radians: f64) -> f64 {
+    radians * (180.0 / PI)
+}
+
+struct LoopMotion {
+    left: Spin,
+    right: Spin,
+    apex: Derivative<Vector>,
+}
+
+/// d/dt and d2/dt2 of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3.
+fn loop_motion(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopMotion {
+    let r1 = pose.left * pose.bars.crank_left;
+    let r2 = pose.left_coupler * pose.bars.coupler_left;
+    let r3 = pose.right_coupler * pose.bars.coupler_right;
+    let r4 = pose.right * pose.bars.crank_right;
+    let (u2, u3) = (pose.left_coupler, pose.right_coupler);
+    // r2 x' + ... : the unknown rates x of theta2 and theta3 obey
+    // x left(r2) - y left(r3) = c; dotting with u3, then with u2, frees each.
+    let free = |c: Vector| {
+        (
+            c.dot(u3) / (pose.bars.coupler_left * pose.type2),
+            c.dot(u2) / (pose.bars.coupler_right * pose.type2),
+        )
+    };
+    let (w1, w4) = (crank_left.rate, crank_right.rate);
+    let (w2, w3) = free(r4.left() * w4 - r1.left() * w1);
+    let inward = r1 * (w1 * w1) + r2 * (w2 * w2) - r3 * (w3 * w3) - r4 * (w4 * w4);
+    let (e1, e4) = (crank_left.acceleration, crank_right.acceleration);
+    let (e2, e3) = free(inward + r4.left() * e4 - r1.left() * e1);
+    LoopMotion {
+        left: Spin {
+            rate: w2,
+            acceleration: e2,
+        },
+        right: Spin {
+            rate: w3,
+            acceleration: e3,
+        },
+        apex: Derivative {
+            rate: r1.left() * w1 + r2.left() * w2,
+            acceleration: turning(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
+        },
+    }
+}
+
+/// Acceleration of the end of a turning link.
+fn turning(link: Vector, spin: Spin) -> Vector {
+    link.left() * spin.acceleration - link * (spin.rate * spin.rate)
+}
+
+/// Rates of the slider's direction (radians) and length (mm).
+fn slider_motion(
+    pose: &SliderPose,
+    (rear, rear_spin): (Vector, Spin),
+    (front, front_spin): (Vector, Spin),
+) -> (Spin, Derivative<f64>) {
+    let along = pose.span * (1.0 / pose.d);
+    let v = front.left() * front_spin.rate - rear.left() * rear_spin.rate;
+    let a = turning(front, front_spin) - turning(rear, rear_spin);
+    let (slide, turn) = (v.dot(along), along.cross(v) / pose.d);
+    (
+        Spin {
+            rate: turn,
+            acceleration: (along.cross(a) - 2.0 * slide * turn) / pose.d,
+        },
+        Derivative {
+            rate: slide,
+            acceleration: a.dot(along) + pose.d * turn * turn,
+        },
+    )
+}

@@ -1,0 +1,83 @@
+//! Where the apex of a symmetrical five-bar can go: inside two rings, one about
+//! each shaft, with radii |l1 - l2| and l1 + l2.
+
+use core::f64::consts::PI;
+
+use crate::five_bar::FiveBar;
+use crate::vector::Vector;
+
+/// A circle in the five-bar's frame, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    /// Its centre.
+    pub centre: Vector,
+    /// Its radius.
+    pub radius: f64,
+}
+
+/// The theoretical workspace of a five-bar with equal arms (l1 = l4, l2 = l3).
+/// The paper's four circles print y where y^2 belongs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Workspace {
+    /// Half the base, mm.
+    pub half_base: f64,
+    /// Inner radius of each ring, mm.
+    pub inner: f64,
+    /// Outer radius of each ring, mm.
+    pub outer: f64,
+}
+
+impl Workspace {
+    /// The workspace of a five-bar, from its left arm.
+    pub fn of(bars: &FiveBar) -> Self {
+        Self {
+            half_base: bars.base / 2.0,
+            inner: (bars.crank_left - bars.coupler_left).abs(),
+            outer: bars.crank_left + bars.coupler_left,
+        }
+    }
+
+    /// True if the apex can be at a point of the five-bar's frame.
+    pub fn contains(&self, point: Vector) -> bool {
+        [-self.half_base, self.half_base].into_iter().all(|x| {
+            let square = (point - Vector::new(x, 0.0)).square();
+            square >= self.inner * self.inner && square <= self.outer * self.outer
+        })
+    }
+
+    /// Its area in mm^2, above and below the base together.
+    pub fn area(&self) -> f64 {
+        let apart = 2.0 * self.half_base;
+        let (r, s) = (self.inner, self.outer);
+        // Both rings: both large discs, less either small one.
+        lens(s, s, apart) - 2.0 * lens(r, s, apart) + lens(r, r, apart)
+    }
+
+    /// The maximal inscribed circle of the upper half, which touches all four
+    /// circles; `None` if the rings' middles do not meet (l0/2 > l1, l2).
+    pub fn inscribed_circle(&self) -> Option<Circle> {
+        let middle = (self.outer + self.inner) / 2.0;
+        let rise = (middle - self.half_base) * (middle + self.half_base);
+        (rise >= 0.0).then(|| Circle {
+            centre: Vector::new(0.0, libm::sqrt(rise)),
+            radius: (self.outer - self.inner) / 2.0,
+        })
+    }
+}
+
+/// Area common to two discs of radii `a`, `b` with centres `apart`.
+fn lens(a: f64, b: f64, apart: f64) -> f64 {
+    let small = a.min(b);
+    if apart >= a + b {
+        return 0.0;
+    }
+    if apart <= (a - b).abs() {
+        return PI * small * small;
+    }
+    let angle = |r: f64, other: f64| {
+        let cosine = (apart * apart + r * r - other * other) / (2.0 * apart * r);
+        libm::acos(cosine.clamp(-1.0, 1.0))
+    };
+    let sector = |half: f64, r: f64| r * r * (half - libm::sin(half) * libm::cos(half));
+    sector(angle(a, b), a) + sector(angle(b, a), b)
+}
