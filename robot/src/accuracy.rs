@@ -1,0 +1,52 @@
+//! How far the tables, as the firmware reads them, are from the gaits in
+//! floating point.
+
+use crate::Robot;
+
+/// The error of a gait's tables over a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TableError {
+    /// Largest over all servos, deg.
+    pub max: f64,
+    /// Root of the mean square over all servos, deg.
+    pub rms: f64,
+    /// Servo of the largest, 0 to 3.
+    pub servo: usize,
+    /// Phase of the largest, 0 to 1.
+    pub phase: f64,
+}
+
+/// Every phase that the firmware can be in.
+pub const ALL_PHASES: usize = 65536;
+
+/// The error over `count` evenly spaced phases, a divisor of 65536.
+pub fn worst(robot: &Robot, index: usize, count: usize) -> TableError {
+    let gait = &robot.gaits[index];
+    let mut error = TableError {
+        max: 0.0,
+        rms: 0.0,
+        servo: 0,
+        phase: 0.0,
+    };
+    let mut squares = 0.0;
+    for i in 0..count {
+        let step = (i * (ALL_PHASES / count)) as u16;
+        let phase = f64::from(step) / ALL_PHASES as f64;
+        let table = robot.tables.angles(gait, index, step);
+        let float = gait.angles(phase);
+        for servo in 0..4 {
+            let off = (table[servo] - float[servo]).abs();
+            squares += off * off;
+            if off > error.max {
+                error = TableError {
+                    max: off,
+                    servo,
+                    phase,
+                    ..error
+                };
+            }
+        }
+    }
+    error.rms = (squares / (4 * count) as f64).sqrt();
+    error
+}

@@ -1,0 +1,208 @@
+//! Every sample of every gait, as the firmware will send it, through the
+//! forward solution: head, tail, sides and legs against all limits.
+
+use lizard_kinematics::{Check, Solution};
+
+use crate::error::Problem;
+use crate::gait::Gait;
+use crate::servo::NAMES;
+use crate::table::{FRAMES_PER_SECOND, SAMPLES};
+use crate::{Robot, accuracy};
+
+/// Evenly spaced phases that are checked besides the tables' own samples.
+const PHASES: usize = 1024;
+/// Phases over which the fastest frame is looked for.
+const SPEEDS: usize = 4096;
+/// The largest error of a table, deg.
+const ERROR_LIMIT: f64 = 0.10;
+
+/// The smallest of a kind of margin over a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Least {
+    /// Which one.
+    pub what: Check,
+    /// Its value, a sine.
+    pub value: f64,
+    /// Where, 0 to 1.
+    pub phase: f64,
+}
+
+/// The fastest that a servo turns between two frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peak {
+    /// Which servo, 0 to 3.
+    pub servo: usize,
+    /// deg/s, the mean over the 20 ms from one frame to the next.
+    pub speed: f64,
+    /// Where the frame begins, 0 to 1.
+    pub phase: f64,
+}
+
+/// What the check of a gait found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Audit {
+    /// Smallest type-2 margin, head and tail.
+    pub type2: Least,
+    /// Smallest type-1 margin of the four arms.
+    pub type1: Least,
+    /// Smallest margin of the four legs.
+    pub leg: Least,
+    /// Slider travel of both sides, smallest and largest, mm from nominal.
+    pub stroke: (f64, f64),
+    /// Fastest frame.
+    pub peak: Peak,
+}
+
+/// Checks a gait of the robot, by its index.
+pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
+    let gait = &robot.gaits[index];
+    let mut found: Option<Audit> = None;
+    let peak = fastest(gait);
+    for phase in phases(robot, index) {
+        let angles = robot.tables.angles(gait, index, phase);
+        let phase = f64::from(phase) / 65536.0;
+        travels(robot, angles, phase)?;
+        let solution = robot
+            .lizard
+            .solve(&angles.into())
+            .map_err(|fault| Problem::Unsafe {
+                phase,
+                violation: fault.to_string(),
+            })?;
+        if let Some(violation) = robot.limits.violations(&solution).next() {
+            return Err(Problem::Unsafe {
+                phase,
+                violation: violation.to_string(),
+            });
+        }
+        let here = Audit::of(&solution, phase, peak);
+        found = Some(found.map_or(here, |so_far| so_far.least(here)));
+    }
+    if peak.speed > robot.pace.gait_slew {
+        let limit = robot.pace.gait_slew;
+        return Err(Problem::TooFast {
+            phase: peak.phase,
+            servo: NAMES[peak.servo],
+            speed: peak.speed,
+            limit,
+        });
+    }
+    let coarse = accuracy::worst(robot, index, PHASES);
+    if coarse.max > ERROR_LIMIT {
+        let (phase, servo) = (coarse.phase, NAMES[coarse.servo]);
+        return Err(Problem::Coarse {
+            phase,
+            servo,
+            error: coarse.max,
+            limit: ERROR_LIMIT,
+        });
+    }
+    // `phases` is never empty, so something was found.
+    found.ok_or(Problem::Coarse {
+        phase: 0.0,
+        servo: NAMES[0],
+        error: f64::NAN,
+        limit: ERROR_LIMIT,
+    })
+}
+
+/// The phases to check: evenly spaced ones, and every sample of every servo.
+fn phases(robot: &Robot, index: usize) -> Vec<u16> {
+    let every = |count: usize| (0..count).map(move |i| (i * (65536 / count)) as u16);
+    let mut phases: Vec<u16> = every(PHASES).collect();
+    for channel in &robot.tables.gaits[index].channels {
+        phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
+    }
+    phases.sort_unstable();
+    phases.dedup();
+    phases
+}
+
+fn travels(robot: &Robot, angles: [f64; 4], phase: f64) -> Result<(), Problem> {
+    // The ends of the travel and the sample are both rounded to an angle step.
+    const STEP: f64 = 360.0 / 65536.0;
+    for (i, servo) in robot.servos.iter().enumerate() {
+        let (min, max) = servo.travel();
+        let sweep = angles[i] - servo.neutral;
+        if sweep < min - STEP || sweep > max + STEP {
+            let (min, max) = (servo.neutral + min, servo.neutral + max);
+            return Err(Problem::Travel {
+                phase,
+                servo: NAMES[i],
+                angle: angles[i],
+                min,
+                max,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The fastest frame of a gait at full speed.
+fn fastest(gait: &Gait) -> Peak {
+    let frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
+    let mut peak = Peak {
+        servo: 0,
+        speed: 0.0,
+        phase: 0.0,
+    };
+    for i in 0..SPEEDS {
+        let phase = i as f64 / SPEEDS as f64;
+        let (from, to) = (gait.sweeps(phase), gait.sweeps(phase + frame));
+        for servo in 0..4 {
+            let speed = (to[servo] - from[servo]).abs() * FRAMES_PER_SECOND;
+            if speed > peak.speed {
+                peak = Peak {
+                    servo,
+                    speed,
+                    phase,
+                };
+            }
+        }
+    }
+    peak
+}
+
+impl Audit {
+    fn of(solution: &Solution, phase: f64, peak: Peak) -> Self {
+        let least = |kind: &[Check]| {
+            let of_kind = solution
+                .margins
+                .iter()
+                .filter(|(what, _)| kind.contains(what));
+            let (what, value) =
+                of_kind.fold(
+                    (kind[0], f64::INFINITY),
+                    |a, b| if b.1 < a.1 { b } else { a },
+                );
+            Least { what, value, phase }
+        };
+        let (left, right) = (solution.left.s, solution.right.s);
+        Self {
+            type2: least(&[Check::ApexHead, Check::ApexTail]),
+            type1: least(&[
+                Check::Type1A1,
+                Check::Type1A2,
+                Check::Type1A3,
+                Check::Type1A4,
+            ]),
+            leg: least(&[Check::LegFl, Check::LegFr, Check::LegBr, Check::LegBl]),
+            stroke: (left.min(right), left.max(right)),
+            peak,
+        }
+    }
+
+    fn least(self, other: Self) -> Self {
+        let least = |a: Least, b: Least| if b.value < a.value { b } else { a };
+        Self {
+            type2: least(self.type2, other.type2),
+            type1: least(self.type1, other.type1),
+            leg: least(self.leg, other.leg),
+            stroke: (
+                self.stroke.0.min(other.stroke.0),
+                self.stroke.1.max(other.stroke.1),
+            ),
+            peak: self.peak,
+        }
+    }
+}

@@ -1,0 +1,356 @@
+//! Gait definitions in robot.toml: each gives a waveform, a path, or another
+//! gait to start from.
+
+use std::collections::HashMap;
+
+use lizard_kinematics::Lizard;
+
+use crate::error::{Checked, Hint, Problem};
+use crate::gait::{Gait, Stride};
+use crate::path::{Loop, Path, PathLeg};
+use crate::reader::Section;
+use crate::servo::LEGS;
+use crate::waveform::{Harmonic, Waveform};
+
+const KEYS: [&str; 12] = [
+    "period",
+    "waveform",
+    "duty",
+    "amplitude",
+    "start",
+    "order",
+    "gain",
+    "reverse",
+    "mirror",
+    "like",
+    "head",
+    "tail",
+];
+const WAVEFORMS: [&str; 3] = ["still", "wave", "held"];
+const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
+/// What the console does itself; no gait may take these names.
+const COMMANDS: [&str; 7] = ["help", "stop", "rest", "speed", "pose", "status", "watch"];
+/// The firmware keeps names in this many bytes.
+const NAME_LENGTH: usize = 12;
+/// Each gait costs flash, and up to four waveforms of an 8-bit index.
+const MOST: usize = 32;
+
+/// The robot that the gaits are for.
+pub(crate) struct Body {
+    pub lizard: Lizard,
+    /// Neutral servo angles, deg.
+    pub neutral: [f64; 4],
+}
+
+/// Every gait of the file, in its order, references resolved.
+pub(crate) fn gaits(root: &Section, body: &Body) -> Checked<Vec<Gait>> {
+    let section = root.open("gait")?;
+    let names = section.names();
+    for name in &names {
+        check_name(name).map_err(|problem| problem.at(section.path(name)))?;
+    }
+    if names.len() > MOST {
+        return Err(Problem::Many {
+            found: names.len(),
+            most: MOST,
+        }
+        .at("gait"));
+    }
+    if names.first() != Some(&"stand") {
+        return Err(Problem::Stand.at("gait"));
+    }
+    let mut resolver = Resolver {
+        section,
+        names,
+        body,
+        known: HashMap::new(),
+        chain: Vec::new(),
+    };
+    let gaits = resolver
+        .names
+        .clone()
+        .into_iter()
+        .map(|name| resolver.resolve(name))
+        .collect::<Checked<Vec<_>>>()?;
+    let still = |stride: &Stride| stride.waveform == Waveform::Still;
+    if gaits[0].strides.iter().all(still) {
+        Ok(gaits)
+    } else {
+        Err(Problem::Stand.at("gait.stand"))
+    }
+}
+
+fn check_name(name: &str) -> Result<(), Problem> {
+    let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if !name.chars().all(letters) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        return Err(Problem::Name(
+            "it must be lower-case letters, digits and dashes, a letter first",
+        ));
+    }
+    if name.len() > NAME_LENGTH {
+        return Err(Problem::Name("it must have at most 12 characters"));
+    }
+    if name.ends_with('-') || name.contains("--") {
+        return Err(Problem::Name("a dash stands for a blank between two words"));
+    }
+    let word = name.split('-').next().unwrap_or(name);
+    if COMMANDS.contains(&word) {
+        return Err(Problem::Command(word.to_string()));
+    }
+    Ok(())
+}
+
+struct Resolver<'a> {
+    section: Section<'a>,
+    names: Vec<&'a str>,
+    body: &'a Body,
+    known: HashMap<&'a str, Gait>,
+    /// The gaits that wait for the one being resolved.
+    chain: Vec<&'a str>,
+}
+
+impl<'a> Resolver<'a> {
+    fn resolve(&mut self, name: &'a str) -> Checked<Gait> {
+        if let Some(gait) = self.known.get(name) {
+            return Ok(gait.clone());
+        }
+        self.chain.push(name);
+        let one = self.section.section(name, &KEYS)?;
+        let gait = match manner(&one)? {
+            "waveform" => waveform(name, &one, self.body)?,
+            "head or tail" => path(name, &one, self.body)?,
+            reference => self.derived(name, &one, reference)?,
+        };
+        self.chain.pop();
+        self.known.insert(name, gait.clone());
+        Ok(gait)
+    }
+
+    /// A gait that starts from another.
+    fn derived(
+        &mut self,
+        name: &'a str,
+        one: &Section<'a>,
+        reference: &'static str,
+    ) -> Checked<Gait> {
+        only(one, &[reference, "period", "gain"], reference)?;
+        let key = one.path(reference);
+        let base = one.text(reference)?;
+        if !self.names.contains(&base) {
+            let hint = Hint::new(base, &self.names);
+            return Err(Problem::NoSuchGait {
+                name: base.to_string(),
+                hint,
+            }
+            .at(key));
+        }
+        if self.chain.contains(&base) {
+            let circle = [self.chain.as_slice(), &[base]].concat().join(" -> ");
+            return Err(Problem::Circle(circle).at(key));
+        }
+        let mut gait = self.resolve(base)?;
+        match reference {
+            "reverse" => gait.reversed = !gait.reversed,
+            "mirror" => gait = gait.mirrored(),
+            _ => {}
+        }
+        gait.name = name.to_string();
+        gait.period = period(one, Some(gait.period))?;
+        Ok(gait.scaled(gains(one)?))
+    }
+}
+
+/// Which of the ways to give a gait this one uses.
+fn manner(one: &Section) -> Checked<&'static str> {
+    let path = one.has("head") || one.has("tail");
+    let mut ways: Vec<&'static str> = REFERENCES.into_iter().filter(|key| one.has(key)).collect();
+    ways.extend(one.has("waveform").then_some("waveform"));
+    ways.extend(path.then_some("head or tail"));
+    match ways.as_slice() {
+        [way] => Ok(way),
+        _ => Err(
+            Problem::OneOf("waveform, a path (head, tail), reverse, mirror, like")
+                .at(one.key.clone()),
+        ),
+    }
+}
+
+/// Refuses keys that mean nothing beside `with`.
+fn only(one: &Section, allowed: &[&str], with: &str) -> Checked<()> {
+    match one.names().into_iter().find(|name| !allowed.contains(name)) {
+        Some(name) => Err(Problem::Conflict(with.to_string()).at(one.path(name))),
+        None => Ok(()),
+    }
+}
+
+fn waveform(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
+    let word = one.text("waveform")?;
+    let with = format!("waveform = \"{word}\"");
+    let strides = match word {
+        "still" => {
+            only(one, &["waveform", "period"], &with)?;
+            [Stride::STILL; 4]
+        }
+        "wave" => {
+            only(
+                one,
+                &["waveform", "period", "duty", "amplitude", "start", "gain"],
+                &with,
+            )?;
+            let waveform = Waveform::Wave {
+                duty: one.number("duty", 0.05, 0.95, "of the cycle")?,
+            };
+            let amplitude = amplitude(one)?;
+            let starts = legs(
+                &one.section("start", &LEGS)?,
+                None,
+                0.0,
+                1.0,
+                "of the cycle",
+            )?;
+            starts.map(|start| Stride {
+                waveform: waveform.clone(),
+                start,
+                amplitude,
+            })
+        }
+        "held" => {
+            only(
+                one,
+                &["waveform", "period", "amplitude", "order", "gain"],
+                &with,
+            )?;
+            let amplitude = amplitude(one)?;
+            order(one)?.map(|turn| Stride {
+                waveform: Waveform::Held { turn },
+                start: 0.0,
+                amplitude,
+            })
+        }
+        word => {
+            let hint = Hint::new(word, &WAVEFORMS);
+            return Err(Problem::Word {
+                word: word.to_string(),
+                hint,
+            }
+            .at(one.path("waveform")));
+        }
+    };
+    finish(name, one, body, strides)
+}
+
+fn path(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
+    only(one, &["period", "head", "tail", "gain"], "a path")?;
+    let mut strides = [Stride::STILL; 4];
+    for whole in [Loop::Head, Loop::Tail] {
+        if !one.has(whole.name()) {
+            continue;
+        }
+        let section = one.section(whole.name(), &["centre", "x", "y"])?;
+        let path = Path {
+            centre: section.pair("centre", -255.0, 255.0, "mm")?,
+            x: harmonics(&section, "x")?,
+            y: harmonics(&section, "y")?,
+        };
+        let legs = PathLeg::pair(body.lizard, body.neutral, whole, &path)
+            .map_err(|problem| problem.at(section.key.clone()))?;
+        for (servo, leg) in legs {
+            strides[servo] = Stride {
+                waveform: Waveform::Path(Box::new(leg)),
+                start: 0.0,
+                amplitude: 1.0,
+            };
+        }
+    }
+    finish(name, one, body, strides)
+}
+
+fn finish(name: &str, one: &Section, body: &Body, strides: [Stride; 4]) -> Checked<Gait> {
+    let gait = Gait {
+        name: name.to_string(),
+        period: period(one, None)?,
+        reversed: false,
+        strides,
+        neutral: body.neutral,
+    };
+    Ok(gait.scaled(gains(one)?))
+}
+
+fn period(one: &Section, default: Option<f64>) -> Checked<f64> {
+    match default {
+        Some(period) => one.number_or("period", period, 0.2, 60.0, "s"),
+        None => one.number("period", 0.2, 60.0, "s"),
+    }
+}
+
+fn amplitude(one: &Section) -> Checked<f64> {
+    one.number("amplitude", 0.0, 90.0, "deg")
+}
+
+fn gains(one: &Section) -> Checked<[f64; 4]> {
+    if !one.has("gain") {
+        return Ok([1.0; 4]);
+    }
+    legs(
+        &one.section("gain", &LEGS)?,
+        Some(1.0),
+        -4.0,
+        4.0,
+        "(a factor)",
+    )
+}
+
+/// A number for each leg, in servo order.
+fn legs(
+    section: &Section,
+    default: Option<f64>,
+    min: f64,
+    max: f64,
+    unit: &'static str,
+) -> Checked<[f64; 4]> {
+    let mut values = [0.0; 4];
+    for (value, leg) in values.iter_mut().zip(LEGS) {
+        *value = match default {
+            Some(default) => section.number_or(leg, default, min, max, unit)?,
+            None => section.number(leg, min, max, unit)?,
+        };
+    }
+    Ok(values)
+}
+
+/// Each leg's place in the order of returns, in servo order.
+fn order(one: &Section) -> Checked<[usize; 4]> {
+    let words = one.words("order")?;
+    let fault = || Problem::Order.at(one.path("order"));
+    if words.len() != LEGS.len() {
+        return Err(fault());
+    }
+    let mut turns = [0; 4];
+    for (turn, leg) in turns.iter_mut().zip(LEGS) {
+        *turn = words
+            .iter()
+            .position(|word| *word == leg)
+            .ok_or_else(fault)?;
+    }
+    Ok(turns)
+}
+
+fn harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
+    let terms = section.list(name, &["k", "amplitude", "shift"])?;
+    let term = |term: Section| {
+        let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
+        if k.fract() != 0.0 {
+            return Err(Problem::Type {
+                found: format!("the number {k}"),
+                expected: "a whole number",
+            }
+            .at(term.path("k")));
+        }
+        Ok(Harmonic {
+            k,
+            amplitude: term.number("amplitude", -255.0, 255.0, "mm")?,
+            shift: term.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
+        })
+    };
+    terms.into_iter().map(term).collect()
+}

@@ -1,0 +1,199 @@
+//! robot.toml, read and proved: the robot's measurements and gaits for the
+//! firmware's build script, the host program and the tests.
+//!
+//! [`Robot::load`] reads the file and checks everything in it, every sample of
+//! every gait included, so a `Robot` that exists is one that can walk. From it
+//! come the gaits in floating point ([`Gait`]), the tables that the firmware
+//! reads ([`Tables`]) and the Rust source that carries them
+//! ([`Robot::source`]).
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+pub mod accuracy;
+mod audit;
+mod define;
+mod error;
+mod gait;
+mod generate;
+mod ground;
+mod measure;
+mod path;
+mod reader;
+pub mod servo;
+mod table;
+mod waveform;
+
+use std::path::Path as FilePath;
+
+use lizard_kinematics::{Limits, Lizard, Pose};
+use toml::de::DeTable;
+
+pub use audit::{Audit, Least, Peak};
+pub use error::{Error, Hint, Problem};
+pub use gait::{Gait, Stride};
+pub use ground::{Feet, Ground};
+pub use path::{Loop, Path, PathLeg};
+pub use servo::Servo;
+pub use table::{
+    Channel, FRAMES_PER_SECOND, SAMPLES, STEPS_PER_DEGREE, TableGait, Tables, interpolate,
+};
+pub use waveform::{Harmonic, Waveform};
+
+use error::{Checked, Fault};
+use reader::Section;
+
+/// How fast servos may turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// In a blend or a pose, deg/s.
+    pub slew: f64,
+    /// In a gait, deg/s.
+    pub gait_slew: f64,
+}
+
+/// A robot whose every value and gait has been checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    /// Its links.
+    pub lizard: Lizard,
+    /// Its servos A1, A2, A3, A4.
+    pub servos: [Servo; 4],
+    /// What its poses must keep clear of.
+    pub limits: Limits,
+    /// How fast its servos may turn.
+    pub pace: Pace,
+    /// Its feet on the floor.
+    pub ground: Ground,
+    /// Its gaits in the order of the file; the first is `stand`.
+    pub gaits: Vec<Gait>,
+    /// The gaits as the firmware holds them.
+    pub tables: Tables,
+    /// What the check of each gait found.
+    pub audits: Vec<Audit>,
+}
+
+impl Robot {
+    /// Reads and checks a file.
+    pub fn load(path: impl AsRef<FilePath>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
+            Err(fault) => Err(Error {
+                file,
+                line: None,
+                key: String::new(),
+                problem: Problem::Unreadable(fault.to_string()),
+            }),
+        }
+    }
+
+    /// Reads and checks the text of a robot.toml.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let file = "robot.toml".to_string();
+        let document = DeTable::parse(text).map_err(|fault| Error {
+            file: file.clone(),
+            line: fault
+                .span()
+                .map(|span| text[..span.start].matches('\n').count() + 1),
+            key: String::new(),
+            problem: Problem::Syntax(fault.message().to_string()),
+        })?;
+        let table = document.get_ref();
+        Self::read(table).map_err(|Fault { key, problem }| {
+            let lines = reader::lines(text, table);
+            // The line of the key, or of the nearest table that holds it.
+            let within = |whole: &String| {
+                key == *whole
+                    || key.starts_with(&format!("{whole}."))
+                    || key.starts_with(&format!("{whole}["))
+            };
+            let line = lines
+                .iter()
+                .filter(|(whole, _)| within(whole))
+                .max_by_key(|(whole, _)| whole.len());
+            Error {
+                file,
+                line: line.map(|(_, line)| *line),
+                key,
+                problem,
+            }
+        })
+    }
+
+    fn read(table: &DeTable) -> Checked<Self> {
+        let root = Section::root(
+            table,
+            &["links", "leg", "servo", "limits", "ground", "gait"],
+        )?;
+        let links = measure::links(&root)?;
+        let (leg, feet) = measure::leg(&root)?;
+        let lizard = Lizard { links, leg };
+        let servos = measure::servos(&root)?;
+        let (limits, pace) = measure::limits(&root)?;
+        measure::strokes(&lizard, &limits)?;
+        let ground = measure::ground(&root, feet)?;
+        let neutral = servos.map(|servo| servo.neutral);
+        stands(&lizard, &limits, neutral)?;
+        let gaits = define::gaits(&root, &define::Body { lizard, neutral })?;
+        let key = |index: usize, gaits: &[Gait]| format!("gait.{}", gaits[index].name);
+        let tables = Tables::new(&gaits).map_err(|(gait, servo)| {
+            Problem::HalfTurn {
+                servo: servo::NAMES[servo],
+            }
+            .at(key(gait, &gaits))
+        })?;
+        let mut robot = Self {
+            lizard,
+            servos,
+            limits,
+            pace,
+            ground,
+            gaits,
+            tables,
+            audits: Vec::new(),
+        };
+        robot.audits = (0..robot.gaits.len())
+            .map(|index| {
+                audit::check(&robot, index).map_err(|problem| problem.at(key(index, &robot.gaits)))
+            })
+            .collect::<Checked<_>>()?;
+        Ok(robot)
+    }
+
+    /// The neutral pose.
+    pub fn neutral(&self) -> Pose {
+        self.servos.map(|servo| servo.neutral).into()
+    }
+
+    /// A gait and its index by its name; a blank in it counts as a dash.
+    pub fn gait(&self, name: &str) -> Option<(usize, &Gait)> {
+        let name = name.replace(' ', "-");
+        self.gaits
+            .iter()
+            .enumerate()
+            .find(|(_, gait)| gait.name == name)
+    }
+
+    /// The Rust source that the firmware includes.
+    pub fn source(&self) -> String {
+        generate::source(self)
+    }
+
+    /// CRC-32 of the firmware's numbers, as its banner shows it.
+    pub fn tables_hash(&self) -> u32 {
+        generate::hash(self)
+    }
+}
+
+/// Refuses a robot that could not even stand.
+fn stands(lizard: &Lizard, limits: &Limits, neutral: [f64; 4]) -> Checked<()> {
+    let fault = |text: String| Err(Problem::Neutral(text).at("servo"));
+    match lizard.solve(&neutral.into()) {
+        Err(infeasible) => fault(infeasible.to_string()),
+        Ok(solution) => match limits.violations(&solution).next() {
+            Some(violation) => fault(violation.to_string()),
+            None => Ok(()),
+        },
+    }
+}

@@ -1,0 +1,313 @@
+//! The robot's measurements in robot.toml, and what each of them may be.
+
+use lizard_kinematics::{Leg, Limits, Links, Lizard};
+
+use crate::error::{Checked, Problem};
+use crate::ground::Ground;
+use crate::reader::Section;
+use crate::servo::{NAMES, Servo};
+use crate::{Feet, Pace};
+
+/// The firmware holds lengths of a loop in i16 steps of 1/256 mm.
+const LOOP_REACH: f64 = 127.0;
+/// It holds lengths of a side in u16 steps of 1/256 mm.
+const SIDE_REACH: f64 = 255.0;
+/// Shorter bars than this are no robot, and coarse in steps of 1/256 mm.
+const SHORTEST: f64 = 5.0;
+/// Widths that a hobby servo can bear, us; within a 4 ms slot.
+const WIDTHS: (f64, f64) = (500.0, 2500.0);
+/// 22 us per degree is the most that the firmware's i16 gain holds.
+const GAINS: (f64, f64) = (1.0, 22.0);
+
+const LINKS: [&str; 20] = [
+    "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",
+    "l15", "l16", "l17", "l18", "l19",
+];
+
+/// The links of the body.
+pub(crate) fn links(root: &Section) -> Checked<Links> {
+    let section = root.section("links", &LINKS)?;
+    let mut lengths = [0.0; 20];
+    for (length, name) in lengths.iter_mut().zip(LINKS) {
+        *length = section.number(name, SHORTEST, SIDE_REACH, "mm")?;
+    }
+    let l = Links::from(lengths);
+    let couplers = "the two couplers of a loop are equally long";
+    equal("links.l3", l.l3, "links.l2", l.l2, couplers)?;
+    equal("links.l8", l.l8, "links.l7", l.l7, couplers)?;
+    equal(
+        "links.l15",
+        l.l15,
+        "links.l10",
+        l.l10,
+        "the chassis is a rectangle",
+    )?;
+    short(
+        "links.l0",
+        "the head's l0 + l1 + l4",
+        l.l0 + l.l1 + l.l4,
+        LOOP_REACH,
+    )?;
+    short(
+        "links.l5",
+        "the tail's l5 + l6 + l9",
+        l.l5 + l.l6 + l.l9,
+        LOOP_REACH,
+    )?;
+    short("links.l2", "the head's coupler", l.l2, LOOP_REACH)?;
+    short("links.l7", "the tail's coupler", l.l7, LOOP_REACH)?;
+    short(
+        "links.l10",
+        "the left side's l10 + l11 + l14",
+        l.l10 + l.l11 + l.l14,
+        SIDE_REACH,
+    )?;
+    short(
+        "links.l15",
+        "the right side's l15 + l16 + l19",
+        l.l15 + l.l16 + l.l19,
+        SIDE_REACH,
+    )?;
+    Ok(l)
+}
+
+/// The legs: their links, and where their feet are.
+pub(crate) fn leg(root: &Section) -> Checked<(Leg, Feet)> {
+    let keys = [
+        "ground",
+        "crank",
+        "coupler",
+        "follower",
+        "hip_forward",
+        "hip_side",
+        "mount",
+    ];
+    let section = root.section("leg", &keys)?;
+    let bar = |name| section.number(name, SHORTEST, SIDE_REACH, "mm");
+    let leg = Leg {
+        ground: bar("ground")?,
+        crank: bar("crank")?,
+        coupler: bar("coupler")?,
+        follower: bar("follower")?,
+    };
+    let parallelogram = "a leg is a parallelogram";
+    equal(
+        "leg.coupler",
+        leg.coupler,
+        "leg.ground",
+        leg.ground,
+        parallelogram,
+    )?;
+    equal(
+        "leg.follower",
+        leg.follower,
+        "leg.crank",
+        leg.crank,
+        parallelogram,
+    )?;
+    let feet = Feet {
+        hip_forward: section.number("hip_forward", 1.0, 500.0, "mm")?,
+        hip_side: section.number("hip_side", 0.0, 500.0, "mm")?,
+        mount: section.number("mount", -90.0, 90.0, "deg")?,
+        reach: leg.crank,
+    };
+    Ok((leg, feet))
+}
+
+/// The four servos.
+pub(crate) fn servos(root: &Section) -> Checked<[Servo; 4]> {
+    let section = root.section("servo", &NAMES)?;
+    let mut servos = Vec::with_capacity(4);
+    for name in NAMES {
+        let one = section.section(
+            name,
+            &[
+                "pin",
+                "neutral",
+                "neutral_us",
+                "us_per_degree",
+                "min_us",
+                "max_us",
+            ],
+        )?;
+        let servo = servo(&one)?;
+        if let Some(other) = servos
+            .iter()
+            .position(|earlier: &Servo| earlier.pin == servo.pin)
+        {
+            let problem = Problem::PinTwice {
+                pin: one.text("pin")?.to_string(),
+                other: NAMES[other],
+            };
+            return Err(problem.at(one.path("pin")));
+        }
+        servos.push(servo);
+    }
+    Ok([servos[0], servos[1], servos[2], servos[3]])
+}
+
+fn servo(section: &Section) -> Checked<Servo> {
+    let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
+    let text = section.text("pin")?;
+    let pin = pin(text).ok_or_else(|| Problem::Pin(text.to_string()).at(section.path("pin")))?;
+    let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
+    if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
+        return Err(Problem::Gain(us_per_degree).at(section.path("us_per_degree")));
+    }
+    let servo = Servo {
+        pin,
+        neutral: section.number("neutral", 0.0, 360.0, "deg")?,
+        neutral_us: width("neutral_us")?,
+        us_per_degree,
+        min_us: width("min_us")?,
+        max_us: width("max_us")?,
+    };
+    less(
+        section,
+        "min_us",
+        servo.min_us,
+        "neutral_us",
+        servo.neutral_us,
+    )?;
+    less(
+        section,
+        "neutral_us",
+        servo.neutral_us,
+        "max_us",
+        servo.max_us,
+    )?;
+    Ok(servo)
+}
+
+/// The Arduino number of a pin by its name on the board: D2 to D12, A0 to A5
+/// (14 to 19).
+fn pin(name: &str) -> Option<u8> {
+    let (letter, number) = name.split_at_checked(1)?;
+    // "+5" and "05" parse, but are no names.
+    let number: u8 = number
+        .parse()
+        .ok()
+        .filter(|n: &u8| n.to_string() == number)?;
+    match letter {
+        "D" if (2..=12).contains(&number) => Some(number),
+        "A" if number <= 5 => Some(14 + number),
+        _ => None,
+    }
+}
+
+/// What a pose must keep clear of, and how fast a servo may turn.
+pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
+    let section = root.section(
+        "limits",
+        &[
+            "type2",
+            "type1",
+            "leg",
+            "stroke_min",
+            "stroke_max",
+            "slew",
+            "gait_slew",
+        ],
+    )?;
+    let limits = Limits {
+        // Below .1 the firmware's fixed point loses the crank tips' distance.
+        type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
+        type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
+        leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
+        stroke_min: section.number("stroke_min", -SIDE_REACH, SIDE_REACH, "mm")?,
+        stroke_max: section.number("stroke_max", -SIDE_REACH, SIDE_REACH, "mm")?,
+    };
+    less(
+        &section,
+        "stroke_min",
+        limits.stroke_min,
+        "stroke_max",
+        limits.stroke_max,
+    )?;
+    let speed = |name| section.number(name, 1.0, 1000.0, "deg/s");
+    Ok((
+        limits,
+        Pace {
+            slew: speed("slew")?,
+            gait_slew: speed("gait_slew")?,
+        },
+    ))
+}
+
+/// The ends of the stroke must be lengths that a slider can have and that the
+/// firmware holds.
+pub(crate) fn strokes(lizard: &Lizard, limits: &Limits) -> Checked<()> {
+    let (left, right) = (lizard.left().nominal, lizard.right().nominal);
+    let (min, max) = (-left.min(right), SIDE_REACH - left.max(right));
+    for (key, value) in [
+        ("limits.stroke_min", limits.stroke_min),
+        ("limits.stroke_max", limits.stroke_max),
+    ] {
+        if !(min..=max).contains(&value) {
+            return Err(Problem::Range {
+                value,
+                min,
+                max,
+                unit: "mm, so that the slider stays within 0 to 255 mm",
+            }
+            .at(key));
+        }
+    }
+    Ok(())
+}
+
+/// The contact model.
+pub(crate) fn ground(root: &Section, feet: Feet) -> Checked<Ground> {
+    const KEY: &str = "friction_back_over_forward";
+    let section = root.section("ground", &[KEY])?;
+    Ok(Ground::new(
+        feet,
+        section.number(KEY, 0.1, 10.0, "(a ratio)")?,
+    ))
+}
+
+fn equal(
+    key: &str,
+    value: f64,
+    other: &'static str,
+    other_value: f64,
+    why: &'static str,
+) -> Checked<()> {
+    if value == other_value {
+        Ok(())
+    } else {
+        Err(Problem::Unequal {
+            value,
+            other,
+            other_value,
+            why,
+        }
+        .at(key))
+    }
+}
+
+fn short(key: &str, what: &'static str, value: f64, max: f64) -> Checked<()> {
+    if value < max {
+        Ok(())
+    } else {
+        Err(Problem::TooLong { what, value, max }.at(key))
+    }
+}
+
+fn less(
+    section: &Section,
+    name: &str,
+    value: f64,
+    other: &'static str,
+    other_value: f64,
+) -> Checked<()> {
+    if value < other_value {
+        return Ok(());
+    }
+    Err(Problem::NotLess {
+        value,
+        other,
+        other_value,
+    }
+    .at(section.path(name)))
+}

@@ -1,0 +1,51 @@
+//! The four servos, in the order of every array of this project: A1, A2, A3, A4.
+
+use lizard_kinematics::wrap;
+
+/// The servos' names.
+pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
+
+/// The leg that each servo carries: left or right, front (F) or hind (H).
+pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
+
+/// Which way each servo turns, counter-clockwise positive, when its foot goes
+/// forward: theta1 down, theta4 up, theta8 up, theta5 down.
+pub const FORWARD: [f64; 4] = [-1.0, 1.0, 1.0, -1.0];
+
+/// The servo on the other side: left and right exchanged.
+pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
+
+/// One servo as robot.toml gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Servo {
+    /// Arduino number of its pin.
+    pub pin: u8,
+    /// Chassis-frame angle where its horn is fitted, deg.
+    pub neutral: f64,
+    /// Pulse width at the neutral angle, us.
+    pub neutral_us: f64,
+    /// us per degree, positive where a longer pulse turns it counter-clockwise.
+    pub us_per_degree: f64,
+    /// Shortest pulse it may get, us.
+    pub min_us: f64,
+    /// Longest pulse it may get, us.
+    pub max_us: f64,
+}
+
+impl Servo {
+    /// Its travel, as sweeps from neutral in deg: smallest and largest. Never
+    /// beyond half a turn, whatever the pulses would allow.
+    pub fn travel(&self) -> (f64, f64) {
+        let a = (self.min_us - self.neutral_us) / self.us_per_degree;
+        let b = (self.max_us - self.neutral_us) / self.us_per_degree;
+        (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
+    }
+
+    /// The pulse width for a chassis-frame angle, us.
+    pub fn pulse(&self, angle: f64) -> f64 {
+        self.neutral_us + self.us_per_degree * wrap(angle - self.neutral)
+    }
+}
+
+/// The largest sweep that an i16 of 1/65536 turns holds, deg.
+const HALF_TURN: f64 = 32767.0 * 360.0 / 65536.0;

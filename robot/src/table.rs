@@ -1,0 +1,223 @@
+//! The gaits as the firmware holds them: waveforms of 256 samples that several
+//! servos share, each servo with an offset and a gain.
+//!
+//! Integers only, in the firmware's own arithmetic: an angle is an i16 of
+//! 1/65536 turn, a gain an i16 of 1/16384, a phase a u16 of 1/65536 cycle. The
+//! firmware must give the same bits; a test compares all phases of all gaits.
+
+use crate::gait::{Gait, Stride};
+use crate::servo::FORWARD;
+use crate::waveform::{Waveform, canonical};
+
+/// Samples of a waveform.
+pub const SAMPLES: usize = 256;
+/// Steps of an angle in one degree.
+pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
+/// Frames of 20 ms in a second.
+pub const FRAMES_PER_SECOND: f64 = 50.0;
+/// 1.0 as a gain.
+const ONE_Q14: f64 = 16384.0;
+/// Steps of the firmware's phase in a cycle.
+const CYCLE: f64 = 16_777_216.0;
+/// Two waveforms that differ by less than this (deg) share a table: a third of
+/// an angle step.
+const SAME: f64 = 0.002;
+
+/// One servo's part in a gait.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Channel {
+    /// Index of its waveform.
+    pub wave: u8,
+    /// How far it reads ahead of the gait's phase, 1/65536 cycle.
+    pub offset: u16,
+    /// Factor, Q14, counter-clockwise positive.
+    pub gain: i16,
+}
+
+/// A gait in fixed point.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableGait {
+    /// Its name.
+    pub name: String,
+    /// Advance of the phase in one frame, 1/2^24 cycle; negative backwards.
+    pub increment: i32,
+    /// The servos' parts.
+    pub channels: [Channel; 4],
+}
+
+/// Everything the firmware needs to walk.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tables {
+    /// Waveforms, angle steps at gain 1.
+    pub waves: Vec<[i16; SAMPLES]>,
+    /// Gaits in the order of the file.
+    pub gaits: Vec<TableGait>,
+}
+
+/// A waveform's value between its samples: a straight line, rounded to nearest,
+/// halves up.
+pub fn interpolate(wave: &[i16; SAMPLES], phase: u16) -> i16 {
+    let [index, fraction] = phase.to_be_bytes();
+    let here = i32::from(wave[usize::from(index)]);
+    let next = i32::from(wave[usize::from(index.wrapping_add(1))]);
+    let rise = (next - here) * i32::from(fraction);
+    (here + ((rise + 128) >> 8)) as i16
+}
+
+impl Channel {
+    /// The servo's sweep at a phase, angle steps: the rule the firmware keeps.
+    pub fn sweep(&self, waves: &[[i16; SAMPLES]], phase: u16) -> i16 {
+        let value = interpolate(
+            &waves[usize::from(self.wave)],
+            phase.wrapping_add(self.offset),
+        );
+        ((i32::from(value) * i32::from(self.gain) + (1 << 13)) >> 14) as i16
+    }
+}
+
+impl Tables {
+    /// The four sweeps of a gait (by its index) at a phase, angle steps,
+    /// counter-clockwise positive.
+    pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
+        self.gaits[gait]
+            .channels
+            .map(|channel| channel.sweep(&self.waves, phase))
+    }
+
+    /// The four servo angles of a gait at a phase, deg, chassis frame.
+    pub fn angles(&self, gait: &Gait, index: usize, phase: u16) -> [f64; 4] {
+        let sweeps = self.sweeps(index, phase);
+        std::array::from_fn(|i| gait.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
+    }
+
+    /// Builds the tables, or names the first gait (by index) and servo whose
+    /// sweep is half a turn or more, which the fixed point does not hold.
+    pub(crate) fn new(gaits: &[Gait]) -> Result<Self, (usize, usize)> {
+        let mut shelf = Shelf::default();
+        let mut parts = Vec::new();
+        for (g, gait) in gaits.iter().enumerate() {
+            for (s, stride) in gait.strides.iter().enumerate() {
+                parts.push(shelf.place(stride, FORWARD[s]).ok_or((g, s))?);
+            }
+        }
+        let largest = shelf.largest(&parts);
+        if shelf.samples.is_empty() {
+            // A robot that only stands still reads one table, of zeros.
+            shelf.samples.push([0.0; SAMPLES]);
+        }
+        let waves =
+            shelf
+                .samples
+                .iter()
+                .zip(largest.iter().chain([&1.0]))
+                .map(|(samples, largest)| {
+                    samples.map(|value| (value * largest * STEPS_PER_DEGREE).round() as i16)
+                });
+        let channel = |part: &Part| {
+            let gain = part.amplitude / largest.get(part.wave).copied().unwrap_or(1.0);
+            Channel {
+                wave: part.wave as u8,
+                // A shift of a whole cycle is none: the cast to u16 wraps.
+                offset: (part.ahead.rem_euclid(1.0) * 65536.0).round() as u32 as u16,
+                gain: (gain * ONE_Q14).round() as i16,
+            }
+        };
+        let gaits = gaits
+            .iter()
+            .zip(parts.chunks(4))
+            .map(|(gait, parts)| TableGait {
+                name: gait.name.clone(),
+                increment: increment(gait),
+                channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel),
+            });
+        Ok(Self {
+            waves: waves.collect(),
+            gaits: gaits.collect(),
+        })
+    }
+}
+
+/// Advance of the phase in one frame, 1/2^24 cycle.
+fn increment(gait: &Gait) -> i32 {
+    let step = (CYCLE / (FRAMES_PER_SECOND * gait.period)).round() as i32;
+    if gait.reversed { -step } else { step }
+}
+
+/// A stride as amplitude times a waveform of the shelf.
+struct Part {
+    wave: usize,
+    /// Cycles by which it reads ahead.
+    ahead: f64,
+    /// deg, counter-clockwise positive.
+    amplitude: f64,
+}
+
+/// The waveforms so far, each scaled to a largest value of 1.
+#[derive(Default)]
+struct Shelf {
+    samples: Vec<[f64; SAMPLES]>,
+}
+
+impl Shelf {
+    /// Finds or adds the waveform of a stride; `forward` is the sense in which
+    /// the servo moves its foot forward. None if it sweeps half a turn.
+    fn place(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
+        let (waveform, shift, sign) = canonical(&stride.waveform);
+        let samples: [f64; SAMPLES] =
+            std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
+        let peak = samples
+            .iter()
+            .fold(0.0f64, |peak, value| peak.max(value.abs()));
+        let amplitude = stride.amplitude * peak * sign * forward;
+        if amplitude == 0.0 || waveform == Waveform::Still {
+            return Some(Part {
+                wave: 0,
+                ahead: 0.0,
+                amplitude: 0.0,
+            });
+        }
+        if amplitude.abs() >= 180.0 {
+            return None;
+        }
+        let ahead = -stride.start - shift;
+        let samples = samples.map(|value| value / peak);
+        let found = self.samples.iter().enumerate().find_map(|(wave, known)| {
+            let (rotation, sign) = same(known, &samples, SAME / amplitude.abs())?;
+            Some(Part {
+                wave,
+                ahead: ahead + rotation as f64 / SAMPLES as f64,
+                amplitude: amplitude * sign,
+            })
+        });
+        Some(found.unwrap_or_else(|| {
+            self.samples.push(samples);
+            Part {
+                wave: self.samples.len() - 1,
+                ahead,
+                amplitude,
+            }
+        }))
+    }
+
+    /// The largest amplitude that is asked of each waveform, deg. Tables are
+    /// stored at that size, so that no gain exceeds 1.
+    fn largest(&self, parts: &[Part]) -> Vec<f64> {
+        let of = |wave| {
+            parts
+                .iter()
+                .filter(|p| p.wave == wave)
+                .fold(0.0f64, |most, p| most.max(p.amplitude.abs()))
+        };
+        (0..self.samples.len()).map(of).collect()
+    }
+}
+
+/// The rotation and sign by which `known` gives `samples` within `tolerance`.
+fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<(usize, f64)> {
+    let candidates = (0..SAMPLES).flat_map(|rotation| [(rotation, 1.0), (rotation, -1.0)]);
+    let fits = |&(rotation, sign): &(usize, f64)| {
+        (0..SAMPLES)
+            .all(|i| (samples[i] - sign * known[(i + rotation) % SAMPLES]).abs() <= tolerance)
+    };
+    { candidates }.find(fits)
+}

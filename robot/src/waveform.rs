@@ -1,0 +1,179 @@
+//! One leg's sweep over one cycle. Feet are never lifted: a pad drags, and what
+//! walks is that three feet hold while one returns. So a waveform is a slow
+//! stroke back and one fast return, both ends meeting without a kink in speed
+//! where the return can afford it.
+//!
+//! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
+
+use std::f64::consts::TAU;
+
+use crate::path::PathLeg;
+
+/// Shares of the cycle that a held gait gives to each of its five moves.
+const MOVE: f64 = 0.2;
+
+/// A waveform.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Waveform {
+    /// Never moves.
+    Still,
+    /// Linear stance over `duty` of the cycle, then a cubic Hermite return that
+    /// meets the stance with equal speed at both ends.
+    Wave {
+        /// Share of the stance, 0 to 1.
+        duty: f64,
+    },
+    /// A smoothstep stroke in the first fifth, common to all legs, then a
+    /// smoothstep return in fifth number `turn + 1`; it holds otherwise.
+    Held {
+        /// 0 to 3: which of the four returns is this leg's.
+        turn: usize,
+    },
+    /// A leg whose servo follows a path of the head or tail point. Its value is
+    /// the sweep itself in degrees, so its amplitude is 1.
+    Path(Box<PathLeg>),
+}
+
+impl Waveform {
+    /// The value at any `phase`, taken modulo 1.
+    pub fn at(&self, phase: f64) -> f64 {
+        let u = phase.rem_euclid(1.0);
+        match self {
+            Self::Still => 0.0,
+            Self::Wave { duty } => wave(u, *duty),
+            Self::Held { turn } => held(u, *turn),
+            Self::Path(leg) => leg.sweep(u),
+        }
+    }
+}
+
+/// Stance 1 - 2u/beta, then with t = (u - beta)/(1 - beta) and the end slope
+/// m = -2 (1 - beta)/beta the Hermite cubic from -1 to 1. It overshoots a little
+/// at both ends (1.026 at beta = 0.75), the price of equal speed.
+fn wave(u: f64, duty: f64) -> f64 {
+    if u < duty {
+        return 1.0 - 2.0 * u / duty;
+    }
+    let t = (u - duty) / (1.0 - duty);
+    let m = -2.0 * (1.0 - duty) / duty;
+    2.0 * smoothstep(t) - 1.0 + m * t * (1.0 - t) * (1.0 - 2.0 * t)
+}
+
+fn held(u: f64, turn: usize) -> f64 {
+    let start = MOVE * (turn + 1) as f64;
+    1.0 - 2.0 * smoothstep(u / MOVE) + 2.0 * smoothstep((u - start) / MOVE)
+}
+
+/// t^2 (3 - 2t), 0 before and 1 after.
+fn smoothstep(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// How a waveform is found in another's table: `at(u) = sign * base.at(u - shift)`.
+///
+/// The held waveforms of the first and the last return are each other's
+/// negative, shifted, and so are the two in between; two tables do for four.
+pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
+    match waveform {
+        Waveform::Held { turn } if *turn >= 2 => (
+            Waveform::Held { turn: 3 - turn },
+            MOVE * (turn + 1) as f64,
+            -1.0,
+        ),
+        other => (other.clone(), 0.0, 1.0),
+    }
+}
+
+/// One term of a path's coordinate: `amplitude * sin(2 pi (k phase + shift))`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Harmonic {
+    /// Whole periods in a cycle, so that the path closes.
+    pub k: f64,
+    /// mm.
+    pub amplitude: f64,
+    /// In periods of the term.
+    pub shift: f64,
+}
+
+impl Harmonic {
+    /// The term's value at a phase, mm.
+    pub fn at(&self, phase: f64) -> f64 {
+        self.amplitude * (TAU * (self.k * phase + self.shift)).sin()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<Waveform> {
+        let mut all: Vec<_> = (0..4).map(|turn| Waveform::Held { turn }).collect();
+        all.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));
+        all
+    }
+
+    #[test]
+    fn every_waveform_starts_forward_and_is_continuous_over_the_wrap() {
+        for w in all() {
+            assert!((w.at(0.0) - 1.0).abs() < 1e-12, "{w:?}");
+            for i in 0..10_000 {
+                let (a, b) = (w.at(i as f64 / 1e4), w.at((i + 1) as f64 / 1e4));
+                assert!((a - b).abs() < 3e-3, "{w:?} jumps at {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wave_has_equal_speed_on_both_sides_of_each_corner() {
+        let e = 1e-6;
+        for duty in [0.5, 0.75, 0.875] {
+            let w = Waveform::Wave { duty };
+            for corner in [0.0, duty] {
+                let before = (w.at(corner) - w.at(corner - e)) / e;
+                let after = (w.at(corner + e) - w.at(corner)) / e;
+                assert!(
+                    (before - after).abs() < 1e-3,
+                    "duty {duty}, corner {corner}"
+                );
+                assert!((after + 2.0 / duty).abs() < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn a_held_leg_returns_in_its_own_fifth_alone() {
+        for turn in 0..4 {
+            let w = Waveform::Held { turn };
+            let start = 0.2 * (turn + 1) as f64;
+            for i in 0..=1000 {
+                let u = i as f64 / 1e3 * 0.999_999;
+                let expected = if u < 0.2 {
+                    continue;
+                } else if u <= start {
+                    -1.0
+                } else if u >= start + 0.2 {
+                    1.0
+                } else {
+                    continue;
+                };
+                assert!((w.at(u) - expected).abs() < 1e-12, "turn {turn}, phase {u}");
+            }
+            assert!(w.at(0.1).abs() < 1e-12 && w.at(start + 0.1).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_canonical_waveform_reproduces_the_original() {
+        for w in all() {
+            let (base, shift, sign) = canonical(&w);
+            for i in 0..1000 {
+                let u = i as f64 / 1e3;
+                assert!(
+                    (w.at(u) - sign * base.at(u - shift)).abs() < 1e-12,
+                    "{w:?} at {u}"
+                );
+            }
+        }
+    }
+}
