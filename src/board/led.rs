@@ -1,0 +1,32 @@
+//! The LED on D13, with which the board shows that it is alive.
+//!
+//! It shares PORTB with servo pins, whose interrupts may change the port
+//! between any two instructions. So it is set by `sbi` and `cbi`, spelled out:
+//! one instruction that touches one bit.
+
+use core::arch::asm;
+
+/// PORTB and DDRB as `sbi` numbers them, and the bit of D13.
+const PORTB: u8 = 0x05;
+const DDRB: u8 = 0x04;
+const BIT: u8 = 5;
+
+/// Makes D13 an output.
+pub fn start() {
+    // SAFETY: sets one bit of DDRB, D13's.
+    unsafe {
+        asm!("sbi {port}, {bit}", port = const DDRB, bit = const BIT, options(nostack, preserves_flags))
+    }
+}
+
+/// Switches the LED on or off.
+pub fn set(on: bool) {
+    // SAFETY: either changes one bit of PORTB, D13's, in one instruction.
+    unsafe {
+        if on {
+            asm!("sbi {port}, {bit}", port = const PORTB, bit = const BIT, options(nostack, preserves_flags))
+        } else {
+            asm!("cbi {port}, {bit}", port = const PORTB, bit = const BIT, options(nostack, preserves_flags))
+        }
+    }
+}

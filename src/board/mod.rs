@@ -1,0 +1,43 @@
+//! The board: the one place that knows registers, pins and interrupts.
+//!
+//! An Arduino UNO has one processor for everything, and the servos see every
+//! cycle by which it misses an edge. So the interrupts do as little as the
+//! hardware allows and run to fixed rules:
+//!
+//! - [`pulses`] owns Timer1 and the four servo pins, and is the robot's clock:
+//!   a tick every 20 ms.
+//! - [`serial`] owns the USART and its two rings.
+//! - [`led`] owns D13.
+//! - [`sleep`] stops the processor until a tick or a byte.
+//!
+//! Main never switches interrupts off for more than the few cycles that `sleep`
+//! and a 16-bit load take: what it shares with an interrupt is a byte at a time,
+//! with one writer. Interrupts do not nest. Of the interrupts in use Timer1's
+//! come first in the vector table; INT0, INT1, PCINT, WDT, TIMER2 and
+//! TIMER1_CAPT would come before them and are not to be used.
+
+pub mod led;
+pub mod pulses;
+pub mod serial;
+mod shared;
+pub mod sleep;
+
+use avr_device::atmega328p::Peripherals;
+
+/// Starts the serial port, the LED, the clock and, once widths are submitted,
+/// the pulses; then lets interrupts in. To be called once, first thing in main.
+///
+/// The first tick comes 4 ms later. All servo pins are low until the first
+/// [`pulses::submit`].
+pub fn start() {
+    // SAFETY: nothing has run before this but the boot loader; each peripheral
+    // goes to the one module that owns it.
+    let board = unsafe { Peripherals::steal() };
+    led::start();
+    sleep::start(board.CPU);
+    serial::start(board.USART0);
+    pulses::start(board.TC1);
+    // SAFETY: every interrupt that is enabled above has its handler, and there
+    // is no critical section around this call to be broken.
+    unsafe { avr_device::interrupt::enable() };
+}

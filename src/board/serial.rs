@@ -1,0 +1,183 @@
+//! The serial line, 115200 8N1, buffered both ways by interrupts.
+//!
+//! A byte takes 1389 cycles on the line and the receiver holds two, while main
+//! may be busy with a frame for 12 000. So each direction has a ring: one side
+//! only ever moves the head, the other only the tail, both single bytes, and so
+//! neither has to lock the other out. The handlers are short because the servos'
+//! edges may have to wait for one of them.
+
+use core::convert::Infallible;
+
+use avr_device::atmega328p::USART0;
+
+use super::shared::{Byte, Counter};
+
+/// Longer than the longest line (63 and its end), so that a sender who waits
+/// for answers never fills it.
+const RECEIVE: usize = 64;
+
+/// 16 MHz / 8 / (16 + 1) = 117 647 baud, 2.1 % fast; the divisor that the boot
+/// loader uses too.
+const BAUD_DIVISOR: u16 = 16;
+
+/// Bytes on their way. `head` is moved by the side that puts, `tail` by the one
+/// that takes; both run freely modulo 256.
+struct Ring<const N: usize> {
+    bytes: [Byte; N],
+    head: Byte,
+    tail: Byte,
+}
+
+impl<const N: usize> Ring<N> {
+    const MASK: u8 = {
+        assert!(N.is_power_of_two() && N <= 256);
+        (N - 1) as u8
+    };
+
+    const fn new() -> Self {
+        Self {
+            bytes: [const { Byte::new(0) }; N],
+            head: Byte::new(0),
+            tail: Byte::new(0),
+        }
+    }
+
+    /// Bytes that fit. A ring of 256 holds 255, because 256 would look empty.
+    fn room(&self) -> u8 {
+        let capacity = if N == 256 { 255 } else { N as u8 };
+        capacity - self.head.get().wrapping_sub(self.tail.get())
+    }
+
+    fn is_empty(&self) -> bool {
+        self.head.get() == self.tail.get()
+    }
+
+    /// Appends a byte; the caller has checked the room.
+    fn put(&self, byte: u8) {
+        let head = self.head.get();
+        self.bytes[usize::from(head & Self::MASK)].set(byte);
+        // The byte before the head: the other side looks at the head first.
+        self.head.set(head.wrapping_add(1));
+    }
+
+    fn take(&self) -> Option<u8> {
+        if self.is_empty() {
+            return None;
+        }
+        let tail = self.tail.get();
+        let byte = self.bytes[usize::from(tail & Self::MASK)].get();
+        // The byte before the tail: the place is free once the tail has moved.
+        self.tail.set(tail.wrapping_add(1));
+        Some(byte)
+    }
+}
+
+static RECEIVED: Ring<RECEIVE> = Ring::new();
+static TO_SEND: Ring<256> = Ring::new();
+static LOST: Counter = Counter::new();
+
+/// Sets up the port. With interrupts off, once.
+pub fn start(usart: USART0) {
+    // Double speed before the divisor: stock simavr takes the baud rate at the
+    // moment the divisor is written.
+    usart.ucsr0a().write(|w| w.u2x0().set_bit());
+    usart.ubrr0().write(|w| w.set(BAUD_DIVISOR));
+    usart.ucsr0c().write(|w| {
+        w.umsel0()
+            .usart_async()
+            .upm0()
+            .disabled()
+            .usbs0()
+            .stop1()
+            .ucsz0()
+            .chr8()
+    });
+    listen(&usart, false);
+}
+
+/// The next byte received, if any.
+pub fn read() -> Option<u8> {
+    RECEIVED.take()
+}
+
+/// Whether [`read`] would give a byte.
+pub fn pending() -> bool {
+    !RECEIVED.is_empty()
+}
+
+/// Bytes that [`Writer`] takes at this moment without waiting, at most 255.
+pub fn room() -> u8 {
+    TO_SEND.room()
+}
+
+/// Bytes received and lost, because main left them in a full ring or because an
+/// overrun in the receiver dropped at least one. Stays at 65535.
+pub fn lost() -> u16 {
+    LOST.read()
+}
+
+/// Sends text. Main checks [`room`] before it writes; a byte without room waits
+/// until the line has taken another, 1389 cycles at most.
+pub struct Writer;
+
+impl ufmt::uWrite for Writer {
+    type Error = Infallible;
+
+    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
+        for &byte in text.as_bytes() {
+            while room() == 0 {}
+            TO_SEND.put(byte);
+            // SAFETY: main writes UCSR0B, whole, to a value that is right
+            // whenever there is something to send, as there was a moment ago; if
+            // the handler has sent it meanwhile, it runs once more for nothing.
+            listen(&unsafe { USART0::steal() }, true);
+        }
+        Ok(())
+    }
+}
+
+/// Receiver, transmitter and the receive interrupt on; the transmit interrupt on
+/// while there is something to send. One store, never a read and a write, so that
+/// main and a handler cannot undo each other's.
+#[inline(always)]
+fn listen(usart: &USART0, and_send: bool) {
+    usart.ucsr0b().write(|w| {
+        w.rxcie0()
+            .set_bit()
+            .rxen0()
+            .set_bit()
+            .txen0()
+            .set_bit()
+            .udrie0()
+            .bit(and_send)
+    });
+}
+
+// A byte has come.
+#[avr_device::interrupt(atmega328p)]
+fn USART_RX() {
+    // SAFETY: the handler reads UCSR0A and UDR0, which main never touches.
+    let usart = unsafe { USART0::steal() };
+    // The status belongs to the byte that UDR0 gives next.
+    let overrun = usart.ucsr0a().read().dor0().bit_is_set();
+    let byte = usart.udr0().read().bits();
+    if RECEIVED.room() != 0 {
+        RECEIVED.put(byte);
+    } else {
+        LOST.count();
+    }
+    if overrun {
+        LOST.count();
+    }
+}
+
+// The transmitter wants a byte.
+#[avr_device::interrupt(atmega328p)]
+fn USART_UDRE() {
+    // SAFETY: UDR0 is written here alone; for UCSR0B see `Writer`.
+    let usart = unsafe { USART0::steal() };
+    match TO_SEND.take() {
+        Some(byte) => _ = usart.udr0().write(|w| w.set(byte)),
+        None => listen(&usart, false),
+    }
+}

@@ -1,0 +1,103 @@
+//! What main and the interrupts share: bytes.
+//!
+//! The processor loads or stores a byte in one instruction, which no interrupt
+//! can split, so a byte with one writer needs no lock. (The compiler's atomics
+//! would do the same, but on this target they switch interrupts off around
+//! each access.) Accesses are volatile, hence made one for one and in the order
+//! written; on one core without a cache nothing else can reorder them.
+
+use core::cell::UnsafeCell;
+
+use avr_device::interrupt;
+
+/// A byte that may be read and written anywhere.
+///
+/// Single accesses are atomic, a read and a write together are not: what depends
+/// on the old value belongs to one writer.
+pub struct Byte(UnsafeCell<u8>);
+
+// SAFETY: one core, and every access is a single one-byte load or store. No
+// reference to the inside is ever given out.
+unsafe impl Sync for Byte {}
+
+impl Byte {
+    pub const fn new(value: u8) -> Self {
+        Self(UnsafeCell::new(value))
+    }
+
+    #[inline(always)]
+    pub fn get(&self) -> u8 {
+        // SAFETY: the pointer is the cell's own; for other accesses see `Sync`.
+        unsafe { self.0.get().read_volatile() }
+    }
+
+    #[inline(always)]
+    pub fn set(&self, value: u8) {
+        // SAFETY: as in `get`.
+        unsafe { self.0.get().write_volatile(value) }
+    }
+}
+
+/// Two bytes. An interrupt may come between them, so reader and writer need an
+/// agreement about whose turn it is.
+pub struct Word {
+    low: Byte,
+    high: Byte,
+}
+
+impl Word {
+    pub const fn new(value: u16) -> Self {
+        let [low, high] = value.to_le_bytes();
+        Self {
+            low: Byte::new(low),
+            high: Byte::new(high),
+        }
+    }
+
+    /// The low byte, then the high one.
+    #[inline(always)]
+    pub fn bytes(&self) -> [u8; 2] {
+        [self.low.get(), self.high.get()]
+    }
+
+    #[inline(always)]
+    pub fn get(&self) -> u16 {
+        u16::from_le_bytes(self.bytes())
+    }
+
+    #[inline(always)]
+    pub fn set(&self, value: u16) {
+        let [low, high] = value.to_le_bytes();
+        self.low.set(low);
+        self.high.set(high);
+    }
+}
+
+/// Counts faults in interrupts for main to read. Stays at 65535.
+pub struct Counter(Word);
+
+impl Counter {
+    pub const fn new() -> Self {
+        Self(Word::new(0))
+    }
+
+    /// One more. Only in interrupts, which cannot interrupt each other.
+    #[inline(always)]
+    pub fn count(&self) {
+        // Byte by byte, because the common way through is then four instructions.
+        let low = self.0.low.get().wrapping_add(1);
+        if low == 0 {
+            let high = self.0.high.get().wrapping_add(1);
+            if high == 0 {
+                return;
+            }
+            self.0.high.set(high);
+        }
+        self.0.low.set(low);
+    }
+
+    /// The count so far. Switches interrupts off for about 10 cycles.
+    pub fn read(&self) -> u16 {
+        interrupt::free(|_| self.0.get())
+    }
+}

@@ -1,0 +1,35 @@
+//! Sleep until there is something to do.
+//!
+//! An interrupt between the look for work and the `sleep` instruction would be
+//! slept over, up to 4 ms. So the look is taken with interrupts off; `sei`
+//! lets them in only after one more instruction, which is `sleep`.
+
+use core::arch::asm;
+
+use avr_device::atmega328p::CPU;
+use avr_device::interrupt;
+
+use super::{pulses, serial};
+
+/// Chooses idle, the sleep in which the timer and the USART run on. Once.
+pub fn start(cpu: CPU) {
+    cpu.smcr().write(|w| w.sm().idle().se().set_bit());
+}
+
+/// Returns when the tick is no longer `seen` or a byte waits to be read; sleeps
+/// until then. Interrupts are off for fewer than 30 cycles at a time.
+pub fn until_tick_or_byte(seen: u8) {
+    loop {
+        interrupt::disable();
+        if pulses::ticks() != seen || serial::pending() {
+            break;
+        }
+        // The `nop` is for stock simavr, which lets interrupts in an instruction
+        // later than the data sheet: `cli`, next, would lock them out for good.
+        // SAFETY: interrupts were on before `disable`, above, and every one of
+        // them has its handler.
+        unsafe { asm!("sei", "sleep", "nop", options(nostack, preserves_flags)) };
+    }
+    // SAFETY: as above.
+    unsafe { interrupt::enable() };
+}
