@@ -1,0 +1,48 @@
+//! Little AVR programs, compiled when a test runs.
+//!
+//! The simulator must be right before it may judge the firmware, and for that
+//! it needs programs whose timing follows from the data sheet by counting.
+
+use std::process::Command;
+
+use simulated_uno::Image;
+
+/// Compiles C (or, inside `asm`, assembler) with avr-gcc for the UNO's chip.
+///
+/// # Panics
+/// If avr-gcc is missing or refuses the program, with its words.
+#[must_use]
+pub fn c(source: &str) -> Image {
+    build(source, "c", &["-O2", "-std=gnu11"])
+}
+
+/// Assembles a whole program; nothing else is linked, so flash address 0 is its
+/// first instruction. `.include "avr/io.h"` does not exist: use `#include`.
+///
+/// # Panics
+/// See [`c`].
+#[must_use]
+pub fn assembler(source: &str) -> Image {
+    let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}");
+    build(&source, "S", &["-nostartfiles", "-nostdlib"])
+}
+
+fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let input = folder.path().join(format!("program.{extension}"));
+    let output = folder.path().join("program.elf");
+    std::fs::write(&input, source).expect("the source is written");
+    let result = Command::new("avr-gcc")
+        .args(["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Wall"])
+        .args(flags)
+        .arg("-o")
+        .args([&output, &input])
+        .output()
+        .expect("avr-gcc starts (Debian package gcc-avr)");
+    let errors = String::from_utf8_lossy(&result.stderr);
+    assert!(
+        result.status.success(),
+        "avr-gcc refuses the program:\n{errors}"
+    );
+    Image::read(output).expect("avr-gcc's ELF loads")
+}

@@ -1,0 +1,96 @@
+//! The bench itself, on a small program that answers lines and drives four
+//! servos as the firmware does.
+
+use lizard_host_tests::{FRAME, FirmwareBench, avr_gcc::c};
+use simulated_uno::{Fidelity, Uno};
+
+/// Slots of 4 ms by a busy loop; A1..A4 get 1000, 1200, 1400, 1600 us, one
+/// microsecond longer each frame. `r` rests, `q` asks. No interrupts.
+const SERVOS: &str = r##"
+    #include <avr/io.h>
+    static void say(const char *text) {
+        while (*text) { while (!(UCSR0A & 0x20)) {} UDR0 = *text++; }
+    }
+    static void wait_until(unsigned ticks) { while (TCNT1 < ticks) {} }
+    static volatile unsigned char rests;
+    static void look(void) {
+        if (!(UCSR0A & 0x80)) return;
+        unsigned char byte = UDR0;
+        if (byte == '?') say("# about\r\n# me\r\nok asked\r\n");
+        if (byte == 'r') { rests = 1; say("ok resting\r\n"); }
+    }
+    int main(void) {
+        UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
+        DDRB = 0x0e; DDRD = 0x08;
+        OCR1A = 7999; TCCR1B = 0x0a;            /* CTC, 0.5 us, 4 ms */
+        say("# lizard test\r\n");
+        for (unsigned frame = 0;; frame++) {
+            for (unsigned char slot = 0; slot < 5; slot++) {
+                while (!(TIFR1 & 2)) {}
+                TIFR1 = 2;
+                if (!rests) {
+                    if (slot < 3) PORTB = 2 << slot;
+                    if (slot == 3) PORTD = 8;
+                }
+                wait_until(2000 + 400 * slot + 2 * frame);
+                PORTB = 0;
+                PORTD = 0;
+                look();
+            }
+        }
+    }"##;
+
+fn bench() -> FirmwareBench {
+    FirmwareBench::with_board(Uno::with_image(c(SERVOS), Fidelity::DataSheet))
+}
+
+#[test]
+fn a_line_is_answered_and_information_before_it_is_told_apart() {
+    let mut bench = bench();
+    assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
+    let (notes, answer) = bench.ask("?");
+    assert_eq!(
+        (notes, answer.as_str()),
+        (vec!["# about".into(), "# me".into()], "ok asked")
+    );
+    assert_eq!(bench.say("r"), "ok resting");
+    assert_eq!(bench.lines().len(), 5);
+}
+
+#[test]
+#[should_panic(expected = "no answer to \"x\"")]
+fn silence_is_a_failure() {
+    bench().say("x");
+}
+
+#[test]
+fn frames_hold_one_pulse_of_each_servo() {
+    let mut bench = bench();
+    bench.run_ms(100);
+    let mut frames = bench.run_for_frames(10);
+    frames.extend(bench.run_for_frames(5));
+    assert_eq!(frames.len(), 15);
+    let first = frames[0].widths();
+    for (n, frame) in frames.iter().enumerate() {
+        for (servo, width) in frame.widths().into_iter().enumerate() {
+            // One microsecond a frame, 200 a servo; the loops see it within 40.
+            let expected = first[0] + 16 * n as u64 + 3200 * servo as u64;
+            assert!(
+                width.abs_diff(expected) <= 40,
+                "frame {n} servo {servo}: {width}"
+            );
+        }
+    }
+    for pair in frames.windows(2) {
+        assert_eq!(pair[1].start - pair[0].start, FRAME);
+    }
+}
+
+#[test]
+fn a_resting_robot_has_silent_frames() {
+    let mut bench = bench();
+    bench.run_ms(100);
+    bench.say("r");
+    let frames = bench.run_for_frames(3);
+    assert!(frames.iter().all(|frame| frame.is_silent()), "{frames:?}");
+}

@@ -1,0 +1,231 @@
+//! The simulated serial line: pace, loss and flood, by the data sheet.
+
+use lizard_host_tests::avr_gcc::c;
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
+
+/// Cycles of a 10-bit frame at 115 200 baud, as the sender counts them.
+const FRAME: f64 = 10.0 * 16_000_000.0 / 115_200.0;
+/// And as the UNO does with UBRR = 16, U2X: 136 cycles a bit.
+const UNO_FRAME: u64 = 10 * 17 * 8;
+
+/// 115 200 baud; then `body` in an endless loop.
+fn program(body: &str) -> Image {
+    c(&format!(
+        "#include <avr/io.h>
+        #include <avr/interrupt.h>
+        #include <util/delay.h>
+        static unsigned char get(void) {{ while (!(UCSR0A & 0x80)) {{}} return UDR0; }}
+        static void put(unsigned char byte) {{ while (!(UCSR0A & 0x20)) {{}} UDR0 = byte; }}
+        int main(void) {{
+            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
+            (void)get; (void)put;
+            for (;;) {{ {body} }}
+        }}"
+    ))
+}
+
+fn text(uno: &Uno) -> Vec<u8> {
+    uno.received().iter().map(|byte| byte.byte).collect()
+}
+
+#[test]
+fn an_echo_returns_what_was_sent() {
+    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+        let mut uno = Uno::with_image(program("put(get());"), fidelity);
+        uno.run_ms(1);
+        uno.send(b"the quick brown fox");
+        uno.run_ms(5);
+        assert_eq!(text(&uno), b"the quick brown fox");
+        assert_eq!(uno.unsent(), 0);
+    }
+}
+
+#[test]
+fn an_echo_comes_a_frame_after_its_byte() {
+    let mut uno = Uno::with_image(program("put(get());"), Fidelity::DataSheet);
+    uno.run_ms(1);
+    let start = uno.cycle();
+    uno.send(b"x");
+    uno.run_ms(1);
+    let echo = uno.received()[0].cycle - start;
+    // Received in the middle of the stop bit, polled within some 20 cycles.
+    let earliest = (0.95 * FRAME) as u64 + UNO_FRAME;
+    assert!(
+        (earliest..earliest + 30).contains(&echo),
+        "{echo}, not {earliest}"
+    );
+}
+
+#[test]
+fn bytes_go_out_back_to_back_at_ten_bits_each() {
+    let mut uno = Uno::with_image(program("put('a');"), Fidelity::DataSheet);
+    uno.run_ms(10);
+    let stamps: Vec<u64> = uno.received().iter().map(|byte| byte.cycle).collect();
+    assert!(stamps.len() > 100);
+    for pair in stamps.windows(2) {
+        // The timer may find the CPU in mid-instruction; nothing adds up.
+        assert_eq!(pair[1] - pair[0], UNO_FRAME);
+    }
+}
+
+#[test]
+fn the_sender_keeps_the_baud_rate_in_the_long_run() {
+    let mut uno = Uno::with_image(program("get();"), Fidelity::DataSheet);
+    uno.flood(b"0123456789");
+    uno.run_ms(1000);
+    assert!(
+        uno.bytes_sent().abs_diff(11_520) <= 1,
+        "{}",
+        uno.bytes_sent()
+    );
+    uno.flood(b"");
+    let sent = uno.bytes_sent();
+    uno.run_ms(10);
+    assert!(uno.bytes_sent() <= sent + 1, "the flood has ended");
+}
+
+#[test]
+fn two_bytes_wait_and_a_third_in_the_shift_register() {
+    // Reads nothing for 2 ms, in which 20 bytes could come.
+    let late = "_delay_ms(2); for (unsigned char i = 0; i < 5; i++) put(get());";
+    for (sent, kept, lost) in [
+        ("abc", &b"abc"[..], 0),
+        ("abcd", b"abd", 1),   // c is overwritten by d
+        ("abcdef", b"abf", 3), // then d by e, e by f
+    ] {
+        let mut uno = Uno::with_image(program(late), Fidelity::DataSheet);
+        uno.run_cycles(3200);
+        uno.send(sent.as_bytes());
+        uno.run_ms(4);
+        assert_eq!(
+            (text(&uno).as_slice(), uno.overruns()),
+            (kept, lost),
+            "{sent}"
+        );
+    }
+    let mut uno = Uno::with_image(program(late), Fidelity::Stock);
+    uno.run_cycles(3200);
+    uno.send(b"abcde");
+    uno.run_ms(5);
+    assert_eq!(
+        (text(&uno).len(), uno.overruns()),
+        (5, 0),
+        "stock simavr hides the loss"
+    );
+}
+
+#[test]
+fn an_overrun_is_flagged_until_the_next_read() {
+    let body = "_delay_ms(2); unsigned char before = UCSR0A, byte = UDR0, after = UCSR0A;
+                (void)byte; GPIOR0 = before; GPIOR0 = after;";
+    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+    uno.run_cycles(3200);
+    uno.send(b"abcd");
+    uno.run_ms(3);
+    let marks = uno.marks();
+    assert_eq!((marks[0].value & 0x88, marks[1].value & 0x88), (0x88, 0x80));
+}
+
+#[test]
+fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        static volatile unsigned char sum;
+        ISR(USART_RX_vect) { sum += UDR0; GPIOR0 = sum; }
+        int main(void) {
+            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
+            sei();
+            for (;;) {}
+        }");
+    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_cycles(1000);
+        let bytes: Vec<u8> = (0..1000).map(|n| (n * 7) as u8).collect();
+        uno.send(&bytes);
+        uno.run_ms(100);
+        let mut sum = 0u8;
+        let sums = bytes.iter().map(|byte| {
+            sum = sum.wrapping_add(*byte);
+            sum
+        });
+        assert!(sums.eq(uno.marks().iter().map(|mark| mark.value)));
+        assert_eq!(uno.overruns(), 0);
+    }
+}
+
+#[test]
+fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
+        int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(20);
+    let received = uno.received();
+    assert_eq!(text(&uno), (0..100).collect::<Vec<u8>>());
+    assert!(
+        received
+            .windows(2)
+            .all(|pair| pair[1].cycle - pair[0].cycle == UNO_FRAME)
+    );
+}
+
+#[test]
+fn a_wrong_baud_rate_is_a_framing_error() {
+    let flags = |baud| {
+        let mut uno = Uno::with_image(
+            program("while (!(UCSR0A & 0x80)) {} GPIOR0 = UCSR0A; (void)UDR0;"),
+            Fidelity::DataSheet,
+        );
+        uno.set_baud(baud);
+        uno.run_ms(1);
+        uno.send(b"x");
+        uno.run_ms(2);
+        uno.marks()[0].value & 0x10
+    };
+    assert_eq!(flags(115_200.0), 0, "UBRR 16 is 2.1 % fast: good enough");
+    assert_eq!(flags(57_600.0), 0x10);
+}
+
+#[test]
+fn a_line_is_waited_for_no_longer_than_it_takes() {
+    let mut uno = Uno::with_image(
+        program("put('o'); put('k'); put('\\n'); _delay_ms(50);"),
+        Fidelity::DataSheet,
+    );
+    assert!(uno.run_until_line(20 * CYCLES_PER_MS));
+    assert_eq!(text(&uno), b"ok\n");
+    assert!(uno.cycle() < 4 * UNO_FRAME);
+    assert!(!uno.run_until_line(20 * CYCLES_PER_MS), "50 ms of silence");
+    assert!(uno.run_until_line(40 * CYCLES_PER_MS));
+}
+
+#[test]
+fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(USART_RX_vect) { GPIOR0 = UDR0; }
+        int main(void) {
+            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90; SMCR = 1; sei();
+            for (;;) asm volatile (\"sleep\");
+        }");
+    let run = |pieces: u64| {
+        let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+        uno.run_until_cycle(12_345);
+        uno.send(b"hello");
+        for n in 1..=pieces {
+            uno.run_until_cycle(12_345 + 100_000 * n / pieces);
+        }
+        uno.marks()
+    };
+    let whole = run(1);
+    assert_eq!(whole.len(), 5);
+    let arrival = 12_345 + (0.95 * FRAME).ceil() as u64;
+    // entry from sleep 8, jmp 3, some pushes and a read
+    assert!(
+        (arrival..arrival + 40).contains(&whole[0].cycle),
+        "{}",
+        whole[0].cycle
+    );
+    assert_eq!(run(1000), whole);
+}

@@ -1,0 +1,98 @@
+//! The shim's functions, as declared in `shim/`. Private: [`crate::Uno`] is the
+//! safe face of them.
+
+use std::ffi::{c_char, c_void};
+
+/// `struct uno`, owned by the shim.
+#[repr(C)]
+pub struct RawUno {
+    _opaque: [u8; 0],
+}
+
+/// `struct list`.
+#[repr(C)]
+pub struct RawList {
+    pub items: *mut c_void,
+    pub count: usize,
+    pub room: usize,
+    pub size: usize,
+}
+
+/// `struct edge`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RawEdge {
+    pub cycle: u64,
+    pub pin: u8,
+    pub level: u8,
+}
+
+/// `struct stamped_byte`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RawByte {
+    pub cycle: u64,
+    pub byte: u8,
+}
+
+/// `struct call`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RawCall {
+    pub enter: u64,
+    pub leave: u64,
+    pub interrupted: u64,
+}
+
+/// `struct vector_use`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RawVector {
+    pub entries: u64,
+    pub cycles: u64,
+}
+
+/// `UNO_VECTORS`.
+pub const VECTORS: usize = 26;
+
+/// `enum stop`.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[expect(dead_code, reason = "the shim makes these values")]
+pub enum Stop {
+    Time,
+    Line,
+    Halted,
+    Crashed,
+}
+
+unsafe extern "C" {
+    pub fn uno_set_logger();
+    pub fn uno_new(data_sheet: bool, pins: u16, baud: f64) -> *mut RawUno;
+    pub fn uno_free(uno: *mut RawUno);
+    pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
+    pub fn uno_power_on(uno: *mut RawUno, code_end: u32, data_end: u16);
+    pub fn uno_run(uno: *mut RawUno, until: u64) -> Stop;
+    pub fn uno_stop_at_line(uno: *mut RawUno, on: bool);
+    pub fn uno_watch(uno: *mut RawUno, on: bool, entry: u32);
+    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize);
+    pub fn uno_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
+    pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
+    pub fn uno_unsent(uno: *const RawUno) -> usize;
+    pub fn uno_sent(uno: *const RawUno) -> u64;
+    pub fn uno_now(uno: *const RawUno) -> u64;
+    pub fn uno_asleep(uno: *const RawUno) -> u64;
+    pub fn uno_pc(uno: *const RawUno) -> u32;
+    pub fn uno_resets(uno: *const RawUno) -> u64;
+    pub fn uno_overruns(uno: *const RawUno) -> u64;
+    pub fn uno_levels(uno: *const RawUno) -> u16;
+    pub fn uno_stack_low(uno: *const RawUno) -> u16;
+    pub fn uno_message(uno: *const RawUno) -> *const c_char;
+    pub fn uno_data(uno: *const RawUno) -> *const u8;
+    pub fn uno_data_size(uno: *const RawUno) -> u32;
+    pub fn uno_vectors(uno: *const RawUno) -> *const RawVector;
+    pub fn uno_edges(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_marks(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_calls(uno: *mut RawUno) -> *mut RawList;
+}

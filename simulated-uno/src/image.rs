@@ -1,0 +1,191 @@
+//! A firmware image: what an ELF file puts into flash and SRAM.
+
+use std::path::{Path, PathBuf};
+
+use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
+
+/// Flash of an ATmega328P, in bytes.
+pub const FLASH_SIZE: u32 = 32 * 1024;
+/// First SRAM address of an ATmega328P, after the registers.
+pub const SRAM_START: u16 = 0x0100;
+/// Address after the last byte of SRAM.
+pub const SRAM_END: u16 = 0x0900;
+
+/// Where avr-gcc's linker script puts SRAM in its single address space.
+const DATA_SPACE: u64 = 0x80_0000;
+/// Where it puts the EEPROM.
+const EEPROM_SPACE: u64 = 0x81_0000;
+
+/// Why an image cannot be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The bytes are not an ELF file.
+    #[error("not an ELF file: {0}")]
+    Elf(#[from] object::read::Error),
+    /// The ELF file is for another machine.
+    #[error("the ELF file is not for an AVR")]
+    NotAvr,
+    /// A segment does not fit.
+    #[error("{size} bytes at {address:#x} do not fit an ATmega328P")]
+    TooLarge {
+        /// Address of the segment.
+        address: u64,
+        /// Its size in bytes.
+        size: u64,
+    },
+    /// No code at all.
+    #[error("the ELF file holds no code")]
+    Empty,
+}
+
+/// A named address in flash or SRAM.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Symbol {
+    /// The name as the linker knows it (mangled, if the language mangles).
+    pub name: String,
+    /// Byte address in flash; SRAM addresses start at 0x80_0000.
+    pub address: u64,
+    /// Size in bytes, 0 if the compiler does not say.
+    pub size: u64,
+    /// Whether it is a function.
+    pub function: bool,
+}
+
+/// A firmware image, ready to load.
+#[derive(Debug, Clone)]
+pub struct Image {
+    /// Flash segments, as (byte address, bytes).
+    pub(crate) segments: Vec<(u32, Vec<u8>)>,
+    symbols: Vec<Symbol>,
+    flash: u32,
+    data_end: u16,
+}
+
+impl Image {
+    /// Reads an ELF file.
+    ///
+    /// # Errors
+    /// See [`LoadError`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, LoadError> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path).map_err(|source| LoadError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&bytes)
+    }
+
+    /// Reads an ELF file from memory.
+    ///
+    /// # Errors
+    /// See [`LoadError`].
+    pub fn parse(bytes: &[u8]) -> Result<Self, LoadError> {
+        use object::read::elf::{ElfFile32, ProgramHeader};
+        let file = ElfFile32::<object::Endianness>::parse(bytes)?;
+        if file.architecture() != object::Architecture::Avr {
+            return Err(LoadError::NotAvr);
+        }
+        let endian = file.endian();
+        let mut segments = Vec::new();
+        let mut data_end = SRAM_START;
+        for segment in file.segments() {
+            let header = segment.elf_program_header();
+            let load = u64::from(header.p_paddr(endian));
+            let run = segment.address();
+            if (DATA_SPACE..EEPROM_SPACE).contains(&run) {
+                let end = run + segment.size() - DATA_SPACE;
+                if end > u64::from(SRAM_END) {
+                    return Err(LoadError::TooLarge {
+                        address: run,
+                        size: segment.size(),
+                    });
+                }
+                data_end = data_end.max(end as u16);
+            }
+            let data = segment.data()?;
+            if load >= DATA_SPACE || data.is_empty() {
+                continue; // EEPROM and fuses are not flash; .bss has no bytes
+            }
+            let size = data.len() as u64;
+            if load + size > u64::from(FLASH_SIZE) {
+                return Err(LoadError::TooLarge {
+                    address: load,
+                    size,
+                });
+            }
+            segments.push((load as u32, data.to_vec()));
+        }
+        if segments.is_empty() {
+            return Err(LoadError::Empty);
+        }
+        let symbols = file
+            .symbols()
+            .filter_map(|symbol| {
+                Some(Symbol {
+                    name: symbol
+                        .name()
+                        .ok()
+                        .filter(|name| !name.is_empty())?
+                        .to_owned(),
+                    address: symbol.address(),
+                    size: symbol.size(),
+                    function: symbol.kind() == SymbolKind::Text,
+                })
+            })
+            .collect();
+        let flash = segments.iter().map(|(_, data)| data.len() as u32).sum();
+        Ok(Self {
+            segments,
+            symbols,
+            flash,
+            data_end,
+        })
+    }
+
+    /// Bytes of flash used: code, tables and initial values.
+    #[must_use]
+    pub fn flash_used(&self) -> u32 {
+        self.flash
+    }
+
+    /// Bytes of SRAM used by static data (.data, .bss and .noinit).
+    #[must_use]
+    pub fn static_ram(&self) -> u16 {
+        self.data_end - SRAM_START
+    }
+
+    /// First SRAM address after static data.
+    #[must_use]
+    pub fn data_end(&self) -> u16 {
+        self.data_end
+    }
+
+    /// All symbols, in the file's order.
+    #[must_use]
+    pub fn symbols(&self) -> &[Symbol] {
+        &self.symbols
+    }
+
+    /// The symbol of this exact name.
+    #[must_use]
+    pub fn symbol(&self, name: &str) -> Option<&Symbol> {
+        self.symbols.iter().find(|symbol| symbol.name == name)
+    }
+
+    /// Address after the last byte of flash used.
+    pub(crate) fn code_end(&self) -> u32 {
+        let ends = self
+            .segments
+            .iter()
+            .map(|(at, data)| at + data.len() as u32);
+        ends.max().unwrap_or(0)
+    }
+}

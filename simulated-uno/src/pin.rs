@@ -1,0 +1,88 @@
+//! Pins as an oscilloscope sees them: edges, and the pulses between them.
+
+/// A digital pin by its name on the board, D0 to D13.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pin(u8);
+
+impl Pin {
+    /// Pin `Dn`.
+    ///
+    /// # Panics
+    /// If the UNO has no such pin (`n` > 13).
+    #[must_use]
+    pub const fn d(n: u8) -> Self {
+        assert!(n <= 13, "an UNO has D0 to D13");
+        Self(n)
+    }
+
+    /// The `n` of `Dn`.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self.0
+    }
+}
+
+impl std::fmt::Display for Pin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "D{}", self.0)
+    }
+}
+
+/// A change of level. The stamp is the cycle in which the instruction that
+/// stored the port ends, the same for every kind of store and both directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// Cycle since power-on, 62.5 ns each.
+    pub cycle: u64,
+    /// The pin.
+    pub pin: Pin,
+    /// True for a rising edge.
+    pub high: bool,
+}
+
+/// A time during which a pin is high.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pulse {
+    /// Cycle of the rising edge.
+    pub start: u64,
+    /// Cycles until the falling edge.
+    pub width: u64,
+}
+
+/// The finished pulses of one pin. A pulse that has not ended is left out.
+#[must_use]
+pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
+    let mut rise = None;
+    let mut pulses = Vec::new();
+    for edge in edges.iter().filter(|edge| edge.pin == pin) {
+        if edge.high {
+            rise = Some(edge.cycle);
+        } else if let Some(start) = rise.take() {
+            pulses.push(Pulse {
+                start,
+                width: edge.cycle - start,
+            });
+        }
+    }
+    pulses
+}
+
+/// The largest number of pins that were high at once.
+#[must_use]
+pub fn most_pins_high(edges: &[Edge]) -> u32 {
+    let mut levels = 0u16;
+    let mut most = 0;
+    let mut edges = edges.to_vec();
+    // At equal cycles a fall comes first: back-to-back pulses do not overlap.
+    edges.sort_by_key(|edge| (edge.cycle, edge.high));
+    for edge in edges {
+        let bit = 1 << edge.pin.number();
+        if edge.high {
+            levels |= bit;
+        } else {
+            levels &= !bit;
+        }
+        most = most.max(levels.count_ones());
+    }
+    most
+}

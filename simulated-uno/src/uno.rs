@@ -1,0 +1,393 @@
+//! The simulated board: load, run, send, look.
+
+use std::ffi::CStr;
+use std::path::Path;
+use std::sync::Once;
+
+use crate::ffi::{self, RawByte, RawCall, RawEdge, RawList, RawUno};
+use crate::image::{Image, LoadError, SRAM_END};
+use crate::record::{Call, Mark, SerialByte, VectorUse};
+use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
+
+/// How faithful the simulation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Fidelity {
+    /// simavr 1.6 as it is: interrupts are entered in no time, received bytes
+    /// are never lost, 16-bit registers cannot be torn.
+    Stock,
+    /// Corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8
+    /// from sleep), a two-byte receive buffer with overrun, 10-bit frames,
+    /// Timer1's TEMP byte, flags cleared one by one.
+    #[default]
+    DataSheet,
+}
+
+/// Whether the firmware still runs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum State {
+    /// Running or asleep with interrupts on.
+    Alive,
+    /// Asleep with interrupts off: nothing but a reset ends this.
+    Halted,
+    /// An invalid instruction or address.
+    Crashed {
+        /// Byte address in flash.
+        pc: u32,
+        /// simavr's words.
+        message: String,
+    },
+}
+
+/// A simulated Arduino UNO with a firmware in its flash.
+pub struct Uno {
+    raw: *mut RawUno,
+    image: Image,
+    state: State,
+}
+
+// SAFETY: an instance owns all that its pointer reaches; libsimavr's only
+// shared mutable state, the logger, is set once and reaches the instance
+// through the avr_t that it is given.
+unsafe impl Send for Uno {}
+
+impl Uno {
+    /// The sender's baud rate unless [`Uno::set_baud`] changes it.
+    pub const BAUD: f64 = 115_200.0;
+
+    /// A board with this ELF file in flash, at the moment of power-on.
+    ///
+    /// # Errors
+    /// See [`LoadError`].
+    pub fn load(elf: impl AsRef<Path>, fidelity: Fidelity) -> Result<Self, LoadError> {
+        Ok(Self::with_image(Image::read(elf)?, fidelity))
+    }
+
+    /// A board with this image in flash, at the moment of power-on. Its pins
+    /// D2 to D13 are recorded; D0 and D1 belong to the serial line.
+    #[must_use]
+    pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
+        static LOGGER: Once = Once::new();
+        let pins = 0x3ffc;
+        // SAFETY: the shim's constructor aborts rather than return null; each
+        // segment is inside flash, checked by `Image` and again by the shim.
+        let raw = unsafe {
+            LOGGER.call_once(|| ffi::uno_set_logger());
+            let raw = ffi::uno_new(fidelity == Fidelity::DataSheet, pins, Self::BAUD);
+            for (address, bytes) in &image.segments {
+                let fits = ffi::uno_load(raw, bytes.as_ptr(), bytes.len() as u32, *address);
+                assert!(fits, "an image's segments are inside flash");
+            }
+            ffi::uno_power_on(raw, image.code_end(), image.data_end());
+            raw
+        };
+        Self {
+            raw,
+            image,
+            state: State::Alive,
+        }
+    }
+
+    /// The image in flash.
+    #[must_use]
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Cycles since power-on.
+    #[must_use]
+    pub fn cycle(&self) -> u64 {
+        // SAFETY: `raw` is valid as long as `self`; so in all that follows.
+        unsafe { ffi::uno_now(self.raw) }
+    }
+
+    /// Milliseconds since power-on.
+    #[must_use]
+    pub fn ms(&self) -> f64 {
+        self.cycle() as f64 / CYCLES_PER_MS as f64
+    }
+
+    /// Whether the firmware still runs.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Runs until cycle `until`, at most a few hundred cycles longer if an
+    /// instruction re-arms a timer just then. Where a run is cut changes
+    /// nothing in what the firmware does.
+    pub fn run_until_cycle(&mut self, until: u64) -> &State {
+        self.run_to(until, false);
+        &self.state
+    }
+
+    /// Runs for a number of cycles. See [`Uno::run_until_cycle`].
+    pub fn run_cycles(&mut self, cycles: u64) -> &State {
+        self.run_until_cycle(self.cycle() + cycles)
+    }
+
+    /// Runs for a number of milliseconds.
+    pub fn run_ms(&mut self, ms: u64) -> &State {
+        self.run_cycles(ms * CYCLES_PER_MS)
+    }
+
+    /// Runs until the predicate holds, asked every `step` cycles, or until
+    /// `limit` cycles have passed or the firmware is dead. True if it held.
+    pub fn run_until(
+        &mut self,
+        limit: u64,
+        step: u64,
+        mut predicate: impl FnMut(&Self) -> bool,
+    ) -> bool {
+        let end = self.cycle() + limit;
+        loop {
+            if predicate(self) {
+                return true;
+            }
+            if self.cycle() >= end || self.state != State::Alive {
+                return false;
+            }
+            self.run_until_cycle(end.min(self.cycle() + step));
+        }
+    }
+
+    /// Runs until the UNO has sent a whole line, at most for `limit` cycles.
+    /// True if it has.
+    pub fn run_until_line(&mut self, limit: u64) -> bool {
+        self.run_to(self.cycle() + limit, true)
+    }
+
+    fn run_to(&mut self, until: u64, stop_at_line: bool) -> bool {
+        // SAFETY: see `cycle`.
+        let stop = unsafe {
+            ffi::uno_stop_at_line(self.raw, stop_at_line);
+            ffi::uno_run(self.raw, until)
+        };
+        match stop {
+            ffi::Stop::Time => {}
+            ffi::Stop::Line => return true,
+            ffi::Stop::Halted => self.state = State::Halted,
+            ffi::Stop::Crashed => {
+                // SAFETY: a NUL-terminated buffer inside the instance.
+                let message = unsafe { CStr::from_ptr(ffi::uno_message(self.raw)) };
+                self.state = State::Crashed {
+                    pc: unsafe { ffi::uno_pc(self.raw) },
+                    message: message.to_string_lossy().trim().to_owned(),
+                };
+            }
+        }
+        false
+    }
+
+    /// Queues bytes for the serial line. They go out back to back, as fast as
+    /// the baud rate allows, whether or not the firmware keeps up.
+    pub fn send(&mut self, bytes: &[u8]) {
+        // SAFETY: the shim copies the bytes.
+        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len()) }
+    }
+
+    /// Saturates the serial line: repeats `bytes` without end once the queue is
+    /// empty. An empty slice ends the flood.
+    pub fn flood(&mut self, bytes: &[u8]) {
+        // SAFETY: the shim copies the bytes.
+        unsafe { ffi::uno_flood(self.raw, bytes.as_ptr(), bytes.len()) }
+    }
+
+    /// Changes the sender's baud rate, from the next byte on.
+    pub fn set_baud(&mut self, baud: f64) {
+        unsafe { ffi::uno_set_baud(self.raw, baud) }
+    }
+
+    /// Queued bytes that are not through the line yet.
+    #[must_use]
+    pub fn unsent(&self) -> usize {
+        unsafe { ffi::uno_unsent(self.raw) }
+    }
+
+    /// Bytes the sender has put on the line so far, a flood's included.
+    #[must_use]
+    pub fn bytes_sent(&self) -> u64 {
+        unsafe { ffi::uno_sent(self.raw) }
+    }
+
+    /// Bytes lost because the firmware read UDR0 too late. Always 0 in
+    /// [`Fidelity::Stock`].
+    #[must_use]
+    pub fn overruns(&self) -> u64 {
+        unsafe { ffi::uno_overruns(self.raw) }
+    }
+
+    /// Every byte that the UNO has sent and nobody has taken.
+    #[must_use]
+    pub fn received(&self) -> Vec<SerialByte> {
+        self.list(ffi::uno_received, |raw: &RawByte| SerialByte {
+            cycle: raw.cycle,
+            byte: raw.byte,
+        })
+    }
+
+    /// Takes what the UNO has sent since the last call.
+    pub fn take_received(&mut self) -> Vec<SerialByte> {
+        let bytes = self.received();
+        self.clear(ffi::uno_received);
+        bytes
+    }
+
+    /// Edges of D2 to D13 since power-on or the last [`Uno::take_edges`].
+    #[must_use]
+    pub fn edges(&self) -> Vec<Edge> {
+        self.list(ffi::uno_edges, |raw: &RawEdge| Edge {
+            cycle: raw.cycle,
+            pin: Pin::d(raw.pin),
+            high: raw.level != 0,
+        })
+    }
+
+    /// Takes the edges recorded since the last call.
+    pub fn take_edges(&mut self) -> Vec<Edge> {
+        let edges = self.edges();
+        self.clear(ffi::uno_edges);
+        edges
+    }
+
+    /// The finished pulses among [`Uno::edges`].
+    #[must_use]
+    pub fn pulses(&self, pin: Pin) -> Vec<Pulse> {
+        crate::pin::pulses(&self.edges(), pin)
+    }
+
+    /// Whether a pin (D2 to D13) is high now.
+    #[must_use]
+    pub fn is_high(&self, pin: Pin) -> bool {
+        let levels = unsafe { ffi::uno_levels(self.raw) };
+        levels & (1 << pin.number()) != 0
+    }
+
+    /// Stores to GPIOR0 since power-on or the last [`Uno::take_marks`].
+    #[must_use]
+    pub fn marks(&self) -> Vec<Mark> {
+        self.list(ffi::uno_marks, |raw: &RawByte| Mark {
+            cycle: raw.cycle,
+            value: raw.byte,
+        })
+    }
+
+    /// Takes the marks recorded since the last call.
+    pub fn take_marks(&mut self) -> Vec<Mark> {
+        let marks = self.marks();
+        self.clear(ffi::uno_marks);
+        marks
+    }
+
+    /// Runs for `cycles` and times every call of the function at byte address
+    /// `entry` in flash (see [`Image::symbol`]). Slower than [`Uno::run_cycles`]:
+    /// it looks at every instruction. Recursive calls count as part of the
+    /// outermost.
+    pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
+        unsafe { ffi::uno_watch(self.raw, true, entry) };
+        self.run_cycles(cycles);
+        unsafe { ffi::uno_watch(self.raw, false, 0) };
+        let calls = self.list(ffi::uno_calls, |raw: &RawCall| Call {
+            enter: raw.enter,
+            leave: raw.leave,
+            interrupted: raw.interrupted,
+        });
+        self.clear(ffi::uno_calls);
+        calls
+    }
+
+    /// Cycles asleep since power-on.
+    #[must_use]
+    pub fn asleep_cycles(&self) -> u64 {
+        unsafe { ffi::uno_asleep(self.raw) }
+    }
+
+    /// Cycles awake since power-on.
+    #[must_use]
+    pub fn awake_cycles(&self) -> u64 {
+        self.cycle() - self.asleep_cycles()
+    }
+
+    /// Resets by the watchdog since power-on.
+    #[must_use]
+    pub fn resets(&self) -> u64 {
+        unsafe { ffi::uno_resets(self.raw) }
+    }
+
+    /// The most bytes of stack ever in use. SRAM beside static data is painted
+    /// at power-on; a byte counts once the paint is gone.
+    #[must_use]
+    pub fn stack_used(&self) -> u16 {
+        SRAM_END - unsafe { ffi::uno_stack_low(self.raw) }
+    }
+
+    /// The fewest bytes ever left between the stack and static data.
+    #[must_use]
+    pub fn stack_spare(&self) -> u16 {
+        (unsafe { ffi::uno_stack_low(self.raw) }) - self.image.data_end()
+    }
+
+    /// The byte at a data address (registers, I/O or SRAM), 0 beyond SRAM.
+    #[must_use]
+    pub fn peek(&self, address: u16) -> u8 {
+        // SAFETY: the shim's data space has `uno_data_size` bytes.
+        let data = unsafe {
+            let size = ffi::uno_data_size(self.raw) as usize;
+            std::slice::from_raw_parts(ffi::uno_data(self.raw), size)
+        };
+        data.get(usize::from(address)).copied().unwrap_or(0)
+    }
+
+    /// The interrupts served so far, those that never came left out.
+    #[must_use]
+    pub fn interrupts(&self) -> Vec<VectorUse> {
+        // SAFETY: an array of VECTORS items inside the instance.
+        let vectors =
+            unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTORS) };
+        let used = vectors
+            .iter()
+            .enumerate()
+            .filter(|(_, raw)| raw.entries > 0);
+        used.map(|(vector, raw)| VectorUse {
+            vector: vector as u8,
+            entries: raw.entries,
+            cycles: raw.cycles,
+        })
+        .collect()
+    }
+
+    /// Seconds since power-on.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.cycle() as f64 / FREQUENCY as f64
+    }
+
+    fn list<Raw, Item>(
+        &self,
+        of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList,
+        make: impl Fn(&Raw) -> Item,
+    ) -> Vec<Item> {
+        // SAFETY: the callers pair each list with the type that the shim keeps
+        // in it; the list is only read, and not changed while borrowed.
+        unsafe {
+            let list = &*of(self.raw);
+            assert_eq!(list.size, size_of::<Raw>());
+            if list.count == 0 {
+                return Vec::new();
+            }
+            let items = std::slice::from_raw_parts(list.items.cast::<Raw>(), list.count);
+            items.iter().map(make).collect()
+        }
+    }
+
+    fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
+        // SAFETY: the shim allows its caller to set the count to 0.
+        unsafe { (*of(self.raw)).count = 0 }
+    }
+}
+
+impl Drop for Uno {
+    fn drop(&mut self) {
+        // SAFETY: made by `uno_new`, freed once.
+        unsafe { ffi::uno_free(self.raw) }
+    }
+}
