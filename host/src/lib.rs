@@ -1,0 +1,13 @@
+//! What the `lizard` program does, one module for each subcommand: its
+//! `Args` and its `run`.
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod failure;
+pub mod paper;
+mod pose_args;
+mod robot_file;
+
+pub use failure::Failure;
+pub use pose_args::PoseArgs;
+pub use robot_file::RobotFile;

@@ -1,0 +1,41 @@
+//! `lizard`: the robot's mathematics and its simulation on the command line.
+#![forbid(unsafe_code)]
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use lizard_host::paper;
+
+/// Compute, check, draw and simulate the four-servo robotic lizard.
+///
+/// Angles are degrees in the chassis frame: x to the robot's right, y forward,
+/// counter-clockwise from +x, seen from above. Lengths are mm. Servos are A1 =
+/// theta1 (front left), A2 = theta4 (front right), A3 = theta8 (back right), A4 =
+/// theta5 (back left).
+///
+/// Exit codes: 0 done, 1 it could not be done, 2 the input is wrong.
+#[derive(Parser)]
+#[command(name = "lizard", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Solve(paper::solve::Args),
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Solve(args) => paper::solve::run(args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) if failure.is_silent() => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("lizard: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! A solved pose as `lizard solve` prints it.
+
+use std::fmt::Write as _;
+
+use lizard_kinematics::{Infeasible, Limits, Margins, Pose, Solution, Vector};
+use serde::Serialize;
+
+/// One object of `lizard solve --json`. Everything that a pose without a
+/// solution lacks is null.
+#[derive(Serialize)]
+pub struct Record {
+    theta2: Option<f64>,
+    theta3: Option<f64>,
+    theta6: Option<f64>,
+    theta7: Option<f64>,
+    head: Option<[f64; 2]>,
+    tail: Option<[f64; 2]>,
+    left: Option<Side>,
+    right: Option<Side>,
+    legs: Option<Legs>,
+    margins: Option<Sines>,
+    safe: bool,
+    why: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Side {
+    phi: f64,
+    s: f64,
+}
+
+#[derive(Serialize)]
+struct Legs {
+    fl: Leg,
+    fr: Leg,
+    br: Leg,
+    bl: Leg,
+}
+
+#[derive(Serialize)]
+struct Leg {
+    follower: f64,
+    coupler: f64,
+}
+
+#[derive(Serialize)]
+struct Sines {
+    apex_head: f64,
+    apex_tail: f64,
+    type1_a1: f64,
+    type1_a2: f64,
+    type1_a3: f64,
+    type1_a4: f64,
+    leg_fl: f64,
+    leg_fr: f64,
+    leg_br: f64,
+    leg_bl: f64,
+}
+
+impl From<&Margins> for Sines {
+    fn from(m: &Margins) -> Self {
+        Self {
+            apex_head: m.apex_head,
+            apex_tail: m.apex_tail,
+            type1_a1: m.type1_a1,
+            type1_a2: m.type1_a2,
+            type1_a3: m.type1_a3,
+            type1_a4: m.type1_a4,
+            leg_fl: m.leg_fl,
+            leg_fr: m.leg_fr,
+            leg_br: m.leg_br,
+            leg_bl: m.leg_bl,
+        }
+    }
+}
+
+impl Record {
+    /// The record of a pose, solved or not.
+    pub fn new(solved: &Result<Solution, Infeasible>, limits: &Limits) -> Self {
+        let s = match solved {
+            Ok(solution) => solution,
+            Err(infeasible) => return Self::without(infeasible),
+        };
+        let why: Vec<String> = limits.violations(s).map(|v| v.to_string()).collect();
+        let (head, tail) = (s.head_point(), s.tail_point());
+        let [fl, fr, br, bl] = s.legs.map(|leg| Leg {
+            follower: leg.follower(),
+            coupler: leg.coupler(),
+        });
+        Self {
+            theta2: Some(s.theta2()),
+            theta3: Some(s.theta3()),
+            theta6: Some(s.theta6()),
+            theta7: Some(s.theta7()),
+            head: Some([head.x, head.y]),
+            tail: Some([tail.x, tail.y]),
+            left: Some(Side {
+                phi: s.left.phi(),
+                s: s.left.s,
+            }),
+            right: Some(Side {
+                phi: s.right.phi(),
+                s: s.right.s,
+            }),
+            legs: Some(Legs { fl, fr, br, bl }),
+            margins: Some(Sines::from(&s.margins)),
+            safe: why.is_empty(),
+            why,
+        }
+    }
+
+    fn without(infeasible: &Infeasible) -> Self {
+        Self {
+            theta2: None,
+            theta3: None,
+            theta6: None,
+            theta7: None,
+            head: None,
+            tail: None,
+            left: None,
+            right: None,
+            legs: None,
+            margins: None,
+            safe: false,
+            why: vec![infeasible.to_string()],
+        }
+    }
+}
+
+/// The heading of [`row`].
+pub const HEADING: &str = "   theta1   theta4   theta8   theta5 |  \
+    theta2   theta3   theta6   theta7 |     head x, y mm     tail x, y mm |  \
+    s left s right | least margin      |";
+
+/// A solved pose in one line of a table.
+pub fn row(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits) -> String {
+    let angles = <[f64; 4]>::from(*pose);
+    let mut line = String::with_capacity(HEADING.len() + 8);
+    for angle in angles {
+        let _ = write!(line, " {angle:8.3}");
+    }
+    let s = match solved {
+        Err(infeasible) => {
+            let _ = write!(line, " | {infeasible}");
+            return line;
+        }
+        Ok(solution) => solution,
+    };
+    let (head, tail) = (tidy(s.head_point()), tidy(s.tail_point()));
+    let (least, value) = s.margins.min();
+    let _ = write!(
+        line,
+        " | {:8.3} {:8.3} {:8.3} {:8.3} | {:8.3} {:8.3} {:8.3} {:8.3} | {:+7.2} {:+7.2} | {least:9} {value:+7.4} | ",
+        s.theta2(),
+        s.theta3(),
+        s.theta6(),
+        s.theta7(),
+        head.x,
+        head.y,
+        tail.x,
+        tail.y,
+        s.left.s,
+        s.right.s,
+    );
+    match limits.violations(s).next() {
+        None => line.push_str("safe"),
+        Some(violation) => {
+            let _ = write!(line, "{violation}");
+        }
+    }
+    line
+}
+
+/// A solved pose as a page.
+pub fn page(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits) -> String {
+    let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose);
+    let mut page = format!(
+        "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
+    );
+    let s = match solved {
+        Err(infeasible) => {
+            let _ = writeln!(page, "\nno solution: {infeasible}");
+            return page;
+        }
+        Ok(solution) => solution,
+    };
+    let (head, tail) = (tidy(s.head_point()), tidy(s.tail_point()));
+    let legs = s.legs.map(|leg| leg.follower());
+    let m = &s.margins;
+    let _ = write!(
+        page,
+        "
+head     ({:8.3}, {:8.3}) mm   theta2 {:8.3}   theta3 {:8.3} deg
+tail     ({:8.3}, {:8.3}) mm   theta6 {:8.3}   theta7 {:8.3} deg
+left     s {:+8.3} mm   phi {:8.3} deg
+right    s {:+8.3} mm   phi {:8.3} deg
+legs     followers  front left {:8.3}   front right {:8.3}   back right {:8.3}   back left {:8.3} deg
+
+margins  (0 is singular, 1 is best)  limits {} {} {}
+         type-2    head {:+.4}   tail {:+.4}
+         type-1    A1   {:+.4}   A2   {:+.4}   A3 {:+.4}   A4 {:+.4}
+         legs      fl   {:+.4}   fr   {:+.4}   br {:+.4}   bl {:+.4}
+
+",
+        head.x, head.y, s.theta2(), s.theta3(),
+        tail.x, tail.y, s.theta6(), s.theta7(),
+        s.left.s, s.left.phi(),
+        s.right.s, s.right.phi(),
+        legs[0], legs[1], legs[2], legs[3],
+        limits.type2, limits.type1, limits.leg,
+        m.apex_head, m.apex_tail,
+        m.type1_a1, m.type1_a2, m.type1_a3, m.type1_a4,
+        m.leg_fl, m.leg_fr, m.leg_br, m.leg_bl,
+    );
+    let broken: Vec<_> = limits.violations(s).collect();
+    if broken.is_empty() {
+        let (least, value) = m.min();
+        let _ = writeln!(page, "safe     yes, the least margin is {least} {value:.4}");
+    } else {
+        for (i, violation) in broken.iter().enumerate() {
+            let lead = if i == 0 {
+                "safe     no, "
+            } else {
+                "             "
+            };
+            let _ = writeln!(page, "{lead}{violation}");
+        }
+    }
+    page
+}
+
+/// A point to the micrometre, without a negative zero.
+fn tidy(point: Vector) -> Vector {
+    let round = |value: f64| (value * 1e3).round() / 1e3 + 0.0;
+    Vector::new(round(point.x), round(point.y))
+}
