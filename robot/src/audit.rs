@@ -1,7 +1,7 @@
 //! Every sample of every gait, as the firmware will send it, through the
 //! forward solution: head, tail, sides and legs against all limits.
 
-use lizard_kinematics::{Check, Solution};
+use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::error::Problem;
 use crate::gait::Gait;
@@ -56,8 +56,9 @@ pub struct Audit {
 /// Checks a gait of the robot, by its index.
 pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
     let gait = &robot.gaits[index];
-    let mut found: Option<Audit> = None;
     let peak = fastest(gait);
+    let mut found: Option<Audit> = None;
+    let mut worst: Option<(f64, Violation)> = None;
     for phase in phases(robot, index) {
         let angles = robot.tables.angles(gait, index, phase);
         let phase = f64::from(phase) / 65536.0;
@@ -69,14 +70,20 @@ pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
                 phase,
                 violation: fault.to_string(),
             })?;
-        if let Some(violation) = robot.limits.violations(&solution).next() {
-            return Err(Problem::Unsafe {
-                phase,
-                violation: violation.to_string(),
+        for violation in robot.limits.violations(&solution) {
+            worst = Some(match worst {
+                Some(earlier) if !exceeds(violation, earlier.1) => earlier,
+                _ => (phase, violation),
             });
         }
         let here = Audit::of(&solution, phase, peak);
         found = Some(found.map_or(here, |so_far| so_far.least(here)));
+    }
+    if let Some((phase, violation)) = worst {
+        return Err(Problem::Unsafe {
+            phase,
+            violation: violation.to_string(),
+        });
     }
     if peak.speed > robot.pace.gait_slew {
         let limit = robot.pace.gait_slew;
@@ -104,6 +111,12 @@ pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
         error: f64::NAN,
         limit: ERROR_LIMIT,
     })
+}
+
+/// Whether a violation is the same limit's, and worse.
+fn exceeds(violation: Violation, earlier: Violation) -> bool {
+    let by = |v: Violation| (v.value - v.limit).abs();
+    violation.what == earlier.what && by(violation) > by(earlier)
 }
 
 /// The phases to check: evenly spaced ones, and every sample of every servo.

@@ -76,7 +76,7 @@ pub(crate) fn gaits(root: &Section, body: &Body) -> Checked<Vec<Gait>> {
     if gaits[0].strides.iter().all(still) {
         Ok(gaits)
     } else {
-        Err(Problem::Stand.at("gait.stand"))
+        Err(Problem::Moving.at("gait.stand"))
     }
 }
 
@@ -341,7 +341,7 @@ fn harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
         let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
         if k.fract() != 0.0 {
             return Err(Problem::Type {
-                found: format!("the number {k}"),
+                found: k.to_string(),
                 expected: "a whole number",
             }
             .at(term.path("k")));

@@ -24,7 +24,12 @@ impl fmt::Display for Error {
         if !self.key.is_empty() {
             write!(f, ": {}", self.key)?;
         }
-        write!(f, ": {}", self.problem)
+        let link = if self.key.is_empty() || self.problem.is_clause() {
+            ":"
+        } else {
+            ""
+        };
+        write!(f, "{link} {}", self.problem)
     }
 }
 
@@ -41,6 +46,24 @@ pub(crate) struct Fault {
 pub(crate) type Checked<T> = Result<T, Fault>;
 
 impl Problem {
+    /// True where the sentence has a subject of its own, false where the key
+    /// is its subject.
+    fn is_clause(&self) -> bool {
+        matches!(
+            self,
+            Self::TooLong { .. }
+                | Self::Neutral(_)
+                | Self::Stand
+                | Self::Circle(_)
+                | Self::OutOfReach { .. }
+                | Self::Unsafe { .. }
+                | Self::Travel { .. }
+                | Self::HalfTurn { .. }
+                | Self::TooFast { .. }
+                | Self::Coarse { .. }
+        )
+    }
+
     /// Blames `key`.
     pub(crate) fn at(self, key: impl Into<String>) -> Fault {
         Fault {
@@ -120,7 +143,7 @@ pub enum Problem {
     },
     /// A pin that is not one of the board's free digital pins.
     #[error(
-        "is \"{0}\"; it must be one of D2 to D12 (D0 and D1 are the serial line, D13 is the LED)"
+        "is \"{0}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
     )]
     Pin(String),
     /// One pin for two servos.
@@ -148,6 +171,11 @@ pub enum Problem {
     /// The first gait is not `stand`.
     #[error("the first gait must be stand, the neutral pose that the robot takes at power-on")]
     Stand,
+    /// The first gait moves.
+    #[error(
+        "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period"
+    )]
+    Moving,
     /// A gait given in no way, or in two.
     #[error("needs exactly one of {0}")]
     OneOf(&'static str),
@@ -265,7 +293,10 @@ impl Hint {
     pub fn new(word: &str, all: &[&str]) -> Self {
         let near = all.iter().map(|known| (distance(word, known), known)).min();
         Self(match near {
-            Some((d, known)) if d <= 2 && d < known.len() => format!("did you mean \"{known}\"?"),
+            // Two letters of a word may be wrong, but not one of two.
+            Some((d, known)) if d == 0 || (d <= 2 && known.len() > 2 && d < known.len()) => {
+                format!("did you mean \"{known}\"?")
+            }
             _ => format!("allowed are {}", all.join(", ")),
         })
     }

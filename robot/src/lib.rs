@@ -13,26 +13,29 @@ pub mod accuracy;
 mod audit;
 mod define;
 mod error;
+mod friction;
 mod gait;
 mod generate;
 mod ground;
 mod measure;
 mod path;
 mod reader;
+mod report;
 pub mod servo;
 mod table;
 mod waveform;
 
 use std::path::Path as FilePath;
 
-use lizard_kinematics::{Limits, Lizard, Pose};
+use lizard_kinematics::{Limits, Lizard, Pose, wrap};
 use toml::de::DeTable;
 
 pub use audit::{Audit, Least, Peak};
 pub use error::{Error, Hint, Problem};
 pub use gait::{Gait, Stride};
-pub use ground::{Feet, Ground};
+pub use ground::{Feet, Ground, Travel};
 pub use path::{Loop, Path, PathLeg};
+pub use report::{Report, Row};
 pub use servo::Servo;
 pub use table::{
     Channel, FRAMES_PER_SECOND, SAMPLES, STEPS_PER_DEGREE, TableGait, Tables, interpolate,
@@ -173,6 +176,33 @@ impl Robot {
             .iter()
             .enumerate()
             .find(|(_, gait)| gait.name == name)
+    }
+
+    /// The legs' sweeps (deg, foot forward positive) at servo angles (deg,
+    /// chassis frame), both in servo order.
+    pub fn sweeps(&self, angles: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|i| servo::FORWARD[i] * wrap(angles[i] - self.servos[i].neutral))
+    }
+
+    /// Where the robot gets to when its servos take these angles (deg, chassis
+    /// frame, servo order) one after another, by the contact model.
+    pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
+        self.ground
+            .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
+    }
+
+    /// Where one cycle of a gait takes the robot, in the time order of a gait
+    /// that starts at phase 0.
+    pub fn predict(&self, gait: &Gait) -> Travel {
+        /// Steps in a cycle; twice as many change no result by 0.01 mm.
+        const STEPS: usize = 1000;
+        let at = |i| gait.sweeps(gait.phase(gait.period * i as f64 / STEPS as f64));
+        self.ground.travel((0..=STEPS).map(at))
+    }
+
+    /// Every gait's figures, as a table.
+    pub fn report(&self) -> Report {
+        Report::of(self)
     }
 
     /// The Rust source that the firmware includes.

@@ -260,10 +260,8 @@ pub(crate) fn strokes(lizard: &Lizard, limits: &Limits) -> Checked<()> {
 pub(crate) fn ground(root: &Section, feet: Feet) -> Checked<Ground> {
     const KEY: &str = "friction_back_over_forward";
     let section = root.section("ground", &[KEY])?;
-    Ok(Ground::new(
-        feet,
-        section.number(KEY, 0.1, 10.0, "(a ratio)")?,
-    ))
+    let ratio = section.number(KEY, 0.1, 10.0, "(a ratio)")?;
+    Ok(Ground { feet, ratio })
 }
 
 fn equal(

@@ -216,8 +216,8 @@ fn number(value: &DeValue) -> Option<f64> {
 fn wrong(value: &DeValue, expected: &'static str) -> Problem {
     let found = match value {
         DeValue::String(text) => format!("the string \"{text}\""),
-        DeValue::Integer(number) => format!("the number {number}"),
-        DeValue::Float(number) => format!("the number {number}"),
+        DeValue::Integer(number) => number.to_string(),
+        DeValue::Float(number) => number.to_string(),
         DeValue::Boolean(value) => format!("{value}"),
         DeValue::Datetime(_) => "a date".to_string(),
         DeValue::Array(_) => "an array".to_string(),

@@ -28,9 +28,8 @@
 //! Rules this rests on:
 //! - The longest of the other handlers and the longest stretch with interrupts
 //!   off take less than `LEAD` together, less the 60 cycles that a handler here
-//!   needs itself before it reads the timer. The receive handler takes 83 cycles,
-//!   110 when it loses a byte, which leaves main at most 50 with interrupts off.
-//!   Where that fails the edge is late, and counted.
+//!   needs itself before it reads the timer. Where that fails the edge is late,
+//!   and counted.
 //! - Only the two handlers touch Timer1, because all its 16-bit registers share
 //!   one TEMP byte.
 //! - Everyone else changes pins of the servos' ports by single `sbi` and `cbi`

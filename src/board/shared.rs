@@ -21,19 +21,16 @@ pub struct Byte(UnsafeCell<u8>);
 unsafe impl Sync for Byte {}
 
 impl Byte {
-    /// A byte that starts as `value`.
     pub const fn new(value: u8) -> Self {
         Self(UnsafeCell::new(value))
     }
 
-    /// One load.
     #[inline(always)]
     pub fn get(&self) -> u8 {
         // SAFETY: the pointer is the cell's own; for other accesses see `Sync`.
         unsafe { self.0.get().read_volatile() }
     }
 
-    /// One store.
     #[inline(always)]
     pub fn set(&self, value: u8) {
         // SAFETY: as in `get`.
@@ -49,7 +46,6 @@ pub struct Word {
 }
 
 impl Word {
-    /// A word that starts as `value`.
     pub const fn new(value: u16) -> Self {
         let [low, high] = value.to_le_bytes();
         Self {
@@ -64,13 +60,11 @@ impl Word {
         [self.low.get(), self.high.get()]
     }
 
-    /// Two loads, low byte first.
     #[inline(always)]
     pub fn get(&self) -> u16 {
         u16::from_le_bytes(self.bytes())
     }
 
-    /// Two stores, low byte first.
     #[inline(always)]
     pub fn set(&self, value: u16) {
         let [low, high] = value.to_le_bytes();
@@ -83,7 +77,6 @@ impl Word {
 pub struct Counter(Word);
 
 impl Counter {
-    /// Starts at 0.
     pub const fn new() -> Self {
         Self(Word::new(0))
     }

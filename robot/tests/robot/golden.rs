@@ -1,0 +1,68 @@
+//! Snapshots of the tables, so that a changed gait shows as a diff.
+
+use std::fmt::Write;
+
+use crate::robot;
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
+const ROWS: u16 = 64;
+
+/// Phase and the four servo angles as the firmware reads them, deg.
+fn snapshot(index: usize) -> String {
+    let robot = robot();
+    let gait = &robot.gaits[index];
+    let mut text = "phase,A1,A2,A3,A4\n".to_string();
+    for row in 0..ROWS {
+        let [a1, a2, a3, a4] =
+            robot
+                .tables
+                .angles(gait, index, row * (65536 / u32::from(ROWS)) as u16);
+        let phase = f64::from(row) / f64::from(ROWS);
+        writeln!(text, "{phase:.6},{a1:.2},{a2:.2},{a3:.2},{a4:.2}").expect("a String takes all");
+    }
+    text
+}
+
+#[test]
+fn every_gait_is_as_its_snapshot_says() {
+    let bless = std::env::var_os("BLESS_GAITS").is_some();
+    for (index, gait) in robot().gaits.iter().enumerate() {
+        let path = format!("{FOLDER}/{}.csv", gait.name);
+        let now = snapshot(index);
+        if bless {
+            std::fs::write(&path, &now).expect(&path);
+        }
+        let then = std::fs::read_to_string(&path).unwrap_or_default();
+        if let Some((then, now)) = then
+            .lines()
+            .zip(now.lines())
+            .find(|(then, now)| then != now)
+        {
+            panic!(
+                "{} has changed.\n  was {then}\n  is  {now}\nIf that is meant, run BLESS_GAITS=1 cargo test -p lizard-robot golden and commit {path}.",
+                gait.name
+            );
+        }
+        assert_eq!(
+            then.lines().count(),
+            now.lines().count(),
+            "{path}: bless it with BLESS_GAITS=1"
+        );
+    }
+}
+
+#[test]
+fn no_snapshot_outlives_its_gait() {
+    let robot = robot();
+    for entry in std::fs::read_dir(FOLDER).expect(FOLDER) {
+        let name = entry.expect(FOLDER).file_name();
+        let name = name.to_string_lossy();
+        let gait = name
+            .strip_suffix(".csv")
+            .unwrap_or_else(|| panic!("{FOLDER}/{name} is no snapshot"));
+        assert!(
+            robot.gait(gait).is_some(),
+            "{FOLDER}/{name} has no gait any more"
+        );
+    }
+}

@@ -1,0 +1,174 @@
+//! Where the gaits go, against the figures they were chosen by, and the exact
+//! consequences of the contact model.
+
+use lizard_robot::{Robot, Travel};
+use proptest::prelude::*;
+
+use crate::{gait, robot, with};
+
+/// A cycle of a gait: forward mm, turn deg. From a separate implementation of
+/// the same model, and from a rigid-body engine with dragging pads.
+const EXPECTED: [(&str, f64, f64, f64, f64); 9] = [
+    ("stand", 0.0, 0.0, 0.0, 0.0),
+    ("walk", 34.16, 0.0, 34.0, 0.0),
+    ("trot", 26.66, 0.0, 25.9, 0.0),
+    ("crawl", 30.78, 0.0, 29.5, 0.0),
+    ("back", -34.16, 0.0, -34.0, 0.0),
+    ("left", 0.0, 15.34, 0.0, 14.5),
+    ("right", 0.0, -15.34, 0.0, -14.5),
+    ("arc-left", 17.71, 5.27, 17.0, 5.05),
+    ("arc-right", 17.71, -5.27, 17.0, -5.05),
+];
+
+fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
+    assert!(
+        (travel.forward - forward).abs() <= 0.3f64.max(forward.abs() * 0.01),
+        "{name} {travel:?}"
+    );
+    assert!((travel.turn - turn).abs() <= 0.2, "{name} {travel:?}");
+}
+
+#[test]
+fn every_gait_goes_where_it_was_meant_to() {
+    let robot = robot();
+    for (name, forward, turn, ..) in EXPECTED {
+        assert_near(name, robot.predict(gait(robot, name)), forward, turn);
+    }
+}
+
+#[test]
+fn a_rigid_body_engine_agrees_within_a_twentieth() {
+    let robot = robot();
+    for (name, _, _, forward, turn) in EXPECTED {
+        let travel = robot.predict(gait(robot, name));
+        assert!(
+            (travel.forward - forward).abs() <= 0.05 * forward.abs() + 0.01,
+            "{name} {travel:?}"
+        );
+        assert!(
+            (travel.turn - turn).abs() <= 0.06 * turn.abs() + 0.01,
+            "{name} {travel:?}"
+        );
+    }
+}
+
+#[test]
+fn the_tables_at_fifty_frames_a_second_go_the_same_way() {
+    let robot = robot();
+    for (name, forward, turn, ..) in EXPECTED {
+        let (index, gait) = robot.gait(name).expect(name);
+        let frames = (gait.period * lizard_robot::FRAMES_PER_SECOND).round() as usize;
+        let increment = robot.tables.gaits[index].increment;
+        let angles = (0..=frames).map(|frame| {
+            let phase = (increment * frame as i32).rem_euclid(1 << 24) >> 8;
+            robot.tables.angles(gait, index, phase as u16)
+        });
+        assert_near(name, robot.travel(angles), forward, turn);
+    }
+}
+
+#[test]
+fn a_table_read_backwards_leads_back() {
+    let robot = robot();
+    let forth = robot.predict(gait(robot, "walk"));
+    let back = robot.predict(gait(robot, "back"));
+    assert!(
+        (forth.forward + back.forward).abs() < 1e-6,
+        "{forth:?} {back:?}"
+    );
+    // A whole cycle forth and back again, for a gait that also turns.
+    let arc = gait(robot, "arc-left");
+    let cycle: Vec<[f64; 4]> = (0..=500).map(|i| arc.sweeps(i as f64 / 500.0)).collect();
+    let home = robot
+        .ground
+        .travel(cycle.iter().chain(cycle.iter().rev()).copied());
+    assert!(
+        home.forward.hypot(home.left) < 1e-5 && home.turn.abs() < 1e-6,
+        "{home:?}"
+    );
+}
+
+#[test]
+fn left_and_right_are_mirror_images() {
+    let robot = robot();
+    for (a, b) in [("left", "right"), ("arc left", "arc right")] {
+        let (a, b) = (robot.predict(gait(robot, a)), robot.predict(gait(robot, b)));
+        assert!((a.forward - b.forward).abs() < 1e-6);
+        assert!((a.left + b.left).abs() < 1e-6 && (a.turn + b.turn).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_sine_trot_gets_nowhere() {
+    let robot = robot();
+    let sine = |i: i32| {
+        let psi = 20.0 * (f64::from(i) * std::f64::consts::TAU / 400.0).sin();
+        [psi, -psi, psi, -psi]
+    };
+    let travel = robot.ground.travel((0..=400).map(sine));
+    assert!(
+        travel.forward.abs() < 1e-5 && travel.left.abs() < 1e-5 && travel.turn.abs() < 1e-5,
+        "{travel:?}"
+    );
+}
+
+#[test]
+fn a_finer_cycle_changes_no_prediction_by_a_hundredth() {
+    let robot = robot();
+    for gait in &robot.gaits {
+        let coarse = robot.predict(gait);
+        let at = |i| gait.sweeps(gait.phase(gait.period * f64::from(i) / 2000.0));
+        let fine = robot.ground.travel((0..=2000).map(at));
+        let off = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
+        assert!(
+            off < 0.01 && (coarse.turn - fine.turn).abs() < 0.01,
+            "{} {off}",
+            gait.name
+        );
+    }
+}
+
+fn forward(robot: &Robot, name: &str) -> f64 {
+    robot.predict(gait(robot, name)).forward
+}
+
+#[test]
+fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
+    for mount in ["41.0", "49.0"] {
+        let robot = with("mount = 0.0", &format!("mount = {mount}")).expect("a mount");
+        assert!((4.0..=6.0).contains(&forward(&robot, "walk")));
+        assert!((21.0..=24.5).contains(&forward(&robot, "crawl")));
+    }
+}
+
+#[test]
+fn pads_that_grip_backward_help_forward_gaits_until_reverse_collapses() {
+    let even = robot();
+    let ratio =
+        |ratio: &str| with("_forward = 1.0", &format!("_forward = {ratio}")).expect("a ratio");
+    for rho in ["1.1", "1.25", "1.5"] {
+        let robot = ratio(rho);
+        assert!(forward(&robot, "walk") > forward(even, "walk"));
+        assert!(
+            forward(&robot, "back") > forward(even, "back"),
+            "costs reverse"
+        );
+        assert!(forward(&robot, "back") < -30.0, "but does not stop it");
+    }
+    assert!(
+        forward(&ratio("2.0"), "back") > 0.0,
+        "now back walks forward"
+    );
+}
+
+proptest! {
+    // A joint path that retraces itself leads nowhere, whatever the path.
+    #[test]
+    fn a_path_that_retraces_itself_leads_home(
+        path in prop::collection::vec(prop::array::uniform4(-20.0f64..20.0), 2..6),
+    ) {
+        let robot = robot();
+        let travel = robot.ground.travel(path.iter().chain(path.iter().rev()).copied());
+        prop_assert!(travel.forward.abs() < 1e-4 && travel.left.abs() < 1e-4 && travel.turn.abs() < 1e-4, "{:?}", travel);
+    }
+}
