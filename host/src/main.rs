@@ -24,11 +24,19 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Solve(paper::solve::Args),
+    Inverse(paper::inverse::Args),
+    Velocity(paper::velocity::Args),
+    Singularity(paper::singularity::Args),
+    Mobility(paper::mobility::Args),
 }
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Solve(args) => paper::solve::run(args),
+        Command::Inverse(args) => paper::inverse::run(args),
+        Command::Velocity(args) => paper::velocity::run(args),
+        Command::Singularity(args) => paper::singularity::run(args),
+        Command::Mobility(args) => paper::mobility::run(args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
