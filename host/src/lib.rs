@@ -4,6 +4,7 @@
 #![deny(missing_docs)]
 
 mod failure;
+pub mod gaits;
 pub mod paper;
 mod pose_args;
 mod robot_file;

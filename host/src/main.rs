@@ -4,7 +4,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use lizard_host::paper;
+use lizard_host::{gaits, paper};
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
 ///
@@ -23,6 +23,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Gaits(gaits::Args),
     Solve(paper::solve::Args),
     Inverse(paper::inverse::Args),
     Velocity(paper::velocity::Args),
@@ -32,6 +33,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Gaits(args) => gaits::run(args),
         Command::Solve(args) => paper::solve::run(args),
         Command::Inverse(args) => paper::inverse::run(args),
         Command::Velocity(args) => paper::velocity::run(args),
