@@ -8,7 +8,7 @@ use crate::{gait, robot, with};
 
 /// A cycle of a gait: forward mm, turn deg. From a separate implementation of
 /// the same model, and from a rigid-body engine with dragging pads.
-const EXPECTED: [(&str, f64, f64, f64, f64); 9] = [
+pub const EXPECTED: [(&str, f64, f64, f64, f64); 9] = [
     ("stand", 0.0, 0.0, 0.0, 0.0),
     ("walk", 34.16, 0.0, 34.0, 0.0),
     ("trot", 26.66, 0.0, 25.9, 0.0),
