@@ -3,7 +3,7 @@
 
 use std::fmt::{self, Display, Write};
 
-use lizard_kinematics::{FiveBar, Slider};
+use lizard_kinematics::{FiveBar, Lizard, Slider};
 
 use crate::Robot;
 use crate::servo::Servo;
@@ -58,12 +58,12 @@ impl Display for Body<'_> {
             (
                 "The head's loop, A1 on its left.",
                 "HEAD: FiveBar",
-                five_bar(&lizard.head()),
+                five_bar(&lizard.head(), "HEAD_SLOPE"),
             ),
             (
                 "The tail's loop in tail-local angles, A4 on its left.",
                 "TAIL: FiveBar",
-                five_bar(&lizard.tail()),
+                five_bar(&lizard.tail(), slopes(lizard).last().map_or("HEAD_SLOPE", |(name, _)| name)),
             ),
             (
                 "The slider between A1 and A4.",
@@ -104,7 +104,15 @@ impl Display for Body<'_> {
         for (doc, name, value) in constants {
             writeln!(f, "\n/// {doc}\npub const {name} = {value};")?;
         }
-        f.write_str("\nlizard_flash::flash! {\n    /// The gaits in the order of robot.toml.\n")?;
+        let slopes = slopes(lizard);
+        f.write_str("\nlizard_avr::flash! {\n")?;
+        for (name, coupler) in &slopes {
+            writeln!(
+                f,
+                "    const {name}: [u16; crate::slope::ENTRIES] = crate::slope::table({coupler});\n"
+            )?;
+        }
+        f.write_str("    /// The gaits in the order of robot.toml.\n")?;
         f.write_str("    pub const GAITS: [Gait; GAIT_COUNT] = [\n")?;
         for gait in &tables.gaits {
             write!(
@@ -152,14 +160,23 @@ fn servo_literal(servo: &Servo) -> String {
     )
 }
 
-fn five_bar(bars: &FiveBar) -> String {
+fn five_bar(bars: &FiveBar, slope: &str) -> String {
+    let coupler = length(bars.coupler_left);
     format!(
-        "FiveBar {{ base: {}, left: {}, right: {}, coupler: {} }}",
+        "FiveBar::new({}, {}, {}, Slope::new({coupler}, {slope}))",
         length(bars.base),
         length(bars.crank_left),
         length(bars.crank_right),
-        length(bars.coupler_left),
     )
+}
+
+/// The tables of coupler slopes: one serves both loops where the couplers of
+/// head and tail are alike.
+fn slopes(lizard: &Lizard) -> Vec<(&'static str, i64)> {
+    let [head, tail] = [lizard.head(), lizard.tail()].map(|bars| length(bars.coupler_left));
+    let mut slopes = vec![("HEAD_SLOPE", head), ("TAIL_SLOPE", tail)];
+    slopes.dedup_by_key(|(_, coupler)| *coupler);
+    slopes
 }
 
 fn robot_stroke(robot: &Robot) -> (f64, f64) {

@@ -1,0 +1,169 @@
+//! Constants that stay in flash.
+//!
+//! An AVR has two address spaces. A Rust `static` lives in the one for data:
+//! it is copied to RAM at start, and this chip has 2 KiB of that. Tables and
+//! sentences belong in the other, which only the `lpm` instruction reads.
+//! [`flash!`](crate::flash!) puts a constant there; a [`Flash`] is its address, and the only
+//! way to it. On any other machine it is an ordinary constant, so the same
+//! code runs in tests.
+//!
+//! Reads are total: an index past the end reads the last element, so that no
+//! panic path is compiled in. (The crate avr-progmem does the same job but
+//! wants a nightly compiler on the host, too, and panics on a bad index.)
+
+use core::mem::{MaybeUninit, transmute_copy};
+
+/// Where a constant lies in flash.
+#[derive(Clone, Copy)]
+pub struct Flash<T> {
+    at: *const T,
+}
+
+// SAFETY: what `at` points to is never written, so any number of readers on
+// any number of threads see the same value.
+unsafe impl<T: Sync> Sync for Flash<T> {}
+
+impl<T> Flash<T> {
+    /// Made by [`flash!`](crate::flash!) alone.
+    ///
+    /// # Safety
+    /// `at` must be valid for reads for ever, in the flash of an AVR and in
+    /// ordinary memory elsewhere.
+    #[doc(hidden)]
+    pub const unsafe fn new(at: *const T) -> Self {
+        Self { at }
+    }
+}
+
+impl<T: Copy> Flash<T> {
+    /// Fetches the constant.
+    #[inline]
+    pub fn load(self) -> T {
+        // One and two bytes go through registers, the rest through memory.
+        if size_of::<T>() == 1 {
+            // SAFETY: `new` vouches for the byte at `self.at`; any copy of a
+            // `Copy` value of that size is such a value.
+            return unsafe { transmute_copy(&fetch_byte(self.at.cast())) };
+        }
+        if size_of::<T>() == 2 {
+            // SAFETY: as above, with two bytes.
+            return unsafe { transmute_copy(&fetch_word(self.at.cast())) };
+        }
+        let mut copy = MaybeUninit::<T>::uninit();
+        // SAFETY: `new` vouches for `size_of::<T>()` readable bytes, `copy`
+        // has room for as many, and a bitwise copy of a `Copy` value is one.
+        unsafe {
+            fetch(self.at.cast(), copy.as_mut_ptr().cast(), size_of::<T>());
+            copy.assume_init()
+        }
+    }
+}
+
+#[expect(clippy::len_without_is_empty, reason = "an array here is never empty")]
+impl<T, const N: usize> Flash<[T; N]> {
+    /// The number of elements.
+    #[inline]
+    pub const fn len(self) -> usize {
+        N
+    }
+
+    /// The element at `index`, still in flash; past the end, the last one.
+    #[inline]
+    pub const fn at(self, index: usize) -> Flash<T> {
+        const { assert!(N > 0) };
+        let index = if index < N { index } else { N - 1 };
+        // SAFETY: `index` is below the length of the array at `self.at`.
+        unsafe { Flash::new(self.at.cast::<T>().add(index)) }
+    }
+}
+
+#[cfg(target_arch = "avr")]
+#[inline]
+unsafe fn fetch_byte(from: *const u8) -> u8 {
+    let byte: u8;
+    // SAFETY: the caller vouches for a byte of flash at `from`.
+    unsafe {
+        core::arch::asm!(
+            "lpm {byte}, Z",
+            byte = out(reg) byte,
+            in("Z") from,
+            options(pure, readonly, nostack, preserves_flags),
+        );
+    }
+    byte
+}
+
+#[cfg(target_arch = "avr")]
+#[inline]
+unsafe fn fetch_word(from: *const u8) -> u16 {
+    let word: u16;
+    // SAFETY: the caller vouches for two bytes of flash at `from`.
+    unsafe {
+        core::arch::asm!(
+            "lpm {word:l}, Z+",
+            "lpm {word:h}, Z",
+            word = out(reg_pair) word,
+            inout("Z") from => _,
+            options(pure, readonly, nostack, preserves_flags),
+        );
+    }
+    word
+}
+
+#[cfg(target_arch = "avr")]
+#[inline(never)]
+unsafe fn fetch(from: *const u8, to: *mut u8, count: usize) {
+    let mut from = from;
+    for index in 0..count {
+        // SAFETY: the caller vouches for `count` bytes of flash at `from` and
+        // of RAM at `to`.
+        unsafe {
+            to.add(index).write(fetch_byte(from));
+            from = from.add(1);
+        }
+    }
+}
+
+#[cfg(not(target_arch = "avr"))]
+#[inline]
+unsafe fn fetch_byte(from: *const u8) -> u8 {
+    // SAFETY: the caller vouches for the byte.
+    unsafe { from.read() }
+}
+
+#[cfg(not(target_arch = "avr"))]
+#[inline]
+unsafe fn fetch_word(from: *const u8) -> u16 {
+    // SAFETY: the caller vouches for the two bytes.
+    unsafe { from.cast::<u16>().read_unaligned() }
+}
+
+#[cfg(not(target_arch = "avr"))]
+#[inline]
+unsafe fn fetch(from: *const u8, to: *mut u8, count: usize) {
+    // SAFETY: the caller vouches for `count` bytes at either place.
+    unsafe { core::ptr::copy_nonoverlapping(from, to, count) }
+}
+
+/// Declares constants that stay in flash.
+///
+/// ```
+/// lizard_avr::flash! {
+///     /// Powers of two.
+///     pub const POWERS: [u16; 4] = [1, 2, 4, 8];
+/// }
+/// assert_eq!(POWERS.at(2).load(), 4);
+/// ```
+#[macro_export]
+macro_rules! flash {
+    ($($(#[$meta:meta])* $vis:vis const $name:ident: $type:ty = $value:expr;)*) => {$(
+        $(#[$meta])*
+        $vis const $name: $crate::Flash<$type> = {
+            // SAFETY: the section is the linker script's for constants in flash.
+            #[cfg_attr(target_arch = "avr", unsafe(link_section = ".progmem.data"))]
+            static VALUE: $type = $value;
+            // SAFETY: `VALUE` is a static that the attribute put where `new` wants it.
+            unsafe { $crate::Flash::new(&raw const VALUE) }
+        };
+    )*};
+}

@@ -1,0 +1,18 @@
+//! What an AVR can do and Rust does not reach.
+//!
+//! The firmware's core is plain Rust without `unsafe`, so that it runs and is
+//! tested on any machine. Two things of this processor are worth more than
+//! that allows: its second address space, which keeps tables out of the scarce
+//! RAM, and its multiplier, which the compiler leaves idle when it calls a
+//! 32-bit library routine for a product of two 16-bit factors. Both are here,
+//! behind safe functions that are plain Rust everywhere else.
+
+#![no_std]
+#![deny(missing_docs)]
+#![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
+
+mod flash;
+mod multiply;
+
+pub use flash::Flash;
+pub use multiply::{mul, mul_unsigned};

@@ -1,0 +1,209 @@
+//! Answers: what the robot says to a line, and how it is written.
+//!
+//! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`.
+//! The codes are part of the protocol and never change their meaning.
+
+use lizard_avr::flash;
+use ufmt::uWrite;
+
+use crate::command::Misread;
+use crate::hazard::{Hazard, Kind};
+use crate::pose::Pose;
+use crate::robot::{LEFT, LIMITS, RIGHT, SERVOS};
+use crate::text::Text;
+use crate::units::{centideg_from_angle, hundredths_from_length, thousandths_from_q15};
+
+/// Why a command is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// Codes 1, 2, 3: not a command.
+    Misread(Misread),
+    /// Codes 4 and 5: the pose is not safe.
+    Unsafe(Hazard),
+    /// Code 6: the line is too long.
+    TooLong,
+    /// Code 7: the servos have no pulses.
+    Resting,
+}
+
+/// A final line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// `ok` and the line as it was understood.
+    Done,
+    /// The list of commands, then `ok help`.
+    Help,
+    /// `ok` and the state.
+    Status,
+    /// `err`; nothing was changed.
+    Refused(Refusal),
+}
+
+/// Prints bytes of seven bits as they are.
+#[inline(never)]
+pub fn ascii<W: uWrite + ?Sized>(out: &mut W, bytes: &[u8]) -> Result<(), W::Error> {
+    for byte in bytes {
+        out.write_char(char::from(byte & 0x7f))?;
+    }
+    Ok(())
+}
+
+/// Prints four chassis angles in degrees, with a separator between them.
+#[inline(never)]
+pub fn pose<W: uWrite + ?Sized>(out: &mut W, pose: &Pose, between: char) -> Result<(), W::Error> {
+    for servo in 0..4 {
+        if servo > 0 {
+            out.write_char(between)?;
+        }
+        fixed(out, i32::from(pose.centideg(servo)), 2)?;
+    }
+    Ok(())
+}
+
+/// Prints a whole number.
+#[inline(never)]
+pub fn number<W: uWrite + ?Sized>(out: &mut W, value: u32) -> Result<(), W::Error> {
+    let mut rest = value;
+    let mut begun = false;
+    for place in 0..DECADES.len() {
+        let unit = DECADES.at(place).load();
+        let mut digit = b'0';
+        while rest >= unit {
+            rest -= unit;
+            digit += 1;
+        }
+        begun |= digit != b'0' || unit == 1;
+        if begun {
+            out.write_char(char::from(digit & 0x7f))?;
+        }
+    }
+    Ok(())
+}
+
+flash! {
+    const DECADES: [u32; 10] = [
+        1_000_000_000, 100_000_000, 10_000_000, 1_000_000, 100_000, 10_000, 1_000, 100, 10, 1,
+    ];
+}
+
+/// Prints a number with `decimals` (2 or 3) behind the point.
+#[inline(never)]
+pub fn fixed<W: uWrite + ?Sized>(out: &mut W, value: i32, decimals: u8) -> Result<(), W::Error> {
+    if value < 0 {
+        out.write_char('-')?;
+    }
+    let size = value.unsigned_abs() as u16;
+    let unit = if decimals == 3 { 1000 } else { 100 };
+    number(out, u32::from(size / unit))?;
+    out.write_char('.')?;
+    let part = size % unit;
+    if decimals == 3 && part < 100 {
+        out.write_char('0')?;
+    }
+    if part < 10 {
+        out.write_char('0')?;
+    }
+    number(out, u32::from(part))
+}
+
+impl Refusal {
+    /// The protocol's number for this refusal.
+    pub const fn code(&self) -> u8 {
+        match self {
+            Self::Misread(Misread::Unknown) => 1,
+            Self::Misread(Misread::SpeedRange | Misread::WatchRange | Misread::PoseRange(_)) => 3,
+            Self::Misread(_) => 2,
+            Self::Unsafe(hazard) => match hazard.check.kind() {
+                Kind::Stroke => 5,
+                _ => 4,
+            },
+            Self::TooLong => 6,
+            Self::Resting => 7,
+        }
+    }
+
+    /// Prints the reason.
+    pub fn print<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
+        match self {
+            Self::Misread(misread) => print_misread(*misread, out),
+            Self::Unsafe(hazard) => print_hazard(*hazard, out),
+            Self::TooLong => Text::TooLong.print(out),
+            Self::Resting => Text::Resting.print(out),
+        }
+    }
+}
+
+#[inline(never)]
+fn print_misread<W: uWrite + ?Sized>(misread: Misread, out: &mut W) -> Result<(), W::Error> {
+    let text = match misread {
+        Misread::Unknown => Text::Unknown,
+        Misread::Surplus => Text::Surplus,
+        Misread::Incomplete => Text::Incomplete,
+        Misread::SpeedWants => Text::SpeedWants,
+        Misread::SpeedRange => Text::SpeedRange,
+        Misread::WatchWants => Text::WatchWants,
+        Misread::WatchRange => Text::WatchRange,
+        Misread::PoseWants => Text::PoseWants,
+        Misread::PoseRange(index) => return print_travel(index, out),
+    };
+    text.print(out)
+}
+
+/// `A2 must be within its travel, 311.41..131.41`.
+fn print_travel<W: uWrite + ?Sized>(index: u8, out: &mut W) -> Result<(), W::Error> {
+    servo(out, index)?;
+    Text::Beyond.print(out)?;
+    let servo = &SERVOS[usize::from(index & 3)];
+    let end = |sweep| i32::from(centideg_from_angle(servo.angle_at(sweep)));
+    range(out, end(servo.min_sweep), end(servo.max_sweep))
+}
+
+/// Prints what is wrong with a pose: the margin, its value and its limit.
+#[inline(never)]
+pub fn print_hazard<W: uWrite + ?Sized>(hazard: Hazard, out: &mut W) -> Result<(), W::Error> {
+    let which = hazard.check.which();
+    let kind = hazard.check.kind();
+    if kind == Kind::Stroke {
+        let (side, slider) = if which == 0 {
+            (Text::Left, &LEFT)
+        } else {
+            (Text::Right, &RIGHT)
+        };
+        let hundredths = |length| i32::from(hundredths_from_length(length));
+        side.print(out)?;
+        Text::Slider.print(out)?;
+        fixed(out, hundredths(hazard.value), 2)?;
+        Text::Within.print(out)?;
+        let [least, most] = slider.stroke();
+        return range(out, hundredths(least), hundredths(most));
+    }
+    match kind {
+        Kind::Type2 if which == 0 => Text::Type2Head,
+        Kind::Type2 => Text::Type2Tail,
+        Kind::Type1 => Text::Type1,
+        Kind::Leg | Kind::Stroke => Text::Leg,
+    }
+    .print(out)?;
+    if kind != Kind::Type2 {
+        servo(out, which)?;
+    }
+    Text::Is.print(out)?;
+    fixed(out, i32::from(thousandths_from_q15(hazard.value)), 3)?;
+    Text::Least.print(out)?;
+    fixed(out, i32::from(thousandths_from_q15(LIMITS.least(kind))), 3)
+}
+
+/// `-15.00..45.00`.
+#[inline(never)]
+fn range<W: uWrite + ?Sized>(out: &mut W, least: i32, most: i32) -> Result<(), W::Error> {
+    fixed(out, least, 2)?;
+    out.write_char('.')?;
+    out.write_char('.')?;
+    fixed(out, most, 2)
+}
+
+#[inline(never)]
+fn servo<W: uWrite + ?Sized>(out: &mut W, index: u8) -> Result<(), W::Error> {
+    out.write_char('A')?;
+    out.write_char(char::from(b'1' + (index & 3)))
+}

@@ -1,0 +1,209 @@
+//! Lines into commands.
+//!
+//! A line is one command: a word of the console, or the name of a gait in
+//! `robot.toml`. Nothing here acts; a line that is not wholly understood is an
+//! error and changes nothing.
+
+use crate::gait::GaitId;
+use crate::pose::Pose;
+use crate::text::Text;
+use crate::units::TURN_CENTIDEG;
+
+/// A wish, with its arguments checked as far as syntax and range go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// List the commands.
+    Help,
+    /// Begin a gait; `stand` is one.
+    Gait(GaitId),
+    /// Freeze.
+    Stop,
+    /// End the pulses.
+    Rest,
+    /// Pace of gaits in percent, 10..=100.
+    Speed(u8),
+    /// Go to a pose.
+    Pose(Pose),
+    /// Say how things are.
+    Status,
+    /// Report the pose every so many frames; 0 ends it.
+    Watch(u16),
+}
+
+/// Why a line is no command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Misread {
+    /// The first word is none of ours.
+    Unknown,
+    /// A command that takes no argument has one.
+    Surplus,
+    /// `arc` without a side, or another gait's name cut short.
+    Incomplete,
+    /// `speed` wants one whole number.
+    SpeedWants,
+    /// `speed` must be 10..=100.
+    SpeedRange,
+    /// `watch` wants one whole number.
+    WatchWants,
+    /// `watch` must be at most 10000.
+    WatchRange,
+    /// `pose` wants four angles of at most two decimals.
+    PoseWants,
+    /// The travel of servo `.0` (0..=3) does not reach its angle.
+    PoseRange(u8),
+}
+
+/// The rarest report: every 200 s.
+pub const WATCH_MOST: u16 = 10_000;
+
+/// Larger angles are taken for slips; a turn either way is enough.
+const ANGLE_MOST: i32 = TURN_CENTIDEG;
+
+/// Reads a line that is trimmed, not empty and in lower case.
+pub fn parse(line: &[u8]) -> Result<Command, Misread> {
+    let mut words = Words(line);
+    let first = words.next();
+    let said = |text: Text| text.is(first);
+    let alone = if said(Text::Help) || said(Text::QuestionMark) {
+        Command::Help
+    } else if said(Text::Stop) {
+        Command::Stop
+    } else if said(Text::Rest) {
+        Command::Rest
+    } else if said(Text::Status) {
+        Command::Status
+    } else if said(Text::Pose) {
+        return pose(words);
+    } else if said(Text::Speed) {
+        return match whole(words).ok_or(Misread::SpeedWants)? {
+            percent @ 10..=100 => Ok(Command::Speed(percent as u8)),
+            _ => Err(Misread::SpeedRange),
+        };
+    } else if said(Text::Watch) {
+        return match whole(words).ok_or(Misread::WatchWants)? {
+            frames @ 0..=WATCH_MOST => Ok(Command::Watch(frames)),
+            _ => Err(Misread::WatchRange),
+        };
+    } else {
+        return gait(line);
+    };
+    if words.is_done() {
+        Ok(alone)
+    } else {
+        Err(Misread::Surplus)
+    }
+}
+
+/// What is left of a line, to be taken word by word.
+#[derive(Clone, Copy)]
+struct Words<'a>(&'a [u8]);
+
+impl<'a> Words<'a> {
+    /// The next word; empty at the end of the line.
+    #[inline(never)]
+    fn next(&mut self) -> &'a [u8] {
+        let rest = self.0.trim_ascii_start();
+        let length = rest
+            .iter()
+            .take_while(|byte| !byte.is_ascii_whitespace())
+            .count();
+        let (word, rest) = rest.split_at_checked(length).unwrap_or((rest, &[]));
+        self.0 = rest;
+        word
+    }
+
+    fn is_done(mut self) -> bool {
+        self.next().is_empty()
+    }
+}
+
+fn pose(mut words: Words) -> Result<Command, Misread> {
+    let mut angles = [0; 4];
+    for angle in &mut angles {
+        *angle = centideg(words.next()).ok_or(Misread::PoseWants)?;
+    }
+    if !words.is_done() {
+        return Err(Misread::PoseWants);
+    }
+    for (servo, angle) in (0..).zip(&angles) {
+        if angle.abs() > ANGLE_MOST {
+            return Err(Misread::PoseRange(servo));
+        }
+    }
+    Pose::at_centideg(&angles)
+        .map(Command::Pose)
+        .map_err(Misread::PoseRange)
+}
+
+/// A gait's name, or what is wrong with it. Any blanks between words will do.
+#[inline(never)]
+fn gait(line: &[u8]) -> Result<Command, Misread> {
+    let mut misread = Misread::Unknown;
+    for id in GaitId::all() {
+        let name = id.load().name;
+        let (mut said, mut meant) = (Words(line), Words(&name));
+        loop {
+            match (said.next(), meant.next()) {
+                ([], []) => return Ok(Command::Gait(id)),
+                (_, []) => misread = Misread::Surplus,
+                ([], _) => misread = Misread::Incomplete,
+                (word, other) if word == other => continue,
+                _ => {}
+            }
+            break;
+        }
+    }
+    Err(misread)
+}
+
+/// The one whole number that is all there is; 65535 stands for more than that.
+fn whole(mut words: Words) -> Option<u16> {
+    let (digits, rest) = number(words.next());
+    if rest.is_empty() && words.is_done() {
+        digits
+    } else {
+        None
+    }
+}
+
+/// An angle with at most two decimals, in hundredths.
+#[inline(never)]
+fn centideg(word: &[u8]) -> Option<i32> {
+    let (negative, digits) = match word {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] => (false, digits),
+        digits => (false, digits),
+    };
+    let (degrees, rest) = number(digits);
+    let (tenths, hundredths) = match rest {
+        [] | [b'.'] => (0, 0),
+        [b'.', tenths] => (digit(*tenths)?, 0),
+        [b'.', tenths, hundredths] => (digit(*tenths)?, digit(*hundredths)?),
+        _ => return None,
+    };
+    let size = i32::from(degrees?) * 100 + i32::from(tenths * 10 + hundredths);
+    Some(if negative { -size } else { size })
+}
+
+/// Leading digits as a number, saturating, and what follows them.
+#[inline(never)]
+fn number(word: &[u8]) -> (Option<u16>, &[u8]) {
+    let (mut value, mut rest) = (None, word);
+    while let [first, others @ ..] = rest
+        && let Some(digit) = digit(*first)
+    {
+        let so_far = value.unwrap_or(0);
+        // 6553 and one more digit is where sixteen bits may end.
+        value = Some(if so_far < 6553 {
+            so_far * 10 + digit
+        } else {
+            u16::MAX
+        });
+        rest = others;
+    }
+    (value, rest)
+}
+
+fn digit(byte: u8) -> Option<u16> {
+    byte.is_ascii_digit().then(|| u16::from(byte - b'0'))
+}

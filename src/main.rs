@@ -1,0 +1,62 @@
+//! The firmware: the core on an Arduino UNO.
+//!
+//! One loop, woken by the tick of the pulses or by a byte. It takes input only
+//! while the serial line has room for the longest answer, so it never waits for
+//! a listener, and computes a frame for every tick, also for ticks that it was
+//! late for, so the pace is the timer's and not the processor's.
+
+#![no_std]
+#![no_main]
+#![deny(unsafe_op_in_unsafe_fn)]
+#![feature(abi_avr_interrupt, asm_experimental_arch)]
+
+use lizard::console::{Console, Counters, LONGEST_LINE};
+use panic_halt as _;
+
+mod board;
+
+use board::{led, pulses, serial, sleep};
+
+/// Frames of half a heartbeat: on and off for half a second each, and five
+/// times as fast while the guard holds the robot.
+const HEARTBEAT: u32 = 25;
+const ALARM: u32 = 5;
+
+#[avr_device::entry]
+fn main() -> ! {
+    board::start();
+    let mut console = Console::new();
+    let mut seen = pulses::ticks();
+    loop {
+        while serial::room() >= LONGEST_LINE {
+            if console.has_news() {
+                let counters = Counters {
+                    late: pulses::late(),
+                    rx_lost: serial::lost(),
+                };
+                let Ok(()) = console.speak(&mut serial::Writer, counters);
+            } else if let Some(byte) = serial::read() {
+                console.hear(byte);
+            } else {
+                break;
+            }
+        }
+        if pulses::ticks() != seen {
+            seen = seen.wrapping_add(1);
+            pulses::submit(console.frame().0);
+            led::set(beat(&console));
+        } else {
+            sleep::until_tick_or_byte(seen);
+        }
+    }
+}
+
+/// The LED's heartbeat.
+fn beat(console: &Console) -> bool {
+    let half = if console.motion().hazard().is_some() {
+        ALARM
+    } else {
+        HEARTBEAT
+    };
+    (console.motion().frames() / half) & 1 == 0
+}

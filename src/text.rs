@@ -1,0 +1,151 @@
+//! Every sentence that the robot says, kept in flash.
+//!
+//! A string literal of an AVR program is copied to its 2 KiB of RAM at start.
+//! The sentences here stay in flash as one run of bytes and are fetched byte
+//! by byte when they are printed.
+
+use core::ops::Range;
+
+use lizard_avr::flash;
+use ufmt::uWrite;
+
+macro_rules! texts {
+    ($($name:ident = $sentence:expr;)*) => {
+        /// A sentence, or a part of one.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        #[allow(missing_docs, reason = "each name is followed by its sentence")]
+        pub enum Text { $($name),* }
+
+        const SENTENCES: &[&str] = &[$($sentence),*];
+    };
+}
+
+texts! {
+    // The banner and information lines.
+    Banner = "# lizard ";
+    Version = env!("CARGO_PKG_VERSION");
+    BannerTables = " tables ";
+    BannerEnd = ", send help for the commands";
+    WatchTime = "# t=";
+    WatchPose = " pose=";
+    Held = "# held in the last safe pose: ";
+
+    // Help, a line each.
+    HelpGaits = "# gaits:";
+    HelpStop = "# stop: freeze in this pose";
+    HelpRest = "# rest: end the pulses, servos go limp; stand wakes them";
+    HelpSpeed = "# speed <10..100>: pace of gaits in percent";
+    HelpPose = "# pose <A1> <A2> <A3> <A4>: go to chassis angles in degrees";
+    HelpStatus = "# status: gait, phase, pose, margins and counters";
+    HelpWatch = "# watch <n>: report the pose every n frames, 0 ends it";
+    HelpHelp = "# help or ?: this list";
+
+    // Answers, and the words of commands.
+    Ok = "ok ";
+    OkHelp = "ok help";
+    OkGait = "ok gait=";
+    Help = "help";
+    Stop = "stop";
+    Rest = "rest";
+    Pose = "pose";
+    Speed = "speed";
+    Watch = "watch";
+    Status = "status";
+    QuestionMark = "?";
+    StatusPhase = " phase=";
+    StatusMargin = " margin=";
+    StatusSpeed = " speed=";
+    StatusFrames = " frames=";
+    StatusLate = " late=";
+    StatusRxLost = " rx_lost=";
+    StatusGuard = " guard=";
+    GuardClear = "clear";
+    GuardHeld = "held";
+    Err = "err ";
+
+    // Reasons.
+    Unknown = "unknown command, send help for the list";
+    Surplus = "this command takes no argument";
+    Incomplete = "this command wants one more word";
+    SpeedWants = "speed wants one whole number, 10..100";
+    SpeedRange = "speed must be 10..100";
+    WatchWants = "watch wants one whole number, 0..10000";
+    WatchRange = "watch must be 0..10000";
+    PoseWants = "pose wants four angles in degrees, at most two decimals";
+    Beyond = " must be within its travel, ";
+    Type2Head = "type-2 margin of the head";
+    Type2Tail = "type-2 margin of the tail";
+    Type1 = "type-1 margin of ";
+    Leg = "leg margin of ";
+    Is = " is ";
+    Least = ", at least ";
+    Left = "left";
+    Right = "right";
+    Slider = " slider is at ";
+    Within = " mm, stroke ";
+    TooLong = "a line has at most 63 characters";
+    Resting = "servos are resting, send stand first";
+}
+
+const COUNT: usize = SENTENCES.len();
+const LENGTH: usize = starts()[COUNT] as usize;
+
+flash! {
+    const BYTES: [u8; LENGTH] = bytes();
+    const STARTS: [u16; COUNT + 1] = starts();
+}
+
+impl Text {
+    /// Prints the sentence.
+    #[inline(never)]
+    pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
+        for at in self.place() {
+            out.write_char(char::from(BYTES.at(at).load() & 0x7f))?;
+        }
+        Ok(())
+    }
+
+    /// True if the sentence is just this word.
+    #[inline(never)]
+    pub fn is(self, word: &[u8]) -> bool {
+        let place = self.place();
+        place.len() == word.len()
+            && place
+                .zip(word)
+                .all(|(at, byte)| BYTES.at(at).load() == *byte)
+    }
+
+    fn place(self) -> Range<usize> {
+        let start = |index: usize| usize::from(STARTS.at(index).load());
+        start(self as usize)..start(self as usize + 1)
+    }
+}
+
+const fn bytes() -> [u8; LENGTH] {
+    let mut bytes = [0; LENGTH];
+    let starts = starts();
+    let mut index = 0;
+    while index < COUNT {
+        let sentence = SENTENCES[index].as_bytes();
+        assert!(sentence.is_ascii());
+        let mut at = 0;
+        while at < sentence.len() {
+            bytes[starts[index] as usize + at] = sentence[at];
+            at += 1;
+        }
+        index += 1;
+    }
+    bytes
+}
+
+/// Where each sentence starts; the last entry is where the last one ends.
+const fn starts() -> [u16; COUNT + 1] {
+    let mut starts = [0; COUNT + 1];
+    let mut index = 0;
+    while index < COUNT {
+        starts[index + 1] = starts[index] + SENTENCES[index].len() as u16;
+        index += 1;
+    }
+    starts
+}
