@@ -4,63 +4,37 @@
 //! board: `boot`, `say("walk")`, wait some frames, look at the pulses.
 
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte, State, Uno, pulses};
+use lizard_host::sim::console::{Console, Line};
+use lizard_host::sim::frame::{FRAME, Frame, frames, latest_start, next_start, opens, servo_pins};
+use lizard_robot::Robot;
+use simulated_uno::{CYCLES_PER_MS, Fidelity, SerialByte, State, Uno};
 
-/// Pins of the servos A1 (front left), A2 (front right), A3 (back right) and
-/// A4 (back left), the order of every array of four here.
-pub const SERVO_PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::d(11), Pin::d(3)];
-/// Cycles from a pulse of a servo to its next: 20 ms.
-pub const FRAME: u64 = 20 * CYCLES_PER_MS;
-
-/// Cycles between two servos' pulses.
-const SLOT: u64 = FRAME / 5;
 /// The longest wait for an answer, ms. The console promises much less.
 const PATIENCE_MS: u64 = 200;
+/// Cycles that a byte of a sender takes, rounded up.
+const BYTE_CYCLES: u64 = 1400;
 
-/// The servo pulses of one 20 ms frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Frame {
-    /// Cycle at which A1's pulse of this frame starts, or would.
-    pub start: u64,
-    /// Width in cycles (62.5 ns) of each servo's pulse, `None` without one.
-    pub widths: [Option<u64>; 4],
-    /// Cycle at which each pulse starts.
-    pub starts: [Option<u64>; 4],
-}
-
-impl Frame {
-    /// The four widths, if all four servos have a pulse.
-    #[must_use]
-    pub fn all(&self) -> Option<[u64; 4]> {
-        let [a1, a2, a3, a4] = self.widths;
-        Some([a1?, a2?, a3?, a4?])
-    }
-
-    /// The four widths in cycles.
-    ///
-    /// # Panics
-    /// If a servo has no pulse in this frame.
-    #[must_use]
-    pub fn widths(&self) -> [u64; 4] {
-        self.all()
-            .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
-    }
-
-    /// Whether no servo has a pulse: the robot rests.
-    #[must_use]
-    pub fn is_silent(&self) -> bool {
-        self.widths == [None; 4]
-    }
+/// The robot of this repository's robot.toml.
+///
+/// # Panics
+/// If robot.toml is wrong, with its words.
+#[must_use]
+pub fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robot.toml");
+        Robot::load(path).unwrap_or_else(|error| panic!("{error}"))
+    });
+    &ROBOT
 }
 
 /// A simulated UNO with the firmware in flash and a person at its console.
 pub struct FirmwareBench {
-    /// The board, for all that the bench has no word for.
+    /// The board, for all that the bench has no word for. Take its received
+    /// bytes and its edges through the bench only.
     pub uno: Uno,
-    bytes: Vec<SerialByte>,
-    lines: Vec<(u64, String)>,
-    partial: String,
+    console: Console,
     unread: usize,
     anchor: Option<u64>,
 }
@@ -69,11 +43,9 @@ impl FirmwareBench {
     /// The firmware that `make firmware` leaves, or what `LIZARD_ELF` names.
     #[must_use]
     pub fn elf() -> PathBuf {
+        let built = "../target/avr-atmega328p/release/lizard.elf";
         std::env::var_os("LIZARD_ELF").map_or_else(
-            || {
-                Path::new(env!("CARGO_MANIFEST_DIR"))
-                    .join("../target/avr-atmega328p/release/lizard.elf")
-            },
+            || Path::new(env!("CARGO_MANIFEST_DIR")).join(built),
             PathBuf::from,
         )
     }
@@ -121,16 +93,14 @@ impl FirmwareBench {
     pub fn with_board(uno: Uno) -> Self {
         Self {
             uno,
-            bytes: Vec::new(),
-            lines: Vec::new(),
-            partial: String::new(),
+            console: Console::default(),
             unread: 0,
             anchor: None,
         }
     }
 
-    /// Sends a line and returns its answer, the line that begins with `ok` or
-    /// `err`. Lines of information before it are kept in [`Self::lines`].
+    /// Sends a line and returns its answer, the first line that is not
+    /// information. What came before is in [`Self::lines`].
     ///
     /// # Panics
     /// If no answer comes within 200 ms after the line has been sent.
@@ -143,8 +113,7 @@ impl FirmwareBench {
     /// # Panics
     /// See [`Self::say`].
     pub fn ask(&mut self, line: &str) -> (Vec<String>, String) {
-        self.collect();
-        self.unread = self.lines.len();
+        self.unread = self.lines().len();
         self.send(line);
         let mut notes = Vec::new();
         while let Some(answer) = self.next_line(PATIENCE_MS) {
@@ -163,15 +132,16 @@ impl FirmwareBench {
     }
 
     /// The next line not yet returned, waited for at most `ms` beyond the time
-    /// the sender needs. Line endings are gone.
+    /// the sender needs. Line ends are gone.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
-        let sending = self.uno.unsent() as u64 * 1400;
+        let sending = self.uno.unsent() as u64 * BYTE_CYCLES;
         let end = self.uno.cycle() + sending + ms * CYCLES_PER_MS;
         loop {
-            self.collect();
-            if let Some((_, line)) = self.lines.get(self.unread) {
+            let unread = self.unread;
+            if let Some(line) = self.lines().get(unread) {
+                let text = line.text.clone();
                 self.unread += 1;
-                return Some(line.clone());
+                return Some(text);
             }
             if self.uno.cycle() >= end || *self.uno.state() != State::Alive {
                 return None;
@@ -180,30 +150,16 @@ impl FirmwareBench {
         }
     }
 
-    /// Every line the firmware has sent since power-on, with the cycle at which
-    /// it ended.
-    pub fn lines(&mut self) -> &[(u64, String)] {
-        self.collect();
-        &self.lines
+    /// Every line the firmware has sent since power-on.
+    pub fn lines(&mut self) -> &[Line] {
+        self.console.collect(&mut self.uno);
+        self.console.lines()
     }
 
     /// Every byte the firmware has sent since power-on.
     pub fn bytes(&mut self) -> &[SerialByte] {
-        self.collect();
-        &self.bytes
-    }
-
-    fn collect(&mut self) {
-        for byte in self.uno.take_received() {
-            self.bytes.push(byte);
-            match byte.byte {
-                b'\n' => self
-                    .lines
-                    .push((byte.cycle, std::mem::take(&mut self.partial))),
-                b'\r' => {}
-                other => self.partial.push(char::from(other)),
-            }
-        }
+        self.console.collect(&mut self.uno);
+        self.console.bytes()
     }
 
     /// Lets time pass.
@@ -228,47 +184,15 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
     pub fn run_for_frames(&mut self, count: u64) -> Vec<Frame> {
-        self.find_anchor();
+        let pins = servo_pins(robot());
         let now = self.uno.cycle();
-        let anchor = self.anchor.unwrap_or(now + SLOT / 2);
-        // The first frame whose A1 pulse cannot have begun yet.
-        let next = anchor + (now + SLOT / 2).saturating_sub(anchor).div_ceil(FRAME) * FRAME;
-        let first = next - SLOT / 2;
-        self.run_until(first);
+        self.anchor = latest_start(&self.uno.edges(), pins).or(self.anchor);
+        let start = self
+            .anchor
+            .map_or(now + FRAME, |anchor| next_start(anchor, now));
+        self.run_until(opens(start));
         self.uno.take_edges();
-        self.run_until(first + count * FRAME);
-        let frames = self.frames(next, count);
-        self.find_anchor();
-        frames
-    }
-
-    /// Cuts the recorded edges into frames; the first begins at cycle `start`.
-    fn frames(&self, start: u64, count: u64) -> Vec<Frame> {
-        let mut frames: Vec<Frame> = (0..count)
-            .map(|n| Frame {
-                start: start + n * FRAME,
-                widths: [None; 4],
-                starts: [None; 4],
-            })
-            .collect();
-        let edges = self.uno.edges();
-        for (servo, pin) in SERVO_PINS.iter().enumerate() {
-            for pulse in pulses(&edges, *pin) {
-                let frame = (pulse.start + SLOT / 2 - start) / FRAME;
-                if let Some(frame) = frames.get_mut(frame as usize) {
-                    frame.widths[servo] = Some(pulse.width);
-                    frame.starts[servo] = Some(pulse.start);
-                }
-            }
-        }
-        frames
-    }
-
-    fn find_anchor(&mut self) {
-        let edges = self.uno.edges();
-        let rises = edges
-            .iter()
-            .filter(|edge| edge.high && edge.pin == SERVO_PINS[0]);
-        self.anchor = rises.map(|edge| edge.cycle).next_back().or(self.anchor);
+        self.run_until(opens(start + count * FRAME));
+        frames(&self.uno.edges(), pins, start, count)
     }
 }

@@ -4,4 +4,6 @@
 pub mod avr_gcc;
 mod bench;
 
-pub use bench::{FRAME, FirmwareBench, Frame, SERVO_PINS};
+pub use bench::{FirmwareBench, robot};
+pub use lizard_host::sim::console::Line;
+pub use lizard_host::sim::frame::{FRAME, Frame};

@@ -3,11 +3,12 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+pub mod draw;
 mod failure;
-pub mod gaits;
 pub mod paper;
 mod pose_args;
 mod robot_file;
+pub mod sim;
 
 pub use failure::Failure;
 pub use pose_args::PoseArgs;

@@ -41,6 +41,12 @@ impl Servo {
         (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
     }
 
+    /// The sweep from neutral that a pulse width (us) asks for, deg,
+    /// counter-clockwise positive.
+    pub fn sweep(&self, pulse: f64) -> f64 {
+        (pulse - self.neutral_us) / self.us_per_degree
+    }
+
     /// The pulse width for a chassis-frame angle, us.
     pub fn pulse(&self, angle: f64) -> f64 {
         self.neutral_us + self.us_per_degree * wrap(angle - self.neutral)

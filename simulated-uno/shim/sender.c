@@ -47,6 +47,8 @@ static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *para
 	struct uno *uno = param;
 	struct sender *sender = &uno->sender;
 	sender->busy = false;
+	struct stamped_byte *heard = list_push(&uno->heard);
+	*heard = (struct stamped_byte){ avr->cycle, sender->byte };
 	if (uno->data_sheet)
 		usart_receive(uno, sender->byte, sender->cycles_per_bit);
 	else

@@ -154,7 +154,7 @@ struct uno *uno_new(bool data_sheet, uint16_t pins, double baud)
 	uno->data_sheet = data_sheet;
 	uno->pins = pins;
 	uno->edges.size = sizeof(struct edge);
-	uno->received.size = uno->marks.size = sizeof(struct stamped_byte);
+	uno->received.size = uno->heard.size = uno->marks.size = sizeof(struct stamped_byte);
 	uno->calls.size = sizeof(struct call);
 	uno->sender.queue.size = 1;
 	uno->sender.cycles_per_bit = UNO_FREQUENCY / baud;
@@ -205,6 +205,7 @@ void uno_free(struct uno *uno)
 	free(uno->avr);
 	free(uno->edges.items);
 	free(uno->received.items);
+	free(uno->heard.items);
 	free(uno->marks.items);
 	free(uno->calls.items);
 	free(uno->sender.queue.items);
@@ -381,6 +382,7 @@ uint32_t uno_data_size(const struct uno *uno) { return uno->avr->ramend + 1; }
 const struct vector_use *uno_vectors(const struct uno *uno) { return uno->vectors; }
 struct list *uno_edges(struct uno *uno) { return &uno->edges; }
 struct list *uno_received(struct uno *uno) { return &uno->received; }
+struct list *uno_heard(struct uno *uno) { return &uno->heard; }
 struct list *uno_marks(struct uno *uno) { return &uno->marks; }
 struct list *uno_calls(struct uno *uno) { return &uno->calls; }
 void uno_stop_at_line(struct uno *uno, bool on) { uno->stop_at_line = on; }

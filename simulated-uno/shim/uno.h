@@ -89,6 +89,7 @@ struct uno {
 	uint16_t levels;
 	struct list edges;          /* struct edge */
 	struct list received;       /* struct stamped_byte, UNO -> host */
+	struct list heard;          /* struct stamped_byte, host -> UNO, complete */
 	struct list marks;          /* struct stamped_byte, writes to GPIOR0 */
 
 	struct sender sender;

@@ -93,6 +93,7 @@ unsafe extern "C" {
     pub fn uno_vectors(uno: *const RawUno) -> *const RawVector;
     pub fn uno_edges(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_heard(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_marks(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_calls(uno: *mut RawUno) -> *mut RawList;
 }

@@ -1,8 +1,8 @@
 //! What a run leaves behind besides edges: bytes, marks, calls, interrupts.
 
-/// A byte that the UNO sent.
+/// A byte on the serial line.
 ///
-/// Stamped with the end of its stop bit in [`crate::Fidelity::DataSheet`], and
+/// One that the UNO sent is stamped with the end of its stop bit in [`crate::Fidelity::DataSheet`], and
 /// with the store to UDR0 in [`crate::Fidelity::Stock`], which knows no frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SerialByte {

@@ -219,10 +219,7 @@ impl Uno {
     /// Every byte that the UNO has sent and nobody has taken.
     #[must_use]
     pub fn received(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_received, |raw: &RawByte| SerialByte {
-            cycle: raw.cycle,
-            byte: raw.byte,
-        })
+        self.list(ffi::uno_received, serial_byte)
     }
 
     /// Takes what the UNO has sent since the last call.
@@ -230,6 +227,13 @@ impl Uno {
         let bytes = self.received();
         self.clear(ffi::uno_received);
         bytes
+    }
+
+    /// Every byte that has come through the line to the UNO, with the cycle at
+    /// which it was complete there, lost bytes included.
+    #[must_use]
+    pub fn heard(&self) -> Vec<SerialByte> {
+        self.list(ffi::uno_heard, serial_byte)
     }
 
     /// Edges of D2 to D13 since power-on or the last [`Uno::take_edges`].
@@ -382,6 +386,13 @@ impl Uno {
     fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
         // SAFETY: the shim allows its caller to set the count to 0.
         unsafe { (*of(self.raw)).count = 0 }
+    }
+}
+
+fn serial_byte(raw: &RawByte) -> SerialByte {
+    SerialByte {
+        cycle: raw.cycle,
+        byte: raw.byte,
     }
 }
 

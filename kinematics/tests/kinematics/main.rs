@@ -4,5 +4,4 @@ mod five_bar;
 mod lizard;
 mod motion;
 mod reference;
-mod singular;
 mod workspace;

@@ -4,7 +4,6 @@ use std::sync::LazyLock;
 
 use lizard_robot::{Gait, Robot};
 
-mod docs;
 mod golden;
 mod predictions;
 mod refusals;

@@ -1,0 +1,466 @@
+//! The mechanism from above, head up: chassis, five-bars, sliders and legs.
+
+use lizard_kinematics::{Solution, Vector, sin_cos, wrap};
+use lizard_robot::Robot;
+use lizard_robot::servo::NAMES;
+use svg::Document;
+use svg::node::element::{Group, Path};
+
+use super::ink::{Anchor, DARK, GREY, SERVO, circle, line, rectangle, text};
+
+const SIZE: (f64, f64) = (1000.0, 1110.0);
+const PIXELS_PER_MM: f64 = 3.1;
+
+/// An SG-90's body seen from above and how far its shaft is from its end, mm.
+const SERVO_BODY: (f64, f64) = (12.2, 22.8);
+const SERVO_SHAFT: f64 = 6.0;
+
+const SKIN: &str = "#e3ecdc";
+const STEEL: &str = "#555555";
+const FRAME: &str = "#f4f1ea";
+
+/// A joint of the robot: mm, chassis frame.
+type Joint = Vector;
+
+/// The robot at a solved pose, as SVG text; with names and measures if
+/// `labels`.
+#[must_use]
+pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
+    let view = View { robot, solution };
+    let mut group = Group::new().add(rectangle((0.0, 0.0), SIZE, "white"));
+    group = view.skin(group);
+    for servo in 0..4 {
+        group = view.leg(group, servo);
+    }
+    group = view.chassis(group);
+    group = view.slider(group, [0, 3]);
+    group = view.slider(group, [1, 2]);
+    group = view.five_bar(group, [0, 1], solution.head_point());
+    group = view.five_bar(group, [3, 2], solution.tail_point());
+    if labels {
+        group = view.labels(group);
+    }
+    Document::new()
+        .set("viewBox", (0.0, 0.0, SIZE.0, SIZE.1))
+        .set("width", SIZE.0)
+        .set("height", SIZE.1)
+        .add(group)
+        .to_string()
+}
+
+struct View<'a> {
+    robot: &'a Robot,
+    solution: &'a Solution,
+}
+
+/// From the chassis frame to the page.
+fn page(joint: Joint) -> (f64, f64) {
+    (
+        SIZE.0 / 2.0 + PIXELS_PER_MM * joint.x,
+        SIZE.1 / 2.0 - PIXELS_PER_MM * joint.y,
+    )
+}
+
+fn bar(from: Joint, to: Joint, colour: &str, mm: f64) -> svg::node::element::Line {
+    line(page(from), page(to), colour, mm * PIXELS_PER_MM)
+}
+
+fn pivot(at: Joint, mm: f64) -> svg::node::element::Circle {
+    circle(page(at), mm * PIXELS_PER_MM, "white")
+        .set("stroke", DARK)
+        .set("stroke-width", 2.0)
+}
+
+impl View<'_> {
+    fn angles(&self) -> [f64; 4] {
+        self.solution.pose.into()
+    }
+
+    fn shafts(&self) -> [Joint; 4] {
+        self.robot.lizard.shafts()
+    }
+
+    /// Tip of a servo's crank.
+    fn crank_tip(&self, servo: usize) -> Joint {
+        let (head, tail) = (&self.solution.head, &self.solution.tail);
+        let shaft_y = Vector::new(0.0, self.shafts()[servo].y);
+        shaft_y
+            + match servo {
+                0 => head.left_tip,
+                1 => head.right_tip,
+                2 => tail.right_tip.mirrored(),
+                _ => tail.left_tip.mirrored(),
+            }
+    }
+
+    /// A lizard's outline, pale, so that a mechanism looks like an animal.
+    fn skin(&self, group: Group) -> Group {
+        let at = |x: f64, y: f64| {
+            let (x, y) = page(Vector::new(x, y));
+            format!("{x:.1} {y:.1}")
+        };
+        let around = |point: Joint, x: f64, y: f64| at(point.x + x, point.y + y);
+        let head = self.solution.head_point();
+        let tail = self.solution.tail_point();
+        let d = [
+            format!("M {}", around(head, 0.0, 30.0)),
+            format!(
+                "C {} {} {}",
+                around(head, 18.0, 30.0),
+                around(head, 27.0, 2.0),
+                at(27.0, 84.0)
+            ),
+            format!(
+                "C {} {} {}",
+                at(44.0, 50.0),
+                at(44.0, -50.0),
+                at(27.0, -84.0)
+            ),
+            format!(
+                "C {} {} {}",
+                around(tail, 22.0, 0.0),
+                around(tail, 6.0, -6.0),
+                around(tail, 3.0, -26.0)
+            ),
+            format!("L {}", around(tail, -3.0, -26.0)),
+            format!(
+                "C {} {} {}",
+                around(tail, -6.0, -6.0),
+                around(tail, -22.0, 0.0),
+                at(-27.0, -84.0)
+            ),
+            format!(
+                "C {} {} {}",
+                at(-44.0, -50.0),
+                at(-44.0, 50.0),
+                at(-27.0, 84.0)
+            ),
+            format!(
+                "C {} {} {} Z",
+                around(head, -27.0, 2.0),
+                around(head, -18.0, 30.0),
+                around(head, 0.0, 30.0)
+            ),
+        ];
+        let outline = Path::new().set("d", d.join(" ")).set("fill", SKIN);
+        let eye = |x: f64| circle(page(head + Vector::new(x, 12.0)), 6.5, DARK);
+        group.add(outline).add(eye(-9.0)).add(eye(9.0))
+    }
+
+    fn chassis(&self, mut group: Group) -> Group {
+        let shafts = self.shafts();
+        let half = shafts[1].x.max(shafts[2].x) + 9.0;
+        let top = shafts[0].y + 8.0;
+        let corner = page(Vector::new(-half, top));
+        let size = (2.0 * half * PIXELS_PER_MM, 2.0 * top * PIXELS_PER_MM);
+        group = group.add(
+            rectangle(corner, size, FRAME)
+                .set("rx", 16)
+                .set("stroke", "#b8b0a0")
+                .set("stroke-width", 2),
+        );
+        for (servo, shaft) in shafts.into_iter().enumerate() {
+            // The body reaches from the shaft towards the middle.
+            let outward = shaft.y.signum();
+            let (low, high) = (
+                shaft.y + outward * SERVO_SHAFT,
+                shaft.y - outward * (SERVO_BODY.1 - SERVO_SHAFT),
+            );
+            let corner = page(Vector::new(shaft.x - SERVO_BODY.0 / 2.0, low.max(high)));
+            let size = (SERVO_BODY.0 * PIXELS_PER_MM, SERVO_BODY.1 * PIXELS_PER_MM);
+            group = group.add(
+                rectangle(corner, size, SERVO[servo])
+                    .set("rx", 4)
+                    .set("fill-opacity", 0.35),
+            );
+        }
+        group
+    }
+
+    /// The telescope between the arms of a front and a rear servo.
+    fn slider(&self, mut group: Group, [front, rear]: [usize; 2]) -> Group {
+        let slider = if front == 0 {
+            self.solution.left
+        } else {
+            self.solution.right
+        };
+        let rear_shaft = self.shafts()[rear];
+        let (low, high) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
+        let links = &self.robot.lizard.links;
+        let tube = if front == 0 { links.l12 } else { links.l17 };
+        let along = (high - low) * (1.0 / slider.d);
+        group =
+            group
+                .add(bar(low, high, STEEL, 1.8))
+                .add(bar(low, low + along * tube, "#9a9a9a", 5.0));
+        for (servo, tip) in [(front, high), (rear, low)] {
+            group = group
+                .add(bar(self.shafts()[servo], tip, SERVO[servo], 3.0).set("stroke-opacity", 0.75))
+                .add(pivot(tip, 2.0));
+        }
+        group
+    }
+
+    /// Two cranks, two couplers and the point that they carry.
+    fn five_bar(&self, mut group: Group, servos: [usize; 2], apex: Joint) -> Group {
+        for servo in servos {
+            group = group.add(bar(self.crank_tip(servo), apex, STEEL, 3.4));
+        }
+        for servo in servos {
+            let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
+            group = group
+                .add(bar(shaft, tip, SERVO[servo], 4.6))
+                .add(pivot(tip, 2.3))
+                .add(circle(page(shaft), 3.4 * PIXELS_PER_MM, DARK))
+                .add(circle(page(shaft), 1.2 * PIXELS_PER_MM, "white"));
+        }
+        group.add(
+            circle(page(apex), 3.4 * PIXELS_PER_MM, "#f0e442")
+                .set("stroke", DARK)
+                .set("stroke-width", 2.5),
+        )
+    }
+
+    /// Where the middle of a leg's ground link is, and the directions of its
+    /// ground link and its crank, deg.
+    ///
+    /// The paper gives no mounting. Drawn is what the contact model takes: at
+    /// neutral the foot is straight beside the hip, swept by `mount`.
+    fn leg_frame(&self, servo: usize) -> (Joint, f64, f64) {
+        let feet = &self.robot.ground.feet;
+        let left = matches!(servo, 0 | 3);
+        let front = servo < 2;
+        let hip = Vector::new(
+            if left { -feet.hip_side } else { feet.hip_side },
+            if front {
+                feet.hip_forward
+            } else {
+                -feet.hip_forward
+            },
+        );
+        // Outward sweep turns a left front leg clockwise, and so on.
+        let straight = if left { 180.0 } else { 0.0 };
+        let mount = if left == front {
+            -feet.mount
+        } else {
+            feet.mount
+        };
+        let turned = straight + mount - self.robot.servos[servo].neutral;
+        (hip, wrap(turned), wrap(turned + self.angles()[servo]))
+    }
+
+    fn foot(&self, servo: usize) -> Joint {
+        let (hip, _, crank) = self.leg_frame(servo);
+        hip + Vector::direction(crank) * self.robot.lizard.leg.crank
+    }
+
+    fn leg(&self, mut group: Group, servo: usize) -> Group {
+        let leg = &self.robot.lizard.leg;
+        let (hip, ground, crank) = self.leg_frame(servo);
+        let half = Vector::direction(ground) * (leg.ground / 2.0);
+        let reach = Vector::direction(crank) * leg.crank;
+        let colour = SERVO[servo];
+        group = group.add(bar(hip - half, hip + half, "#c9c3b6", 5.0));
+        for end in [hip - half, hip + half] {
+            group = group.add(bar(end, end + reach, colour, 3.2).set("stroke-opacity", 0.8));
+        }
+        group = group.add(bar(hip - half + reach, hip + half + reach, colour, 4.2));
+        for end in [hip - half, hip + half] {
+            group = group.add(pivot(end, 1.7)).add(pivot(end + reach, 1.7));
+        }
+        let foot = page(hip + reach);
+        let pad = (8.0 * PIXELS_PER_MM, 11.0 * PIXELS_PER_MM);
+        group.add(rectangle((foot.0 - pad.0 / 2.0, foot.1 - pad.1 / 2.0), pad, DARK).set("rx", 10))
+    }
+
+    fn labels(&self, mut group: Group) -> Group {
+        let angles = self.angles();
+        for servo in 0..4 {
+            let shaft = self.shafts()[servo];
+            let left = matches!(servo, 0 | 3);
+            let side = if left { -1.0 } else { 1.0 };
+            let up = shaft.y.signum();
+            let place = Vector::new(side * 112.0, up * 112.0);
+            let anchor = if left { Anchor::End } else { Anchor::Start };
+            let (x, y) = page(place);
+            let toward = page(shaft + Vector::new(side * 3.5, up * 2.0));
+            let name = format!("{} · D{}", NAMES[servo], self.robot.servos[servo].pin);
+            let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
+            let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
+            let begin = (x + 6.0 * -side, y - 4.0);
+            group = group
+                .add(line(begin, toward, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
+                .add(
+                    text(&name, (x, y - 8.0), 20.0, SERVO[servo], anchor)
+                        .set("font-weight", "bold"),
+                )
+                .add(text(&angle, (x, y + 16.0), 18.0, DARK, anchor));
+        }
+        group = self.part_labels(group);
+        compass(group)
+    }
+
+    fn part_labels(&self, mut group: Group) -> Group {
+        let solution = self.solution;
+        let head = solution.head_point();
+        let tail = solution.tail_point();
+        let coordinates = |name: &str, at: Joint| format!("{name} ({:.1}, {:.1}) mm", at.x, at.y);
+        let (x, y) = page(head + Vector::new(0.0, 36.0));
+        group = group.add(text(
+            &coordinates("head", head),
+            (x, y),
+            18.0,
+            DARK,
+            Anchor::Middle,
+        ));
+        let (x, y) = page(tail + Vector::new(0.0, -34.0));
+        group = group.add(text(
+            &coordinates("tail", tail),
+            (x, y),
+            18.0,
+            DARK,
+            Anchor::Middle,
+        ));
+        for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
+            let anchor = if side < 0.0 {
+                Anchor::End
+            } else {
+                Anchor::Start
+            };
+            let (x, y) = page(Vector::new(side * 50.0, 0.0));
+            let travel = if slider.s.abs() < 0.05 {
+                "s = 0.0 mm".to_owned()
+            } else {
+                format!("s = {:+.1} mm", slider.s)
+            };
+            group = group
+                .add(text("slider", (x, y - 4.0), 17.0, GREY, anchor))
+                .add(text(&travel, (x, y + 18.0), 17.0, GREY, anchor));
+        }
+        for servo in 0..4 {
+            let foot = self.foot(servo);
+            let side = foot.x.signum();
+            let anchor = if side < 0.0 {
+                Anchor::End
+            } else {
+                Anchor::Start
+            };
+            let (x, y) = page(foot + Vector::new(side * 24.0, -2.0));
+            let name = [
+                "front left foot",
+                "front right foot",
+                "back right foot",
+                "back left foot",
+            ][servo];
+            group = group.add(text(name, (x, y), 17.0, GREY, anchor));
+        }
+        group
+    }
+}
+
+/// The axes of the chassis frame and a scale.
+fn compass(mut group: Group) -> Group {
+    let origin = (50.0, SIZE.1 - 50.0);
+    for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
+        let (sin, cos) = sin_cos(degrees);
+        let tip = (origin.0 + 62.0 * cos, origin.1 - 62.0 * sin);
+        let barb = |turn: f64| {
+            let (sin, cos) = sin_cos(degrees + turn);
+            (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
+        };
+        let at = if degrees == 0.0 {
+            (tip.0 + 10.0, tip.1 + 6.0)
+        } else {
+            (tip.0 - 10.0, tip.1 - 12.0)
+        };
+        group = group
+            .add(line(origin, tip, DARK, 2.0))
+            .add(line(tip, barb(155.0), DARK, 2.0))
+            .add(line(tip, barb(-155.0), DARK, 2.0))
+            .add(text(name, at, 16.0, DARK, Anchor::Start));
+    }
+    let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
+    let begin = (end.0 - 50.0 * PIXELS_PER_MM, end.1);
+    for at in [begin, end] {
+        group = group.add(line((at.0, at.1 - 7.0), (at.0, at.1 + 7.0), DARK, 2.0));
+    }
+    let middle = ((begin.0 + end.0) / 2.0, end.1 - 12.0);
+    group
+        .add(line(begin, end, DARK, 2.0))
+        .add(text("50 mm", middle, 16.0, DARK, Anchor::Middle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lizard_kinematics::Pose;
+
+    fn check(pose: Option<Pose>, verdict: impl Fn(&View)) {
+        let robot = Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right");
+        let pose = pose.unwrap_or_else(|| robot.neutral());
+        let solution = robot.lizard.solve(&pose).expect("the pose closes");
+        verdict(&View {
+            robot: &robot,
+            solution: &solution,
+        });
+    }
+
+    const ASKEW: [f64; 4] = [120.0, 50.0, 330.0, 200.0];
+
+    #[test]
+    fn every_drawn_link_has_its_length() {
+        for pose in [None, Some(ASKEW.into())] {
+            check(pose, |view| {
+                for servo in 0..4 {
+                    let tip = view.crank_tip(servo);
+                    let crank = tip - view.shafts()[servo];
+                    assert!((crank.length() - 30.0).abs() < 1e-9);
+                    assert!((wrap(crank.angle() - view.angles()[servo])).abs() < 1e-9);
+                    let point = if servo < 2 {
+                        view.solution.head_point()
+                    } else {
+                        view.solution.tail_point()
+                    };
+                    assert!(((point - tip).length() - 50.0).abs() < 1e-9);
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn at_neutral_each_foot_is_straight_beside_its_hip() {
+        check(None, |view| {
+            let feet: Vec<(f64, f64)> = (0..4)
+                .map(|servo| view.foot(servo))
+                .map(|foot| (foot.x.round(), foot.y.round()))
+                .collect();
+            assert_eq!(
+                feet,
+                [(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)]
+            );
+        });
+    }
+
+    #[test]
+    fn a_foot_goes_forward_where_the_gaits_say_so() {
+        use lizard_robot::servo::FORWARD;
+        check(None, |view| {
+            for servo in 0..4 {
+                let mut angles: [f64; 4] = view.angles();
+                angles[servo] += 10.0 * FORWARD[servo];
+                let before = view.foot(servo);
+                check(Some(angles.into()), |swept| {
+                    assert!(swept.foot(servo).y > before.y + 7.0);
+                });
+            }
+        });
+    }
+
+    #[test]
+    fn names_can_be_left_out() {
+        check(None, |view| {
+            assert!(top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
+            assert!(!top_view(view.robot, view.solution, false).contains("<text"));
+        });
+    }
+}

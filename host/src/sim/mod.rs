@@ -1,0 +1,221 @@
+//! `lizard sim`: the real firmware on a simulated UNO, with what it says, what
+//! its servos get, and where that would take the robot.
+
+pub mod analysis;
+pub mod console;
+pub mod frame;
+mod report;
+pub mod script;
+pub mod session;
+mod timeline;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lizard_robot::Robot;
+use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
+
+use crate::{Failure, RobotFile};
+use report::Report;
+use script::Script;
+use session::Recording;
+
+/// Run the firmware on a simulated Arduino UNO
+///
+/// Plays boot, walk, left, stop, rest unless told otherwise, prints the
+/// dialogue, a table of the servos and the predicted way, and draws servo
+/// angles and footfalls. Time is simulated: ten minutes take a few seconds.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
+    /// folder or one above it]
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// Play one gait: walk, trot, crawl, back, left, right, arc-left, arc-right,
+    /// look, or any other gait of the firmware
+    #[arg(long, value_name = "NAME", conflicts_with = "script")]
+    gait: Option<String>,
+    /// Play a file of lines `<ms since power-on> <command>`
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+    /// Simulated time in seconds [default: 12, or a second after the script]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    duration: Option<f64>,
+    /// Print everything, each frame's angles included, as one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Where the picture goes
+    #[arg(long, value_name = "FILE", default_value = "out/lizard-sim.svg")]
+    svg: PathBuf,
+    /// How faithful the chip is
+    #[arg(long, value_enum, default_value_t)]
+    fidelity: FidelityArg,
+    /// Take as long as the robot would
+    #[arg(long)]
+    realtime: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum FidelityArg {
+    /// Corrected by the ATmega328P's data sheet
+    #[default]
+    DataSheet,
+    /// simavr 1.6 as it is
+    Stock,
+}
+
+/// Longest run, seconds: a day.
+const LONGEST: f64 = 86_400.0;
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= LONGEST => Ok(value),
+        Ok(_) => Err(format!("it must be above 0 and at most {LONGEST}")),
+        Err(_) => Err("it is not a number".to_owned()),
+    }
+}
+
+/// Runs the firmware and shows what came of it.
+///
+/// # Errors
+/// No firmware, a wrong script, a firmware that dies, a file that cannot be
+/// written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let script = script(&args, &robot)?;
+    let elf = elf(args.elf.as_deref())?;
+    let fidelity = match args.fidelity {
+        FidelityArg::DataSheet => Fidelity::DataSheet,
+        FidelityArg::Stock => Fidelity::Stock,
+    };
+    let mut uno = Uno::load(&elf, fidelity).map_err(|error| Failure::Input(error.to_string()))?;
+    let pins = frame::servo_pins(&robot);
+    let bar = progress_bar(script.end_ms);
+    let recording = session::play(&mut uno, pins, &script, args.realtime, |ms| {
+        bar.set_position(ms)
+    });
+    bar.finish_and_clear();
+
+    let instants = analysis::instants(&robot, &recording.frames);
+    write_file(&args.svg, &timeline::draw(&robot, &instants, &script))?;
+    let report = Report {
+        elf: elf.display().to_string(),
+        fidelity: match fidelity {
+            Fidelity::DataSheet => "data-sheet",
+            Fidelity::Stock => "stock",
+        },
+        seconds: recording.cycles as f64 / FREQUENCY as f64,
+        wall_seconds: recording.wall.as_secs_f64(),
+        servos: analysis::servos(&robot, &recording.frames, &instants, None),
+        safety: analysis::safety(&robot, &instants),
+        way: analysis::way(&robot, &instants, &script),
+        most_pins_high: recording.most_pins_high,
+        asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
+        flash: uno.image().flash_used(),
+        static_ram: uno.image().static_ram(),
+        stack_spare: uno.stack_spare(),
+        overruns: uno.overruns(),
+        resets: uno.resets(),
+        ended: ended(&recording),
+        svg: Some(args.svg.display().to_string()),
+        dialogue: recording.dialogue,
+        frames: instants,
+    };
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer(&mut out, &report)?;
+        writeln!(out)?;
+    } else {
+        report.print(&mut out)?;
+    }
+    match recording.state {
+        State::Alive => Ok(()),
+        _ => Err(Failure::Impossible(report.ended)),
+    }
+}
+
+fn ended(recording: &Recording) -> String {
+    match &recording.state {
+        State::Alive => "the firmware is alive".to_owned(),
+        State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
+        State::Crashed { pc, message } => format!("the firmware crashed at {pc:#06x}: {message}"),
+    }
+}
+
+fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
+    let given = args.duration.map(|seconds| (seconds * 1000.0) as u64);
+    if let Some(path) = &args.script {
+        let name = path.display();
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+        let script =
+            Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        return Ok(Script {
+            end_ms: given.unwrap_or(script.end_ms),
+            ..script
+        });
+    }
+    if let Some(gait) = &args.gait
+        && robot.gait(gait).is_none()
+    {
+        let names: Vec<&str> = robot.gaits.iter().map(|gait| gait.name.as_str()).collect();
+        let names = names.join(", ");
+        return Err(Failure::Input(format!(
+            "robot.toml has no gait `{gait}`; it has {names}"
+        )));
+    }
+    let ms = given.unwrap_or(12_000);
+    if ms < Script::SHORTEST_MS {
+        let least = Script::SHORTEST_MS / 1000;
+        return Err(Failure::Input(format!(
+            "--duration must be at least {least} s without --script"
+        )));
+    }
+    Ok(args
+        .gait
+        .as_ref()
+        .map_or_else(|| Script::tour(ms), |gait| Script::of_gait(gait, ms)))
+}
+
+/// The firmware: the one given, or the one that `make firmware` leaves.
+fn elf(given: Option<&Path>) -> Result<PathBuf, Failure> {
+    const BUILT: &str = "target/avr-atmega328p/release/lizard.elf";
+    let missing = |what: String| Failure::Input(format!("{what}; build it with `make firmware`"));
+    match given {
+        Some(path) if path.is_file() => Ok(path.to_owned()),
+        Some(path) => Err(missing(format!(
+            "there is no firmware at {}",
+            path.display()
+        ))),
+        None => {
+            let here = std::env::current_dir()?;
+            let found = here
+                .ancestors()
+                .map(|folder| folder.join(BUILT))
+                .find(|path| path.is_file());
+            found.ok_or_else(|| missing(format!("there is no firmware at {BUILT}")))
+        }
+    }
+}
+
+fn progress_bar(end_ms: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
+        .expect("the template is well formed");
+    ProgressBar::new(end_ms).with_style(style)
+}
+
+/// Writes a file and the folders it needs.
+fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+    let failure =
+        |error: io::Error| Failure::Impossible(format!("cannot write {}: {error}", path.display()));
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
+        std::fs::create_dir_all(folder).map_err(failure)?;
+    }
+    std::fs::write(path, text).map_err(failure)
+}

@@ -1,0 +1,184 @@
+//! The run in a table, or as JSON.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use super::analysis::{Instant, Leg, Safety, ServoReport};
+use super::session::{Said, Speaker};
+
+/// Everything that a run has to show.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// The firmware.
+    pub elf: String,
+    /// `data-sheet` or `stock`.
+    pub fidelity: &'static str,
+    /// Simulated seconds.
+    pub seconds: f64,
+    /// Wall time in seconds.
+    pub wall_seconds: f64,
+    /// The console's dialogue.
+    pub dialogue: Vec<Said>,
+    /// The table of servos.
+    pub servos: Vec<ServoReport>,
+    /// Margins and strokes of every pose sent.
+    pub safety: Safety,
+    /// Predicted way, command by command; the last is the whole run.
+    pub way: Vec<Leg>,
+    /// The most servo pins high at once.
+    pub most_pins_high: u32,
+    /// Share of cycles that the CPU was asleep, percent.
+    pub asleep_percent: f64,
+    /// Bytes of flash and of static RAM in the ELF.
+    pub flash: u32,
+    /// See `flash`.
+    pub static_ram: u16,
+    /// Fewest bytes between the stack and static data.
+    pub stack_spare: u16,
+    /// Received bytes that the UNO lost.
+    pub overruns: u64,
+    /// Watchdog resets.
+    pub resets: u64,
+    /// How the firmware ended.
+    pub ended: String,
+    /// Where the picture is.
+    pub svg: Option<String>,
+    /// Servo angles of every frame.
+    pub frames: Vec<Instant>,
+}
+
+/// Lines of dialogue before the middle is left out.
+const LONGEST_DIALOGUE: usize = 24;
+
+impl Report {
+    /// Prints the report for people.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
+        self.print_dialogue(out)?;
+        self.print_servos(out)?;
+        self.print_way(out)?;
+        self.print_rest(out)
+    }
+
+    fn print_dialogue(&self, out: &mut impl Write) -> io::Result<()> {
+        let lines = self.dialogue.len();
+        let cut = lines.saturating_sub(LONGEST_DIALOGUE);
+        for (n, said) in self.dialogue.iter().enumerate() {
+            if cut > 0 && n == LONGEST_DIALOGUE / 2 {
+                writeln!(
+                    out,
+                    "               ({cut} lines left out; --json has them all)"
+                )?;
+            }
+            if cut > 0 && (LONGEST_DIALOGUE / 2..LONGEST_DIALOGUE / 2 + cut).contains(&n) {
+                continue;
+            }
+            let mark = match said.by {
+                Speaker::You => ">",
+                Speaker::Robot => " ",
+            };
+            writeln!(out, "{:>9.3} s  {mark} {}", said.ms / 1000.0, said.line)?;
+        }
+        writeln!(out)
+    }
+
+    fn print_servos(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(
+            out,
+            "servo         pulses    min us    max us   width error  period error   fastest"
+        )?;
+        writeln!(
+            out,
+            "                                              (cycles)      (cycles)   (deg/s)"
+        )?;
+        for row in &self.servos {
+            let error = row
+                .width_error
+                .map_or("?".to_owned(), |error| error.to_string());
+            writeln!(
+                out,
+                "{} {} D{:<4} {:>9} {:>9.2} {:>9.2} {:>13} {:>13} {:>9.1}",
+                row.servo,
+                row.leg,
+                row.pin,
+                row.pulses,
+                row.min_us,
+                row.max_us,
+                error,
+                row.period_error,
+                row.slew
+            )?;
+        }
+        writeln!(out)
+    }
+
+    fn print_way(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(
+            out,
+            "predicted way        from      to   forward      left      turn"
+        )?;
+        for leg in &self.way {
+            writeln!(
+                out,
+                "{:<16} {:>6.2} s {:>5.2} s {:>6.1} mm {:>6.1} mm {:>6.2} deg",
+                leg.command,
+                leg.from,
+                leg.to,
+                positive_zero(leg.forward, 0.05),
+                positive_zero(leg.left, 0.05),
+                positive_zero(leg.turn, 0.005)
+            )?;
+        }
+        writeln!(out)
+    }
+
+    fn print_rest(&self, out: &mut impl Write) -> io::Result<()> {
+        if let Some(least) = &self.safety.least {
+            writeln!(
+                out,
+                "smallest margin {:.3} ({}) at {:.2} s; slider travel {:+.1} to {:+.1} mm",
+                least.value,
+                least.margin,
+                least.seconds,
+                self.safety.stroke[0],
+                self.safety.stroke[1]
+            )?;
+        }
+        if let Some(reason) = &self.safety.first_violation {
+            let frames = self.safety.violations;
+            writeln!(
+                out,
+                "{frames} frames break a limit of robot.toml, the first: {reason}"
+            )?;
+        }
+        writeln!(
+            out,
+            "CPU asleep {:.1} %, stack {} B from data, flash {} B, static RAM {} B, \
+             bytes lost {}, resets {}, pins high at once {}",
+            self.asleep_percent,
+            self.stack_spare,
+            self.flash,
+            self.static_ram,
+            self.overruns,
+            self.resets,
+            self.most_pins_high
+        )?;
+        writeln!(
+            out,
+            "{:.1} s simulated ({}) in {:.2} s; {}",
+            self.seconds, self.fidelity, self.wall_seconds, self.ended
+        )?;
+        if let Some(svg) = &self.svg {
+            writeln!(out, "picture: {svg}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Without the minus sign of a value that prints as zero.
+fn positive_zero(value: f64, half: f64) -> f64 {
+    if value.abs() < half { 0.0 } else { value }
+}
