@@ -1,7 +1,8 @@
 //! Turns robot.toml into the numbers that the firmware carries. A value or a
-//! gait that will not do ends the build with the sentence that says why.
+//! gait that will not do ends the build with the sentence that says why; what
+//! the check of the gaits found is left in `gaits.txt` beside the firmware.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::{env, fs};
 
@@ -12,14 +13,23 @@ fn main() {
     println!("cargo::rerun-if-changed=robot.toml");
     let robot = Robot::load("robot.toml").unwrap_or_else(|error| stop(&error.to_string()));
     // Cargo sets OUT_DIR for every build script.
-    let out = env::var("OUT_DIR").unwrap_or_else(|_| stop("OUT_DIR is not set"));
-    if let Err(error) = fs::write(Path::new(&out).join("robot.rs"), robot.source()) {
-        stop(&format!("{out}/robot.rs: {error}"));
+    let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
+    let out = PathBuf::from(out);
+    write(&out.join("robot.rs"), &robot.source());
+    // OUT_DIR is build/<package>/out in the folder that the firmware goes to.
+    if let Some(beside) = out.ancestors().nth(3) {
+        write(&beside.join("gaits.txt"), &robot.report().to_string());
     }
 }
 
-/// Ends the build. `cargo::error` shows the sentence alone, without the rest of
-/// the script's output.
+fn write(path: &Path, text: &str) {
+    if let Err(error) = fs::write(path, text) {
+        stop(&format!("{}: {error}", path.display()));
+    }
+}
+
+/// Ends the build. `cargo::error` puts the sentence first, before the list of
+/// what else the script printed.
 fn stop(sentence: &str) -> ! {
     println!("cargo::error={sentence}");
     exit(1)

@@ -5,6 +5,7 @@
 
 pub mod draw;
 mod failure;
+pub mod gaits;
 pub mod paper;
 mod pose_args;
 mod robot_file;

@@ -4,7 +4,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use lizard_host::{draw, paper, sim};
+use lizard_host::{draw, gaits, paper, sim};
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
 ///
@@ -23,14 +23,24 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Gaits(gaits::Args),
     Solve(paper::solve::Args),
+    Inverse(paper::inverse::Args),
+    Velocity(paper::velocity::Args),
+    Singularity(paper::singularity::Args),
+    Mobility(paper::mobility::Args),
     Sim(sim::Args),
     Draw(draw::Args),
 }
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Gaits(args) => gaits::run(args),
         Command::Solve(args) => paper::solve::run(args),
+        Command::Inverse(args) => paper::inverse::run(args),
+        Command::Velocity(args) => paper::velocity::run(args),
+        Command::Singularity(args) => paper::singularity::run(args),
+        Command::Mobility(args) => paper::mobility::run(args),
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),
     };

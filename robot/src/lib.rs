@@ -21,6 +21,7 @@ mod measure;
 mod path;
 mod reader;
 mod report;
+mod sensitivity;
 pub mod servo;
 mod table;
 mod waveform;
@@ -36,6 +37,7 @@ pub use gait::{Gait, Stride};
 pub use ground::{Feet, Ground, Travel};
 pub use path::{Loop, Path, PathLeg};
 pub use report::{Report, Row};
+pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
 pub use servo::Servo;
 pub use table::{
     Channel, FRAMES_PER_SECOND, SAMPLES, STEPS_PER_DEGREE, TableGait, Tables, interpolate,

@@ -72,34 +72,8 @@ impl fmt::Display for Report {
             self.flash,
             self.hash
         )?;
-        writeln!(
-            f,
-            "{:<12} {:>6} {:>9} {:>15}   {:>26}   {:>13}   {:>22}",
-            "",
-            "cycle",
-            "fastest",
-            "table error",
-            "smallest margins",
-            "slider",
-            "predicted for a cycle"
-        )?;
-        writeln!(
-            f,
-            "{:<12} {:>6} {:>6} {:>2} {:>7} {:>7}   {:>8} {:>8} {:>8}   {:>13}   {:>7} {:>6} {:>7}",
-            "gait",
-            "s",
-            "deg/s",
-            "",
-            "max deg",
-            "rms",
-            "type-2",
-            "type-1",
-            "leg",
-            "travel mm",
-            "ahead",
-            "left",
-            "turn"
-        )?;
+        f.write_str("              cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg\n")?;
+        f.write_str("gait              s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn\n")?;
         for row in &self.rows {
             let Row {
                 name,
@@ -110,7 +84,7 @@ impl fmt::Display for Report {
             } = row;
             writeln!(
                 f,
-                "{name:<12} {period:>6.2} {:>6.1} {:>2} {:>7.4} {:>7.4}   {:>8.3} {:>8.3} {:>8.3}   {:>+6.1} {:>+6.1}   {:>+7.2} {:>+6.2} {:>+7.2}",
+                "{name:<12} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  {:>+7.2} {:>+6.2} {:>+7.2}",
                 audit.peak.speed,
                 NAMES[audit.peak.servo],
                 error.max,

@@ -90,6 +90,17 @@ impl Tables {
         std::array::from_fn(|i| gait.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
     }
 
+    /// One cycle of a gait at full speed from phase 0 on: the time of each frame
+    /// in s, and its phase. The last is the first that completes the cycle.
+    pub fn frames(&self, gait: &Gait, index: usize) -> impl Iterator<Item = (f64, u16)> + use<> {
+        let increment = self.gaits[index].increment;
+        let frames = (gait.period * FRAMES_PER_SECOND).ceil() as i32;
+        (0..=frames).map(move |frame| {
+            let phase = (increment * frame) as u32 >> 8;
+            (f64::from(frame) / FRAMES_PER_SECOND, phase as u16)
+        })
+    }
+
     /// Builds the tables, or names the first gait (by index) and servo whose
     /// sweep is half a turn or more, which the fixed point does not hold.
     pub(crate) fn new(gaits: &[Gait]) -> Result<Self, (usize, usize)> {

@@ -1,6 +1,10 @@
 //! The paper, section by section: *Optimal Kinematic Design of a Robotic Lizard
 //! using Four-Bar and Five-Bar Mechanisms*.
 
+pub mod inverse;
+pub mod mobility;
 pub mod poses;
 pub mod record;
+pub mod singularity;
 pub mod solve;
+pub mod velocity;

@@ -4,4 +4,5 @@ mod five_bar;
 mod lizard;
 mod motion;
 mod reference;
+mod singular;
 mod workspace;

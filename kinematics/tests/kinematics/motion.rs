@@ -1,5 +1,7 @@
 //! Rates, accelerations and Jacobians against finite differences of positions.
 
+#![allow(clippy::needless_range_loop)] // Matrices read best with their indices.
+
 use lizard_kinematics::{Drive, Lizard, Pose, Solution, wrap};
 use proptest::prelude::*;
 

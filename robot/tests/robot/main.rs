@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use lizard_robot::{Gait, Robot};
 
+mod docs;
 mod golden;
 mod predictions;
 mod refusals;

@@ -1,0 +1,136 @@
+//! `lizard gaits`: what the check of every gait found, and where each takes
+//! the robot.
+
+use std::io::Write;
+
+use lizard_kinematics::Check;
+use lizard_robot::{Robot, Row, Sensitivity, servo};
+use serde::Serialize;
+
+use crate::{Failure, RobotFile};
+
+/// Check every gait of robot.toml and predict where it goes.
+///
+/// For each gait: the time of a cycle, its fastest frame, the error of its
+/// table over all 65536 phases, the smallest margins and the slider travel over
+/// every sample, and the displacement of one cycle by the contact model. A gait
+/// that breaks a limit is named with its phase, the margin, its value and the
+/// limit, exit code 2; so is any other mistake in the file.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  lizard gaits
+  lizard gaits --robot my/robot.toml --json
+  lizard gaits --trace walk > walk.csv")]
+pub struct Args {
+    /// One JSON object a gait and line
+    #[arg(long)]
+    json: bool,
+    /// Instead, the servo angles of one gait over a cycle as CSV: frames of
+    /// 20 ms at full speed, degrees in the chassis frame
+    #[arg(long, value_name = "GAIT", conflicts_with = "json")]
+    trace: Option<String>,
+    /// Instead, where each gait leads on other pads (friction backward over
+    /// forward) and with the legs mounted otherwise
+    #[arg(long, conflicts_with_all = ["json", "trace"])]
+    sensitivity: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Prints the table, the objects or the trace.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let mut out = std::io::stdout().lock();
+    match args.trace {
+        Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
+        None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
+        None if args.json => {
+            for row in &robot.report().rows {
+                serde_json::to_writer(&mut out, &Record::new(row))?;
+                writeln!(out)?;
+            }
+        }
+        None => write!(out, "{}", robot.report())?,
+    }
+    Ok(out.flush()?)
+}
+
+/// One cycle of a gait, frame by frame, as the firmware reads its table.
+fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
+    let Some((index, gait)) = robot.gait(name) else {
+        let known: Vec<&str> = robot.gaits.iter().map(|gait| gait.name.as_str()).collect();
+        return Err(Failure::Input(format!(
+            "--trace {name}: the gaits are {}",
+            known.join(", ")
+        )));
+    };
+    let mut text = "seconds,A1,A2,A3,A4\n".to_string();
+    for (seconds, phase) in robot.tables.frames(gait, index) {
+        let [a1, a2, a3, a4] = robot.tables.angles(gait, index, phase);
+        text += &format!("{seconds:.2},{a1:.3},{a2:.3},{a3:.3},{a4:.3}\n");
+    }
+    Ok(text)
+}
+
+/// A gait's figures under the names of `--json`.
+#[derive(Serialize)]
+struct Record<'a> {
+    gait: &'a str,
+    /// s
+    period: f64,
+    /// deg/s, over one frame
+    peak_speed: f64,
+    peak_servo: &'static str,
+    /// deg, over all phases
+    table_error_max: f64,
+    table_error_rms: f64,
+    type2: Least,
+    type1: Least,
+    leg: Least,
+    /// mm from nominal, smallest and largest
+    stroke: [f64; 2],
+    /// Displacement of one cycle: mm and deg, counter-clockwise
+    predicted: Predicted,
+}
+
+#[derive(Serialize)]
+struct Least {
+    margin: f64,
+    what: &'static str,
+    phase: f64,
+}
+
+#[derive(Serialize)]
+struct Predicted {
+    forward: f64,
+    left: f64,
+    turn: f64,
+}
+
+impl<'a> Record<'a> {
+    fn new(row: &'a Row) -> Self {
+        let least = |least: lizard_robot::Least| Least {
+            margin: least.value,
+            what: Check::name(least.what),
+            phase: least.phase,
+        };
+        let audit = &row.audit;
+        Self {
+            gait: &row.name,
+            period: row.period,
+            peak_speed: audit.peak.speed,
+            peak_servo: servo::NAMES[audit.peak.servo],
+            table_error_max: row.error.max,
+            table_error_rms: row.error.rms,
+            type2: least(audit.type2),
+            type1: least(audit.type1),
+            leg: least(audit.leg),
+            stroke: [audit.stroke.0, audit.stroke.1],
+            predicted: Predicted {
+                forward: row.travel.forward,
+                left: row.travel.left,
+                turn: row.travel.turn,
+            },
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! `lizard inverse`: the servo angles that put head and tail at given points.
+
+use std::io::{self, Write};
+
+use lizard_kinematics::{Assembly, Branch, Elbow, FiveBar, Pose, Vector, wrap};
+use lizard_robot::{Robot, servo};
+use serde::Serialize;
+
+use crate::pose_args::finite;
+use crate::{Failure, RobotFile};
+
+/// Servo angles for a head point, a tail point, or both.
+///
+/// Lists all four ways in which the arms can bend, and for each whether this
+/// robot can take it: its servos must reach the angles, its apex must be on the
+/// side on which it was assembled, and its margins must hold.
+#[derive(clap::Args)]
+#[command(
+    allow_negative_numbers = true,
+    after_help = "Example:
+  lizard inverse --head 5 120 --tail 0 -125"
+)]
+pub struct Args {
+    /// Head point in mm, chassis frame
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = finite,
+          required_unless_present = "tail")]
+    head: Option<Vec<f64>>,
+    /// Tail point in mm, chassis frame
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = finite)]
+    tail: Option<Vec<f64>>,
+    /// One JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Report {
+    head: Option<Loop>,
+    tail: Option<Loop>,
+    /// The pose with outward elbows, the other end at neutral if not asked for.
+    pose: Option<Angles>,
+    safe: bool,
+    why: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Angles {
+    theta1: f64,
+    theta4: f64,
+    theta8: f64,
+    theta5: f64,
+}
+
+/// One five-bar.
+#[derive(Serialize)]
+struct Loop {
+    point: [f64; 2],
+    assemblies: Vec<Way>,
+    why: Option<String>,
+}
+
+/// One of the four ways to bend the arms, left arm first.
+#[derive(Serialize)]
+struct Way {
+    left: &'static str,
+    right: &'static str,
+    apex: &'static str,
+    /// Left servo (A1 or A4), degrees, chassis frame.
+    theta_left: f64,
+    /// Right servo (A2 or A3).
+    theta_right: f64,
+    /// Distance of the forward solution from the point, mm.
+    error_mm: f64,
+    /// The least of the loop's margins.
+    margin: f64,
+    reachable: bool,
+    why: Vec<String>,
+}
+
+/// Which five-bar, and how its frame lies in the chassis frame.
+#[derive(Clone, Copy)]
+struct End {
+    bars: FiveBar,
+    base_y: f64,
+    /// +1 for the head, -1 for the tail, whose frame is mirrored.
+    sign: f64,
+    /// Left and right servo.
+    servos: [usize; 2],
+}
+
+/// Finds and prints the angles.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let base_y = robot.lizard.links.l10 / 2.0;
+    let head = End {
+        bars: robot.lizard.head(),
+        base_y,
+        sign: 1.0,
+        servos: [0, 1],
+    };
+    let tail = End {
+        bars: robot.lizard.tail(),
+        base_y,
+        sign: -1.0,
+        servos: [3, 2],
+    };
+    let part = |end: End, point: &Option<Vec<f64>>| {
+        point
+            .as_ref()
+            .map(|p| solve(&robot, end, Vector::new(p[0], p[1])))
+    };
+    let (head_loop, tail_loop) = (part(head, &args.head), part(tail, &args.tail));
+    let report = report(&robot, head_loop, tail_loop, [head, tail]);
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &report)?;
+        writeln!(out)?;
+    } else {
+        out.write_all(text(&report).as_bytes())?;
+    }
+    let unreachable = [("head", &report.head), ("tail", &report.tail)]
+        .into_iter()
+        .find_map(|(name, part)| Some((name, part.as_ref()?.why.as_ref()?)));
+    match unreachable {
+        Some((name, why)) => Err(Failure::Impossible(format!("{name}: {why}"))),
+        None => Ok(()),
+    }
+}
+
+fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
+    let local = Vector::new(point.x, end.sign * point.y - end.base_y);
+    let (assemblies, why) = match end.bars.inverse(local) {
+        Ok(all) => {
+            let ways = all.into_iter().map(|a| way(robot, end, local, a));
+            (ways.collect(), None)
+        }
+        Err(fault) => (Vec::new(), Some(fault.to_string())),
+    };
+    Loop {
+        point: [point.x, point.y],
+        assemblies,
+        why,
+    }
+}
+
+fn way(robot: &Robot, end: End, point: Vector, a: Assembly) -> Way {
+    let there = end.bars.forward_on(a.branch, a.theta_left, a.theta_right);
+    let (error_mm, margin) = match &there {
+        Ok(pose) => ((pose.apex - point).length(), pose.margin()),
+        Err(_) => (0.0, 0.0),
+    };
+    let angles = [
+        wrap(end.sign * a.theta_left),
+        wrap(end.sign * a.theta_right),
+    ];
+    let mut why: Vec<String> = end
+        .servos
+        .into_iter()
+        .zip(angles)
+        .filter_map(|(servo, angle)| beyond(robot, servo, angle))
+        .collect();
+    if a.branch == Branch::Behind {
+        why.push("the apex would be on the other side of the crank tips".to_string());
+    }
+    if let Ok(pose) = &there {
+        let least = pose.type1_left().min(pose.type1_right());
+        if least < robot.limits.type1 {
+            why.push(format!(
+                "type-1 margin {least:.3} is below {:.3}",
+                robot.limits.type1
+            ));
+        }
+        if a.branch == Branch::Ahead && pose.type2 < robot.limits.type2 {
+            why.push(format!(
+                "type-2 margin {:.3} is below {:.3}",
+                pose.type2, robot.limits.type2
+            ));
+        }
+    }
+    Way {
+        left: bend(a.left),
+        right: bend(a.right),
+        apex: match a.branch {
+            Branch::Ahead => "ahead",
+            Branch::Behind => "behind",
+        },
+        theta_left: angles[0],
+        theta_right: angles[1],
+        error_mm,
+        margin,
+        reachable: why.is_empty(),
+        why,
+    }
+}
+
+fn bend(elbow: Elbow) -> &'static str {
+    match elbow {
+        Elbow::Outward => "outward",
+        Elbow::Inward => "inward",
+    }
+}
+
+/// A sentence if a servo cannot turn to an angle.
+fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
+    let sweep = wrap(angle - robot.servos[servo].neutral);
+    let (least, most) = robot.servos[servo].travel();
+    (sweep < least || sweep > most).then(|| {
+        format!(
+            "{} would turn {sweep:+.1} deg from neutral, its travel is {least:+.1} to {most:+.1}",
+            servo::NAMES[servo]
+        )
+    })
+}
+
+/// Puts both ends together and checks the whole robot.
+fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>, ends: [End; 2]) -> Report {
+    let mut angles = robot.servos.map(|servo| servo.neutral);
+    let mut whole = true;
+    for (part, end) in [(&head, ends[0]), (&tail, ends[1])] {
+        match part.as_ref().map(|part| part.assemblies.first()) {
+            Some(Some(outward)) => {
+                angles[end.servos[0]] = outward.theta_left;
+                angles[end.servos[1]] = outward.theta_right;
+            }
+            Some(None) => whole = false,
+            None => {}
+        }
+    }
+    let mut why: Vec<String> = Vec::new();
+    for part in [&head, &tail].into_iter().flatten() {
+        why.extend(part.why.clone());
+    }
+    if whole {
+        why.extend((0..4).filter_map(|servo| beyond(robot, servo, angles[servo])));
+        match robot.lizard.solve(&Pose::from(angles)) {
+            Ok(solution) => why.extend(robot.limits.violations(&solution).map(|v| v.to_string())),
+            Err(infeasible) => why.push(infeasible.to_string()),
+        }
+    }
+    let [theta1, theta4, theta8, theta5] = angles.map(|angle| angle.rem_euclid(360.0));
+    Report {
+        head,
+        tail,
+        pose: whole.then_some(Angles {
+            theta1,
+            theta4,
+            theta8,
+            theta5,
+        }),
+        safe: why.is_empty(),
+        why,
+    }
+}
+
+fn text(report: &Report) -> String {
+    let mut page = String::new();
+    for (name, part, servos) in [
+        ("head", &report.head, ["A1 theta1", "A2 theta4"]),
+        ("tail", &report.tail, ["A4 theta5", "A3 theta8"]),
+    ] {
+        let Some(part) = part else { continue };
+        let [x, y] = part.point;
+        page += &format!("{name} at ({x:.3}, {y:.3}) mm\n");
+        if let Some(why) = &part.why {
+            page += &format!("  {why}\n\n");
+            continue;
+        }
+        page += &format!(
+            "  left     right    {:>10} {:>10}  apex     margin   error mm   this robot\n",
+            servos[0], servos[1]
+        );
+        for way in &part.assemblies {
+            let verdict = match way.why.as_slice() {
+                [] => "yes".to_string(),
+                [only] => format!("no: {only}"),
+                [first, rest @ ..] => format!("no: {first}; and {} more", rest.len()),
+            };
+            page += &format!(
+                "  {:8} {:8} {:10.3} {:10.3}  {:7} {:+7.3}    {:7.0e}   {verdict}\n",
+                way.left,
+                way.right,
+                way.theta_left,
+                way.theta_right,
+                way.apex,
+                way.margin,
+                way.error_mm
+            );
+        }
+        page.push('\n');
+    }
+    if let Some(pose) = &report.pose {
+        page += &format!(
+            "pose {:.3} {:.3} {:.3} {:.3}   (A1 A2 A3 A4, as the console takes it)\n",
+            pose.theta1, pose.theta4, pose.theta8, pose.theta5
+        );
+        page += &match report.safe {
+            true => "safe yes\n".to_string(),
+            false => format!("safe no: {}\n", report.why.join("; ")),
+        };
+    }
+    page
+}

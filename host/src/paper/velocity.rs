@@ -1,0 +1,204 @@
+//! `lizard velocity`: passive rates and accelerations from those of the servos.
+
+use std::io::{self, Write};
+
+use lizard_kinematics::{Drive, Lizard, Motion, Pose, Solution, wrap};
+use serde::Serialize;
+
+use crate::pose_args::finite;
+use crate::{Failure, PoseArgs, RobotFile};
+
+/// Step of the finite differences that the result is shown beside, s.
+const STEP: f64 = 2e-4;
+
+/// How fast every passive joint moves when the servos move.
+///
+/// Rates and accelerations follow in closed form from K and K* (the paper
+/// announces the acceleration analysis and omits it); beside each stands its
+/// deviation from finite differences of the position solution. The pose is the
+/// neutral one unless given.
+#[derive(clap::Args)]
+#[command(
+    allow_negative_numbers = true,
+    after_help = "Example:
+  lizard velocity --omega1 100 --omega4 -100 --alpha5 500"
+)]
+pub struct Args {
+    #[command(flatten)]
+    pose: PoseArgs,
+    #[command(flatten)]
+    drive: DriveArgs,
+    /// One JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "Servos, all 0 unless given")]
+struct DriveArgs {
+    /// Rate of theta1, deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    omega1: f64,
+    /// Rate of theta4, deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    omega4: f64,
+    /// Rate of theta5, deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    omega5: f64,
+    /// Rate of theta8, deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    omega8: f64,
+    /// Acceleration of theta1, deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    alpha1: f64,
+    /// Acceleration of theta4, deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    alpha4: f64,
+    /// Acceleration of theta5, deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    alpha5: f64,
+    /// Acceleration of theta8, deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    alpha8: f64,
+}
+
+/// A row of the result.
+#[derive(Clone, Serialize)]
+struct Row {
+    joint: &'static str,
+    unit: &'static str,
+    value: f64,
+    rate: f64,
+    acceleration: f64,
+    /// Finite difference minus closed form; null where the neighbours of the
+    /// pose have no position.
+    rate_deviation: Option<f64>,
+    acceleration_deviation: Option<f64>,
+}
+
+/// Computes and prints the motion.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
+    let d = &args.drive;
+    let drive = Drive {
+        rate: [d.omega1, d.omega4, d.omega8, d.omega5],
+        acceleration: [d.alpha1, d.alpha4, d.alpha8, d.alpha5],
+    };
+    let solution = robot
+        .lizard
+        .solve(&pose)
+        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+    let singular = solution.margins.apex_head.min(solution.margins.apex_tail);
+    if singular < 1e-9 {
+        return Err(Failure::Impossible(
+            "the couplers line up: rates do not follow from the servos'".to_string(),
+        ));
+    }
+    let rows = rows(&robot.lizard, &solution, &drive);
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &rows)?;
+        writeln!(out)?;
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "joint        value          rate 1/s   acceleration 1/s^2   against finite differences"
+    )?;
+    for row in rows {
+        let deviation = match (row.rate_deviation, row.acceleration_deviation) {
+            (Some(rate), Some(acceleration)) => format!("{rate:+.0e}, {acceleration:+.0e}"),
+            _ => "no neighbours".to_string(),
+        };
+        writeln!(
+            out,
+            "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {deviation}",
+            row.joint, row.value, row.unit, row.rate, row.acceleration
+        )?;
+    }
+    Ok(())
+}
+
+/// Joint, unit, value.
+fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
+    let (head, tail) = (s.head_point(), s.tail_point());
+    [
+        ("theta2", "deg", s.theta2()),
+        ("theta3", "deg", s.theta3()),
+        ("theta6", "deg", s.theta6()),
+        ("theta7", "deg", s.theta7()),
+        ("head x", "mm", head.x),
+        ("head y", "mm", head.y),
+        ("tail x", "mm", tail.x),
+        ("tail y", "mm", tail.y),
+        ("phi left", "deg", s.left.phi()),
+        ("s left", "mm", s.left.s),
+        ("phi right", "deg", s.right.phi()),
+        ("s right", "mm", s.right.s),
+    ]
+}
+
+/// Rate and acceleration in the same order.
+fn rates(m: &Motion) -> [(f64, f64); 12] {
+    let pair = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
+    [
+        pair(m.theta2),
+        pair(m.theta3),
+        pair(m.theta6),
+        pair(m.theta7),
+        (m.head.rate.x, m.head.acceleration.x),
+        (m.head.rate.y, m.head.acceleration.y),
+        (m.tail.rate.x, m.tail.acceleration.x),
+        (m.tail.rate.y, m.tail.acceleration.y),
+        pair(m.phi_left),
+        pair(m.s_left),
+        pair(m.phi_right),
+        pair(m.s_right),
+    ]
+}
+
+fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
+    let start = <[f64; 4]>::from(solution.pose);
+    let at = |steps: f64| {
+        let t = steps * STEP;
+        let angles: [f64; 4] = std::array::from_fn(|i| {
+            start[i] + drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0
+        });
+        lizard.solve(&Pose::from(angles)).ok().map(|s| values(&s))
+    };
+    let around = match [-2.0, -1.0, 1.0, 2.0].map(at) {
+        [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
+        _ => None,
+    };
+    let motion = rates(&solution.motion(drive));
+    values(solution)
+        .into_iter()
+        .zip(motion)
+        .enumerate()
+        .map(|(i, ((joint, unit, value), (rate, acceleration)))| {
+            let differences = around.as_ref().map(|around| {
+                let [a, b, c, d] = around.each_ref().map(|all| {
+                    let change = all[i].2 - value;
+                    if unit == "deg" { wrap(change) } else { change }
+                });
+                // Five points: the error is of the fourth order in the step.
+                (
+                    (a - 8.0 * b + 8.0 * c - d) / (12.0 * STEP),
+                    (16.0 * (b + c) - a - d) / (12.0 * STEP * STEP),
+                )
+            });
+            Row {
+                joint,
+                unit,
+                value,
+                rate,
+                acceleration,
+                rate_deviation: differences.map(|(first, _)| first - rate),
+                acceleration_deviation: differences.map(|(_, second)| second - acceleration),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! What pads and mounting do to the gaits: where a cycle leads when the floor
+//! or the print is not as robot.toml says.
+
+use std::fmt;
+
+use crate::Robot;
+use crate::ground::{Ground, Travel};
+
+/// Friction backward over forward: even pads, pads that grip when pushed back,
+/// and pads that are on the wrong way round.
+pub const RATIOS: [f64; 6] = [0.8, 1.0, 1.1, 1.25, 1.5, 2.0];
+/// Outward sweep of the legs at neutral, deg; 41.4 is a leg in line with its
+/// servo's horn.
+pub const MOUNTS: [f64; 5] = [0.0, 20.0, 41.4, 49.0, -41.4];
+
+/// Predictions for one gait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitive {
+    /// The gait's name.
+    pub name: String,
+    /// A cycle for each of [`RATIOS`], legs mounted as robot.toml says.
+    pub ratios: [Travel; RATIOS.len()],
+    /// A cycle for each of [`MOUNTS`], pads as robot.toml says.
+    pub mounts: [Travel; MOUNTS.len()],
+}
+
+/// Predictions for all gaits that move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivity {
+    /// In the order of the file.
+    pub rows: Vec<Sensitive>,
+}
+
+impl Sensitivity {
+    /// Predicts the gaits of a robot on other floors and with other mountings.
+    pub fn of(robot: &Robot) -> Self {
+        let moving = robot
+            .gaits
+            .iter()
+            .filter(|gait| gait.sweeps(0.0) != [0.0; 4]);
+        let rows = moving.map(|gait| {
+            let on = |ground: Ground| {
+                Robot {
+                    ground,
+                    ..robot.clone()
+                }
+                .predict(gait)
+            };
+            let ground = robot.ground;
+            Sensitive {
+                name: gait.name.clone(),
+                ratios: RATIOS.map(|ratio| on(Ground { ratio, ..ground })),
+                mounts: MOUNTS.map(|mount| {
+                    let mut ground = ground;
+                    ground.feet.mount = mount;
+                    on(ground)
+                }),
+            }
+        });
+        Self {
+            rows: rows.collect(),
+        }
+    }
+}
+
+impl fmt::Display for Sensitivity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("One cycle: mm ahead, and deg counter-clockwise where it turns.\n\n")?;
+        write!(f, "{:<12}", "friction")?;
+        RATIOS
+            .iter()
+            .try_for_each(|ratio| write!(f, "{ratio:>15}"))?;
+        f.write_str("\n")?;
+        for row in &self.rows {
+            line(f, &row.name, &row.ratios)?;
+        }
+        write!(f, "\n{:<12}", "mount, deg")?;
+        MOUNTS
+            .iter()
+            .try_for_each(|mount| write!(f, "{mount:>15}"))?;
+        f.write_str("\n")?;
+        for row in &self.rows {
+            line(f, &row.name, &row.mounts)?;
+        }
+        Ok(())
+    }
+}
+
+fn line(f: &mut fmt::Formatter, name: &str, travels: &[Travel]) -> fmt::Result {
+    let mut line = format!("{name:<12}");
+    for travel in travels {
+        let turn = if travel.turn.abs() < 0.05 {
+            String::new()
+        } else {
+            format!("{:+.1}", travel.turn)
+        };
+        // Adding positive zero turns a negative one positive.
+        line += &format!(
+            "{:>+9.1}{turn:>6}",
+            (travel.forward * 10.0).round() / 10.0 + 0.0
+        );
+    }
+    writeln!(f, "{}", line.trim_end())
+}

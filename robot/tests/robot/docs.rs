@@ -1,0 +1,69 @@
+//! docs/gaits.md shows what the commands print.
+
+use std::fmt::Write;
+
+use lizard_robot::Sensitivity;
+
+use crate::predictions::EXPECTED;
+use crate::{gait, robot};
+
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gaits.md");
+const END: &str = "<!-- end -->";
+
+fn predictions() -> String {
+    let mut rows =
+        "| gait | predicted here | chosen by | rigid bodies |\n|---|---|---|---|\n".to_string();
+    for (name, forward, turn, far_forward, far_turn) in EXPECTED {
+        let here = robot().predict(gait(robot(), name));
+        let cell = |forward: f64, turn: f64, decimals: usize| match (
+            forward.abs() > 0.01,
+            turn.abs() > 0.01,
+        ) {
+            (false, false) => "stays".to_string(),
+            (true, false) => format!("{forward:+.decimals$} mm"),
+            (false, true) => format!("{turn:+.decimals$} deg"),
+            (true, true) => format!("{forward:+.decimals$} mm, {turn:+.2} deg"),
+        };
+        let (here, chosen, far) = (
+            cell(here.forward, here.turn, 2),
+            cell(forward, turn, 2),
+            cell(far_forward, far_turn, 1),
+        );
+        writeln!(rows, "| {name} | {here} | {chosen} | {far} |").expect("a String takes all");
+    }
+    rows
+}
+
+fn fenced(text: String) -> String {
+    format!("```text\n{text}```\n")
+}
+
+/// The page with what stands between a marker and the next end replaced.
+fn filled(page: &str, marker: &str, text: &str) -> String {
+    let marker = format!("<!-- {marker} -->\n");
+    let start = page.find(&marker).expect(&marker) + marker.len();
+    let end = start + page[start..].find(END).expect(END);
+    format!("{}{text}{}", &page[..start], &page[end..])
+}
+
+#[test]
+fn the_page_on_gaits_shows_what_the_commands_print() {
+    let page = std::fs::read_to_string(PAGE).expect(PAGE);
+    let mut now = filled(&page, "lizard gaits", &fenced(robot().report().to_string()));
+    now = filled(
+        &now,
+        "lizard gaits --sensitivity",
+        &fenced(Sensitivity::of(robot()).to_string()),
+    );
+    now = filled(&now, "predictions", &predictions());
+    if std::env::var_os("BLESS_GAITS").is_some() {
+        std::fs::write(PAGE, &now).expect(PAGE);
+    } else if let Some((was, is)) = page.lines().zip(now.lines()).find(|(was, is)| was != is) {
+        panic!("docs/gaits.md is out of date; run with BLESS_GAITS=1.\n  was {was}\n  is  {is}");
+    } else {
+        assert_eq!(
+            page, now,
+            "docs/gaits.md is out of date; run with BLESS_GAITS=1"
+        );
+    }
+}
