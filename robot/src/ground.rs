@@ -140,3 +140,68 @@ impl Place {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn assert_at(place: Place, forward: f64, left: f64, turn: f64) {
+        let travel = place.travel();
+        let off = (travel.forward - forward).hypot(travel.left - left);
+        assert!(
+            off < 1e-12 && (travel.turn - turn).abs() < 1e-12,
+            "{travel:?}"
+        );
+    }
+
+    #[test]
+    fn a_body_moves_along_its_own_axes() {
+        assert_at(Place::START.moved([10.0, 0.0, 0.0]), 10.0, 0.0, 0.0);
+        assert_at(Place::START.moved([0.0, 10.0, 0.0]), 0.0, 10.0, 0.0);
+        // Having turned left, ahead is to the left and left is behind.
+        let turned = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
+        assert_at(turned.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
+        assert_at(turned.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);
+    }
+
+    #[test]
+    fn a_body_that_turns_as_it_moves_follows_a_circle() {
+        // A quarter and a half of a circle of radius 10 to the left.
+        assert_at(
+            Place::START.moved([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
+            10.0,
+            10.0,
+            90.0,
+        );
+        assert_at(Place::START.moved([10.0 * PI, 0.0, PI]), 0.0, 20.0, 180.0);
+    }
+
+    #[test]
+    fn feet_stand_where_the_parallelograms_put_them() {
+        let feet = Feet {
+            hip_forward: 55.0,
+            hip_side: 35.0,
+            mount: 0.0,
+            reach: 45.0,
+        };
+        assert_eq!(
+            feet.at([0.0; 4]),
+            [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
+        );
+        let ahead = feet.at([90.0; 4]);
+        let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
+        for (foot, wanted) in ahead.into_iter().zip(expected) {
+            assert!(
+                (foot[0] - wanted[0]).hypot(foot[1] - wanted[1]) < 1e-12,
+                "{foot:?}"
+            );
+        }
+        let splayed = Feet {
+            mount: 90.0,
+            ..feet
+        }
+        .at([0.0; 4]);
+        assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-12);
+    }
+}

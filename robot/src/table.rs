@@ -193,11 +193,11 @@ impl Shelf {
         let ahead = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
         let found = self.samples.iter().enumerate().find_map(|(wave, known)| {
-            let (rotation, sign) = same(known, &samples, SAME / amplitude.abs())?;
+            let rotation = same(known, &samples, SAME / amplitude.abs())?;
             Some(Part {
                 wave,
                 ahead: ahead + rotation as f64 / SAMPLES as f64,
-                amplitude: amplitude * sign,
+                amplitude,
             })
         });
         Some(found.unwrap_or_else(|| {
@@ -223,12 +223,9 @@ impl Shelf {
     }
 }
 
-/// The rotation and sign by which `known` gives `samples` within `tolerance`.
-fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<(usize, f64)> {
-    let candidates = (0..SAMPLES).flat_map(|rotation| [(rotation, 1.0), (rotation, -1.0)]);
-    let fits = |&(rotation, sign): &(usize, f64)| {
-        (0..SAMPLES)
-            .all(|i| (samples[i] - sign * known[(i + rotation) % SAMPLES]).abs() <= tolerance)
-    };
-    { candidates }.find(fits)
+/// The rotation by which `known` gives `samples` within `tolerance`.
+fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<usize> {
+    (0..SAMPLES).find(|rotation| {
+        (0..SAMPLES).all(|i| (samples[i] - known[(i + rotation) % SAMPLES]).abs() <= tolerance)
+    })
 }

@@ -40,6 +40,70 @@ fn sides_of_unlike_ends_carry_their_offset() {
 }
 
 #[test]
+fn every_link_goes_where_it_belongs() {
+    for (from, to, line) in [
+        (
+            "l1 = 30.0 ",
+            "l1 = 31.0",
+            "HEAD: FiveBar = FiveBar { base: 5120, left: 7936, right: 7680, coupler: 12800 }",
+        ),
+        (
+            "l4 = 30.0 ",
+            "l4 = 31.0",
+            "HEAD: FiveBar = FiveBar { base: 5120, left: 7680, right: 7936, coupler: 12800 }",
+        ),
+        (
+            "l6 = 30.0 ",
+            "l6 = 31.0",
+            "TAIL: FiveBar = FiveBar { base: 5120, left: 7936, right: 7680, coupler: 12800 }",
+        ),
+        (
+            "l9 = 30.0 ",
+            "l9 = 31.0",
+            "TAIL: FiveBar = FiveBar { base: 5120, left: 7680, right: 7936, coupler: 12800 }",
+        ),
+        (
+            "l11 = 30.0 ",
+            "l11 = 31.0",
+            "LEFT: Slider = Slider { offset: 0, base: 34560, front: 7680, rear: 7936,",
+        ),
+        (
+            "l14 = 30.0 ",
+            "l14 = 31.0",
+            "LEFT: Slider = Slider { offset: 0, base: 34560, front: 7936, rear: 7680,",
+        ),
+        (
+            "l16 = 30.0 ",
+            "l16 = 31.0",
+            "RIGHT: Slider = Slider { offset: 0, base: 34560, front: 7680, rear: 7936,",
+        ),
+        (
+            "l19 = 30.0 ",
+            "l19 = 31.0",
+            "RIGHT: Slider = Slider { offset: 0, base: 34560, front: 7936, rear: 7680,",
+        ),
+        (
+            "l13 = 45.0",
+            "l13 = 46.0",
+            "LEFT: Slider = Slider { offset: 0, base: 34560, front: 7680, rear: 7680, nominal: 23296, min: 19456, max: 34816 }",
+        ),
+        (
+            "l18 = 45.0",
+            "l18 = 46.0",
+            "RIGHT: Slider = Slider { offset: 0, base: 34560, front: 7680, rear: 7680, nominal: 23296, min: 19456, max: 34816 }",
+        ),
+        (
+            "us_per_degree = 10.0",
+            "us_per_degree = -12.5",
+            "Servo { pin: 9, neutral: 25230, neutral_cycles: 24000, gain: -18000, min_sweep: -13107, max_sweep: 13107 }",
+        ),
+    ] {
+        let source = with(from, to).expect(to).source();
+        assert!(source.contains(line), "{to}: no {line}");
+    }
+}
+
+#[test]
 fn the_hash_covers_all_that_the_firmware_gets() {
     let robot = robot();
     let hash = robot.tables_hash();
