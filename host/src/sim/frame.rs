@@ -8,7 +8,7 @@ pub const FRAME: u64 = 20 * CYCLES_PER_MS;
 
 /// Cycles between two servos' pulses. A pulse that comes this much before its
 /// frame's start still belongs to it, halved.
-const SLOT: u64 = FRAME / 5;
+pub(super) const SLOT: u64 = FRAME / 5;
 
 /// The servo pulses of one frame, in servo order A1, A2, A3, A4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

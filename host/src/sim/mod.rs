@@ -8,6 +8,7 @@ mod report;
 pub mod script;
 pub mod session;
 mod timeline;
+pub mod twin;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -99,6 +100,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     });
     bar.finish_and_clear();
 
+    let commands = recording
+        .frames
+        .first()
+        .map(|first| twin::play(&recording.heard, first.start, recording.frames.len()).widths);
     let instants = analysis::instants(&robot, &recording.frames);
     write_file(&args.svg, &timeline::draw(&robot, &instants, &script))?;
     let report = Report {
@@ -109,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         },
         seconds: recording.cycles as f64 / FREQUENCY as f64,
         wall_seconds: recording.wall.as_secs_f64(),
-        servos: analysis::servos(&robot, &recording.frames, &instants, None),
+        servos: analysis::servos(&robot, &recording.frames, &instants, commands.as_deref()),
         safety: analysis::safety(&robot, &instants),
         way: analysis::way(&robot, &instants, &script),
         most_pins_high: recording.most_pins_high,

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use simulated_uno::{CYCLES_PER_MS, Pin, State, Uno, most_pins_high};
+use simulated_uno::{CYCLES_PER_MS, Pin, SerialByte, State, Uno, most_pins_high};
 
 use super::console::Console;
 use super::frame::{FRAME, Frame, frames, opens};
@@ -37,8 +37,8 @@ pub struct Recording {
     pub dialogue: Vec<Said>,
     /// Every frame from A1's first pulse on.
     pub frames: Vec<Frame>,
-    /// Cycle of each byte of a command when it was complete at the UNO.
-    pub heard: Vec<(u64, u8)>,
+    /// The bytes of the commands, complete at the UNO.
+    pub heard: Vec<SerialByte>,
     /// The most servo pins high at once.
     pub most_pins_high: u32,
     /// Cycles simulated.
@@ -104,11 +104,7 @@ pub fn play(
     Recording {
         dialogue,
         frames,
-        heard: uno
-            .heard()
-            .iter()
-            .map(|byte| (byte.cycle, byte.byte))
-            .collect(),
+        heard: uno.heard(),
         most_pins_high: most_pins_high(&edges),
         cycles: uno.cycle(),
         state: uno.state().clone(),

@@ -94,8 +94,8 @@ impl Chart<'_> {
             let (x, end) = (self.x(from), self.x(to));
             let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS), (end - x, 26.0), fill));
-            // About 8 px a letter: leave out what would run over.
-            if command.len() as f64 * 8.5 < end - x {
+            // About 7.5 px a letter: leave out what would run over.
+            if command.len() as f64 * 7.5 < end - x {
                 let at = ((x + end) / 2.0, COMMANDS + 18.0);
                 group = group.add(text(command, at, 15.0, DARK, Anchor::Middle));
             }
