@@ -55,26 +55,34 @@ pub fn pose<W: uWrite + ?Sized>(out: &mut W, pose: &Pose, between: char) -> Resu
         if servo > 0 {
             out.write_char(between)?;
         }
-        fixed(out, i32::from(pose.centideg(servo)), 2)?;
+        number(out, pose.centideg(servo).into(), 2)?;
     }
     Ok(())
 }
 
-/// Prints a whole number.
+/// Prints a number, the last `decimals` of its digits behind a point.
 #[inline(never)]
-pub fn number<W: uWrite + ?Sized>(out: &mut W, value: u32) -> Result<(), W::Error> {
+pub fn number<W>(out: &mut W, value: u32, decimals: usize) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
     let mut rest = value;
     let mut begun = false;
-    for place in 0..DECADES.len() {
+    let mut place = DECADES.len();
+    while place > 0 {
+        place -= 1;
         let unit = DECADES.at(place).load();
         let mut digit = b'0';
         while rest >= unit {
             rest -= unit;
             digit += 1;
         }
-        begun |= digit != b'0' || unit == 1;
+        begun |= digit != b'0' || place <= decimals;
         if begun {
             out.write_char(char::from(digit & 0x7f))?;
+            if place == decimals && place > 0 {
+                out.write_char('.')?;
+            }
         }
     }
     Ok(())
@@ -82,28 +90,21 @@ pub fn number<W: uWrite + ?Sized>(out: &mut W, value: u32) -> Result<(), W::Erro
 
 flash! {
     const DECADES: [u32; 10] = [
-        1_000_000_000, 100_000_000, 10_000_000, 1_000_000, 100_000, 10_000, 1_000, 100, 10, 1,
+        1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
     ];
 }
 
-/// Prints a number with `decimals` (2 or 3) behind the point.
+/// Prints a number that may be negative, `decimals` behind the point.
 #[inline(never)]
-pub fn fixed<W: uWrite + ?Sized>(out: &mut W, value: i32, decimals: u8) -> Result<(), W::Error> {
+pub fn signed<W: uWrite + ?Sized>(
+    out: &mut W,
+    value: i16,
+    decimals: usize,
+) -> Result<(), W::Error> {
     if value < 0 {
         out.write_char('-')?;
     }
-    let size = value.unsigned_abs() as u16;
-    let unit = if decimals == 3 { 1000 } else { 100 };
-    number(out, u32::from(size / unit))?;
-    out.write_char('.')?;
-    let part = size % unit;
-    if decimals == 3 && part < 100 {
-        out.write_char('0')?;
-    }
-    if part < 10 {
-        out.write_char('0')?;
-    }
-    number(out, u32::from(part))
+    number(out, value.unsigned_abs().into(), decimals)
 }
 
 impl Refusal {
@@ -154,8 +155,17 @@ fn print_travel<W: uWrite + ?Sized>(index: u8, out: &mut W) -> Result<(), W::Err
     servo(out, index)?;
     Text::Beyond.print(out)?;
     let servo = &SERVOS[usize::from(index & 3)];
-    let end = |sweep| i32::from(centideg_from_angle(servo.angle_at(sweep)));
-    range(out, end(servo.min_sweep), end(servo.max_sweep))
+    number(
+        out,
+        centideg_from_angle(servo.angle_at(servo.min_sweep)).into(),
+        2,
+    )?;
+    dots(out)?;
+    number(
+        out,
+        centideg_from_angle(servo.angle_at(servo.max_sweep)).into(),
+        2,
+    )
 }
 
 /// Prints what is wrong with a pose: the margin, its value and its limit.
@@ -169,13 +179,14 @@ pub fn print_hazard<W: uWrite + ?Sized>(hazard: Hazard, out: &mut W) -> Result<(
         } else {
             (Text::Right, &RIGHT)
         };
-        let hundredths = |length| i32::from(hundredths_from_length(length));
         side.print(out)?;
         Text::Slider.print(out)?;
-        fixed(out, hundredths(hazard.value), 2)?;
+        signed(out, hundredths_from_length(hazard.value), 2)?;
         Text::Within.print(out)?;
         let [least, most] = slider.stroke();
-        return range(out, hundredths(least), hundredths(most));
+        signed(out, hundredths_from_length(least), 2)?;
+        dots(out)?;
+        return signed(out, hundredths_from_length(most), 2);
     }
     match kind {
         Kind::Type2 if which == 0 => Text::Type2Head,
@@ -188,18 +199,14 @@ pub fn print_hazard<W: uWrite + ?Sized>(hazard: Hazard, out: &mut W) -> Result<(
         servo(out, which)?;
     }
     Text::Is.print(out)?;
-    fixed(out, i32::from(thousandths_from_q15(hazard.value)), 3)?;
+    signed(out, thousandths_from_q15(hazard.value), 3)?;
     Text::Least.print(out)?;
-    fixed(out, i32::from(thousandths_from_q15(LIMITS.least(kind))), 3)
+    signed(out, thousandths_from_q15(LIMITS.least(kind)), 3)
 }
 
-/// `-15.00..45.00`.
-#[inline(never)]
-fn range<W: uWrite + ?Sized>(out: &mut W, least: i32, most: i32) -> Result<(), W::Error> {
-    fixed(out, least, 2)?;
+fn dots<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
     out.write_char('.')?;
-    out.write_char('.')?;
-    fixed(out, most, 2)
+    out.write_char('.')
 }
 
 #[inline(never)]

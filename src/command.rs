@@ -60,6 +60,7 @@ pub const WATCH_MOST: u16 = 10_000;
 const ANGLE_MOST: i32 = TURN_CENTIDEG;
 
 /// Reads a line that is trimmed, not empty and in lower case.
+#[inline(never)]
 pub fn parse(line: &[u8]) -> Result<Command, Misread> {
     let mut words = Words(line);
     let first = words.next();

@@ -8,6 +8,7 @@
 use ufmt::uWrite;
 
 use crate::answer::{self, Answer, Refusal};
+use crate::clearance::Clearance;
 use crate::command::{Command, parse};
 use crate::gait::GaitId;
 use crate::line::{Ended, Line};
@@ -30,7 +31,7 @@ pub struct Counters {
     pub rx_lost: u16,
 }
 
-const HELP: [Text; 8] = [
+const HELP: [Text; 7] = [
     Text::HelpGaits,
     Text::HelpStop,
     Text::HelpRest,
@@ -38,7 +39,6 @@ const HELP: [Text; 8] = [
     Text::HelpPose,
     Text::HelpStatus,
     Text::HelpWatch,
-    Text::HelpHelp,
 ];
 
 /// The robot as its console sees it.
@@ -99,6 +99,7 @@ impl Console {
     }
 
     /// Takes a byte from the serial line and acts on it if it ends a line.
+    #[inline(never)]
     pub fn hear(&mut self, byte: u8) {
         self.answer = match self.line.push(byte) {
             None => return,
@@ -138,7 +139,7 @@ impl Console {
         } else if self.watch_due {
             self.watch_due = false;
             Text::WatchTime.print(out)?;
-            answer::number(out, self.motion.frames().into())?;
+            answer::number(out, self.motion.frames().into(), 0)?;
             Text::WatchPose.print(out)?;
             answer::pose(out, self.motion.pose(), ',')?;
             end_line(out)
@@ -163,7 +164,7 @@ impl Console {
             _ if resting => return Err(Refusal::Resting),
             Command::Gait(gait) => self.motion.gait(gait),
             Command::Stop => self.motion.stop(),
-            Command::Pose(pose) => self.motion.pose_to(pose).map_err(Refusal::Unsafe)?,
+            Command::Pose(pose) => self.motion.pose_to(&pose).map_err(Refusal::Unsafe)?,
         }
         Ok(Answer::Done)
     }
@@ -207,20 +208,22 @@ impl Console {
             Activity::Rest => Text::Rest.print(out)?,
         }
         Text::StatusPhase.print(out)?;
-        answer::fixed(out, i32::from(thousandths_from_phase(motion.phase())), 3)?;
+        answer::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
         Text::WatchPose.print(out)?;
         answer::pose(out, motion.pose(), ',')?;
         Text::StatusMargin.print(out)?;
-        let margin = thousandths_from_q15(motion.clearance().smallest());
-        answer::fixed(out, i32::from(margin), 3)?;
-        Text::StatusSpeed.print(out)?;
-        answer::number(out, motion.speed().into())?;
-        Text::StatusFrames.print(out)?;
-        answer::number(out, motion.frames().into())?;
-        Text::StatusLate.print(out)?;
-        answer::number(out, counters.late.into())?;
-        Text::StatusRxLost.print(out)?;
-        answer::number(out, counters.rx_lost.into())?;
+        let margin = thousandths_from_q15(Clearance::of(motion.pose()).smallest());
+        answer::signed(out, margin, 3)?;
+        let counts = [
+            (Text::StatusSpeed, motion.speed().into()),
+            (Text::StatusFrames, motion.frames()),
+            (Text::StatusLate, counters.late.into()),
+            (Text::StatusRxLost, counters.rx_lost.into()),
+        ];
+        for (key, count) in &counts {
+            key.print(out)?;
+            answer::number(out, *count, 0)?;
+        }
         Text::StatusGuard.print(out)?;
         match motion.hazard() {
             None => Text::GuardClear,
@@ -258,7 +261,7 @@ fn print_banner<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
 #[inline(never)]
 
 fn print_help<W: uWrite + ?Sized>(out: &mut W, line: usize) -> Result<(), W::Error> {
-    let text = HELP.get(line).copied().unwrap_or(Text::HelpHelp);
+    let text = HELP.get(line).copied().unwrap_or(Text::HelpStop);
     text.print(out)?;
     if text == Text::HelpGaits {
         for gait in GaitId::all() {

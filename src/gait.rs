@@ -3,7 +3,7 @@
 //! Feet are not lifted; each leg swings and drags its pad. What makes the
 //! robot go is the shape of the swing and the order of the legs, so a gait is
 //! a waveform read at four offsets with four gains. Waveforms are tables of
-//! 256 samples in flash, computed and checked by the build script; between
+//! 128 samples in flash, computed and checked by the build script; between
 //! samples a straight line is within 0.1 deg of the real curve.
 
 use lizard_avr::mul;
@@ -87,9 +87,9 @@ impl Channel {
         }
         let wave = WAVES.at(usize::from(self.wave));
         let at = phase.wrapping_add(self.offset);
-        let (index, fraction) = ((at >> 8) as u8, at as u8);
+        let (index, fraction) = ((at >> 9) as u8, (at >> 1) as u8);
         let here = wave.at(usize::from(index)).load();
-        let next = wave.at(usize::from(index.wrapping_add(1))).load();
+        let next = wave.at(usize::from((index + 1) & 0x7f)).load();
         let rise = (mul(next - here, i16::from(fraction)) + 128) >> 8;
         let value = here + rise as i16;
         (mul(value, self.gain).wrapping_add(1 << 13) >> 14) as i16

@@ -17,11 +17,6 @@ mod board;
 
 use board::{led, pulses, serial, sleep};
 
-/// Frames of half a heartbeat: on and off for half a second each, and five
-/// times as fast while the guard holds the robot.
-const HEARTBEAT: u32 = 25;
-const ALARM: u32 = 5;
-
 #[avr_device::entry]
 fn main() -> ! {
     board::start();
@@ -51,12 +46,14 @@ fn main() -> ! {
     }
 }
 
-/// The LED's heartbeat.
+/// The LED: a slow heartbeat, on and off for 0.64 s each, and eight times as
+/// fast while the guard holds the robot.
 fn beat(console: &Console) -> bool {
+    let frames = console.motion().frames() as u8;
     let half = if console.motion().hazard().is_some() {
-        ALARM
+        4
     } else {
-        HEARTBEAT
+        32
     };
-    (console.motion().frames() / half) & 1 == 0
+    frames & half == 0
 }

@@ -64,10 +64,13 @@ enum Path {
 }
 
 /// Where to go next, once the present motion has lost its pace.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Goal {
+    None,
+    /// The gait.
     Gait(GaitId),
-    Pose(Pose),
+    /// The pose that is wished for.
+    Wish,
 }
 
 /// The robot's motion.
@@ -76,14 +79,15 @@ pub struct Motion {
     activity: Activity,
     path: Path,
     stroke: Stroke,
-    goal: Option<Goal>,
+    goal: Goal,
+    wish: Pose,
+    target: Pose,
     gait: Gait,
     phase: u32,
     pace: u16,
     speed: u8,
     waking: u8,
     pose: Pose,
-    clearance: Clearance,
     hazard: Option<Hazard>,
     frames: u32,
 }
@@ -96,14 +100,15 @@ impl Motion {
             activity: Activity::Gait(GaitId::STAND),
             path: Path::Gait,
             stroke: Stroke::default(),
-            goal: None,
+            goal: Goal::None,
+            wish: Pose::NEUTRAL,
+            target: Pose::NEUTRAL,
             gait: GaitId::STAND.load(),
             phase: 0,
             pace: 0,
             speed: 100,
             waking: 0,
             pose: Pose::NEUTRAL,
-            clearance: Clearance::of(&Pose::NEUTRAL),
             hazard: None,
             frames: 0,
         }
@@ -119,17 +124,18 @@ impl Motion {
         }
         self.activity = Activity::Gait(gait);
         if !same {
-            self.goal = Some(Goal::Gait(gait));
+            self.goal = Goal::Gait(gait);
         }
     }
 
     /// Goes to a pose; or says what is wrong with it, and changes nothing.
-    pub fn pose_to(&mut self, pose: Pose) -> Result<(), Hazard> {
-        match Clearance::of(&pose).hazard() {
+    pub fn pose_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
+        match Clearance::of(pose).hazard() {
             Some(hazard) => Err(hazard),
             None => {
                 self.activity = Activity::Pose;
-                self.goal = Some(Goal::Pose(pose));
+                self.goal = Goal::Wish;
+                self.wish = *pose;
                 Ok(())
             }
         }
@@ -188,11 +194,6 @@ impl Motion {
         &self.pose
     }
 
-    /// The margins of the last frame's pose.
-    pub const fn clearance(&self) -> &Clearance {
-        &self.clearance
-    }
-
     /// Speed of gaits in percent.
     pub const fn speed(&self) -> u8 {
         self.speed
@@ -208,10 +209,11 @@ impl Motion {
         self.hazard
     }
 
+    #[inline(never)]
     fn freeze(&mut self, activity: Activity) {
         self.activity = activity;
         self.path = Path::Hold;
-        self.goal = None;
+        self.goal = Goal::None;
         self.pace = 0;
         self.phase = 0;
     }
@@ -226,47 +228,45 @@ impl Motion {
             Path::Hold => return,
             Path::StrokeToPose | Path::StrokeToGait => {
                 self.stroke.advance(self.pace);
-                self.stroke.pose()
+                self.stroke.pose(&self.target)
             }
             Path::Gait => {
                 phase = self.gait.advance(self.phase, self.pace);
                 self.gait.pose(phase)
             }
         };
-        let clearance = Clearance::of(&pose);
-        if let Some(hazard) = clearance.hazard() {
+        if let Some(hazard) = Clearance::of(&pose).hazard() {
             self.freeze(Activity::Stop);
             self.hazard = Some(hazard);
             return;
         }
         self.phase = phase;
         self.pose = pose;
-        self.clearance = clearance;
         self.arrive();
     }
 
     /// Starts the stroke towards the goal once the old motion has no pace.
     fn turn_to_goal(&mut self) {
-        let Some(goal) = self.goal else { return };
         if self.path != Path::Hold && self.pace > 0 {
             return;
         }
-        self.goal = None;
-        self.hazard = None;
-        self.phase = 0;
-        self.pace = FULL;
-        let target = match goal {
-            Goal::Pose(pose) => {
+        match self.goal {
+            Goal::None => return,
+            Goal::Wish => {
                 self.path = Path::StrokeToPose;
-                pose
+                self.target = self.wish;
             }
             Goal::Gait(gait) => {
                 self.path = Path::StrokeToGait;
                 self.gait = gait.load();
-                self.gait.pose(0)
+                self.target = self.gait.pose(0);
             }
-        };
-        self.stroke = Stroke::new(self.pose, target);
+        }
+        self.stroke = Stroke::new(&self.pose, &self.target);
+        self.goal = Goal::None;
+        self.hazard = None;
+        self.phase = 0;
+        self.pace = FULL;
     }
 
     /// At the end of a stroke: the gait that it led to, or rest in the pose.
@@ -284,7 +284,7 @@ impl Motion {
 
     fn change_pace(&mut self) {
         let wanted = match self.path {
-            _ if self.goal.is_some() => 0,
+            _ if self.goal != Goal::None => 0,
             Path::Gait => pace_of(self.speed),
             Path::Hold | Path::StrokeToPose | Path::StrokeToGait => FULL,
         };

@@ -23,7 +23,6 @@ const END: u16 = 1 << 15;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stroke {
     from: Pose,
-    to: Pose,
     /// Share of the time that goes by in each frame at full pace, Q15.
     step: u16,
     /// Share of the time gone by, Q15.
@@ -32,12 +31,11 @@ pub struct Stroke {
 
 impl Stroke {
     /// A stroke between two poses.
-    pub fn new(from: Pose, to: Pose) -> Self {
-        let way = from.farthest(&to);
+    pub fn new(from: &Pose, to: &Pose) -> Self {
+        let way = from.farthest(to);
         let frames = (mul_unsigned(way, FRAMES_PER_WAY) >> 16) as u16 + 1;
         Self {
-            from,
-            to,
+            from: *from,
             step: END / frames.max(SHORTEST),
             gone: 0,
         }
@@ -54,14 +52,14 @@ impl Stroke {
         self.gone == END
     }
 
-    /// Where the servos stand now.
-    pub fn pose(&self) -> Pose {
+    /// Where the servos stand now, on their way to `target`.
+    pub fn pose(&self, target: &Pose) -> Pose {
         if self.arrived() {
-            return self.to;
+            return *target;
         }
         let share = smoothstep(self.gone) as i16;
         let mut pose = self.from;
-        for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
+        for (sweep, to) in pose.0.iter_mut().zip(&target.0) {
             // Twice half the way, because a way may be more than half a turn.
             let half = (*to >> 1) - (*sweep >> 1);
             *sweep = sweep.wrapping_add(((mul(half, share) + (1 << 13)) >> 14) as i16);

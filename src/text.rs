@@ -26,20 +26,19 @@ texts! {
     Banner = "# lizard ";
     Version = env!("CARGO_PKG_VERSION");
     BannerTables = " tables ";
-    BannerEnd = ", send help for the commands";
+    BannerEnd = ", send help";
     WatchTime = "# t=";
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
 
     // Help, a line each.
     HelpGaits = "# gaits:";
-    HelpStop = "# stop: freeze in this pose";
-    HelpRest = "# rest: end the pulses, servos go limp; stand wakes them";
-    HelpSpeed = "# speed <10..100>: pace of gaits in percent";
-    HelpPose = "# pose <A1> <A2> <A3> <A4>: go to chassis angles in degrees";
-    HelpStatus = "# status: gait, phase, pose, margins and counters";
-    HelpWatch = "# watch <n>: report the pose every n frames, 0 ends it";
-    HelpHelp = "# help or ?: this list";
+    HelpStop = "# stop: freeze here";
+    HelpRest = "# rest: pulses off, stand wakes";
+    HelpSpeed = "# speed <10..100>: percent of a gait's pace";
+    HelpPose = "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame";
+    HelpStatus = "# status: how things are";
+    HelpWatch = "# watch <n>: pose every n frames, 0 ends it";
 
     // Answers, and the words of commands.
     Ok = "ok ";
@@ -65,15 +64,15 @@ texts! {
     Err = "err ";
 
     // Reasons.
-    Unknown = "unknown command, send help for the list";
+    Unknown = "unknown command, send help";
     Surplus = "this command takes no argument";
     Incomplete = "this command wants one more word";
-    SpeedWants = "speed wants one whole number, 10..100";
+    SpeedWants = "speed wants a whole number";
     SpeedRange = "speed must be 10..100";
-    WatchWants = "watch wants one whole number, 0..10000";
+    WatchWants = "watch wants a whole number";
     WatchRange = "watch must be 0..10000";
-    PoseWants = "pose wants four angles in degrees, at most two decimals";
-    Beyond = " must be within its travel, ";
+    PoseWants = "pose wants four angles with at most two decimals";
+    Beyond = " reaches ";
     Type2Head = "type-2 margin of the head";
     Type2Tail = "type-2 margin of the tail";
     Type1 = "type-1 margin of ";
@@ -85,7 +84,7 @@ texts! {
     Slider = " slider is at ";
     Within = " mm, stroke ";
     TooLong = "a line has at most 63 characters";
-    Resting = "servos are resting, send stand first";
+    Resting = "servos are resting, send stand";
 }
 
 const COUNT: usize = SENTENCES.len();

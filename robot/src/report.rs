@@ -37,9 +37,9 @@ pub struct Report {
     pub flash: usize,
 }
 
-/// Bytes of a waveform and of a gait in flash: 256 samples of two; a name of
+/// Bytes of a waveform and of a gait in flash: 128 samples of two; a name of
 /// 12, a step of 4, and four channels of 5 (padded to 6 on the host, not there).
-const WAVE_BYTES: usize = 512;
+const WAVE_BYTES: usize = 2 * SAMPLES;
 const GAIT_BYTES: usize = 12 + 4 + 4 * 5;
 
 impl Report {

@@ -1,4 +1,4 @@
-//! The gaits as the firmware holds them: waveforms of 256 samples that several
+//! The gaits as the firmware holds them: waveforms of 128 samples that several
 //! servos share, each servo with an offset and a gain.
 //!
 //! Integers only, in the firmware's own arithmetic: an angle is an i16 of
@@ -10,7 +10,7 @@ use crate::servo::FORWARD;
 use crate::waveform::{Waveform, canonical};
 
 /// Samples of a waveform.
-pub const SAMPLES: usize = 256;
+pub const SAMPLES: usize = 128;
 /// Steps of an angle in one degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 /// Frames of 20 ms in a second.
@@ -57,10 +57,11 @@ pub struct Tables {
 /// A waveform's value between its samples: a straight line, rounded to nearest,
 /// halves up.
 pub fn interpolate(wave: &[i16; SAMPLES], phase: u16) -> i16 {
-    let [index, fraction] = phase.to_be_bytes();
-    let here = i32::from(wave[usize::from(index)]);
-    let next = i32::from(wave[usize::from(index.wrapping_add(1))]);
-    let rise = (next - here) * i32::from(fraction);
+    let index = usize::from(phase >> 9);
+    let fraction = i32::from((phase >> 1) & 0xff);
+    let here = i32::from(wave[index]);
+    let next = i32::from(wave[(index + 1) % SAMPLES]);
+    let rise = (next - here) * fraction;
     (here + ((rise + 128) >> 8)) as i16
 }
 
