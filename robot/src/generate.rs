@@ -63,7 +63,10 @@ impl Display for Body<'_> {
             (
                 "The tail's loop in tail-local angles, A4 on its left.",
                 "TAIL: FiveBar",
-                five_bar(&lizard.tail(), slopes(lizard).last().map_or("HEAD_SLOPE", |(name, _)| name)),
+                five_bar(
+                    &lizard.tail(),
+                    slopes(lizard).last().map_or("HEAD_SLOPE", |(name, _)| name),
+                ),
             ),
             (
                 "The slider between A1 and A4.",

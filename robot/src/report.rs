@@ -7,6 +7,7 @@ use crate::accuracy::{self, TableError};
 use crate::audit::Audit;
 use crate::ground::Travel;
 use crate::servo::NAMES;
+use crate::table::SAMPLES;
 use crate::{Gait, Robot, accuracy::ALL_PHASES};
 
 /// One gait's figures.

@@ -8,8 +8,8 @@ fn the_source_holds_the_robots_numbers_in_the_firmwares_units() {
     for line in [
         // 138.590378 deg of 65536 steps; 1500 us of 16 cycles; 10 us per degree.
         "Servo { pin: 9, neutral: 25230, neutral_cycles: 24000, gain: 14400, min_sweep: -16384, max_sweep: 16384 }",
-        "pub const HEAD: FiveBar = FiveBar { base: 5120, left: 7680, right: 7680, coupler: 12800 };",
-        "pub const TAIL: FiveBar = FiveBar { base: 5120, left: 7680, right: 7680, coupler: 12800 };",
+        "pub const HEAD: FiveBar = FiveBar::new(5120, 7680, 7680, Slope::new(12800, HEAD_SLOPE));",
+        "pub const TAIL: FiveBar = FiveBar::new(5120, 7680, 7680, Slope::new(12800, HEAD_SLOPE));",
         "Slider { offset: 0, base: 34560, front: 7680, rear: 7680, nominal: 23040, min: 19200, max: 34560 }",
         "pub const LIMITS: Limits = Limits { type2: 9831, type1: 9831, leg: 9831 };",
         "pub const SLEW: u16 = 1092;",
@@ -45,22 +45,22 @@ fn every_link_goes_where_it_belongs() {
         (
             "l1 = 30.0 ",
             "l1 = 31.0",
-            "HEAD: FiveBar = FiveBar { base: 5120, left: 7936, right: 7680, coupler: 12800 }",
+            "HEAD: FiveBar = FiveBar::new(5120, 7936, 7680, Slope::new(12800, HEAD_SLOPE))",
         ),
         (
             "l4 = 30.0 ",
             "l4 = 31.0",
-            "HEAD: FiveBar = FiveBar { base: 5120, left: 7680, right: 7936, coupler: 12800 }",
+            "HEAD: FiveBar = FiveBar::new(5120, 7680, 7936, Slope::new(12800, HEAD_SLOPE))",
         ),
         (
             "l6 = 30.0 ",
             "l6 = 31.0",
-            "TAIL: FiveBar = FiveBar { base: 5120, left: 7936, right: 7680, coupler: 12800 }",
+            "TAIL: FiveBar = FiveBar::new(5120, 7936, 7680, Slope::new(12800, HEAD_SLOPE))",
         ),
         (
             "l9 = 30.0 ",
             "l9 = 31.0",
-            "TAIL: FiveBar = FiveBar { base: 5120, left: 7680, right: 7936, coupler: 12800 }",
+            "TAIL: FiveBar = FiveBar::new(5120, 7680, 7936, Slope::new(12800, HEAD_SLOPE))",
         ),
         (
             "l11 = 30.0 ",

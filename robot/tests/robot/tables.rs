@@ -92,7 +92,7 @@ fn a_robot_that_only_stands_has_a_table_of_zeros() {
     let text = crate::text();
     let cut = text.find("[gait.walk]").expect("walk");
     let robot = Robot::parse(&text[..cut]).expect("a standing robot");
-    assert_eq!(robot.tables.waves, [[0; 256]]);
+    assert_eq!(robot.tables.waves, [[0; 128]]);
     assert_eq!(robot.tables.sweeps(0, 12345), [0; 4]);
 }
 
@@ -134,5 +134,6 @@ fn gains_up_to_the_largest_share_one_table() {
         "the largest stride is stored as it is"
     );
     let peak = f64::from(*robot.tables.waves[0].iter().max().expect("samples")) / STEPS_PER_DEGREE;
-    assert!((peak - 22.0).abs() < 0.01, "{peak}");
+    // The peak lies between two samples.
+    assert!((peak - 22.0).abs() < 0.05, "{peak}");
 }
