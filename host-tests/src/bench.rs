@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use lizard_host::sim::console::{Console, Line};
 use lizard_host::sim::frame::{FRAME, Frame, frames, latest_start, next_start, opens, servo_pins};
 use lizard_robot::Robot;
-use simulated_uno::{CYCLES_PER_MS, Fidelity, SerialByte, State, Uno};
+use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, SerialByte, State, Uno};
 
 /// The longest wait for an answer, ms. The console promises much less.
 const PATIENCE_MS: u64 = 200;
@@ -168,6 +168,18 @@ impl FirmwareBench {
     /// If the firmware crashes, halts or is reset meanwhile.
     pub fn run_ms(&mut self, ms: u64) {
         self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS);
+    }
+
+    /// Lets time pass and times every call of a function of the firmware, named
+    /// as in `Console::frame`.
+    ///
+    /// # Panics
+    /// If the ELF has no such function, or more than one.
+    pub fn time_calls(&mut self, function: &str, ms: u64) -> Vec<Call> {
+        let symbol = self.uno.image().function(function);
+        let symbol = symbol.unwrap_or_else(|| panic!("the ELF has no one function {function}"));
+        let entry = symbol.address as u32;
+        self.uno.time_calls(entry, ms * CYCLES_PER_MS)
     }
 
     fn run_until(&mut self, cycle: u64) {

@@ -87,6 +87,30 @@ fn frames_hold_one_pulse_of_each_servo() {
 }
 
 #[test]
+fn a_function_of_the_program_is_timed_by_its_name() {
+    let mut bench = FirmwareBench::with_board(Uno::with_image(
+        c("#include <avr/io.h>
+            __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }
+            int main(void) { for (;;) work(); }"),
+        Fidelity::DataSheet,
+    ));
+    let calls = bench.time_calls("work", 10);
+    assert!(calls.len() > 100);
+    // The delay and `ret`.
+    assert!(
+        calls.iter().all(|call| call.cycles() == 1004),
+        "{:?}",
+        calls[0]
+    );
+}
+
+#[test]
+#[should_panic(expected = "no one function walk")]
+fn a_function_that_does_not_exist_is_a_failure() {
+    bench().time_calls("walk", 1);
+}
+
+#[test]
 fn a_resting_robot_has_silent_frames() {
     let mut bench = bench();
     bench.run_ms(100);

@@ -28,10 +28,10 @@ pub enum LoadError {
         source: std::io::Error,
     },
     /// The bytes are not an ELF file.
-    #[error("not an ELF file: {0}")]
+    #[error("not an ELF file of an AVR: {0}")]
     Elf(#[from] object::read::Error),
     /// The ELF file is for another machine.
-    #[error("the ELF file is not for an AVR")]
+    #[error("not an ELF file of an AVR")]
     NotAvr,
     /// A segment does not fit.
     #[error("{size} bytes at {address:#x} do not fit an ATmega328P")]
@@ -57,6 +57,21 @@ pub struct Symbol {
     pub size: u64,
     /// Whether it is a function.
     pub function: bool,
+}
+
+impl Symbol {
+    /// The name as its author wrote it, with its path.
+    #[must_use]
+    pub fn path(&self) -> String {
+        // `<lizard::console::Console>::frame` is `lizard::console::Console::frame`.
+        format!("{:#}", rustc_demangle::demangle(&self.name)).replace(['<', '>'], "")
+    }
+
+    fn is(&self, path: &str) -> bool {
+        let whole = self.path();
+        let before = whole.strip_suffix(path);
+        before.is_some_and(|before| before.is_empty() || before.ends_with("::"))
+    }
 }
 
 /// A firmware image, ready to load.
@@ -178,6 +193,21 @@ impl Image {
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<&Symbol> {
         self.symbols.iter().find(|symbol| symbol.name == name)
+    }
+
+    /// The one function whose path ends with `path`, such as `frame` or
+    /// `Console::frame`; `None` if there is none (the compiler may have inlined
+    /// it) or more than one.
+    #[must_use]
+    pub fn function(&self, path: &str) -> Option<&Symbol> {
+        let mut found = self
+            .symbols
+            .iter()
+            .filter(|symbol| symbol.function && symbol.is(path));
+        let first = found.next()?;
+        found
+            .all(|other| other.address == first.address)
+            .then_some(first)
     }
 
     /// Address after the last byte of flash used.

@@ -20,7 +20,7 @@ use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 use crate::{Failure, RobotFile};
 use report::Report;
 use script::Script;
-use session::Recording;
+use session::{Recording, Speaker};
 
 /// Run the firmware on a simulated Arduino UNO
 ///
@@ -92,7 +92,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         FidelityArg::DataSheet => Fidelity::DataSheet,
         FidelityArg::Stock => Fidelity::Stock,
     };
-    let mut uno = Uno::load(&elf, fidelity).map_err(|error| Failure::Input(error.to_string()))?;
+    let mut uno = Uno::load(&elf, fidelity)
+        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
     let pins = frame::servo_pins(&robot);
     let bar = progress_bar(script.end_ms);
     let recording = session::play(&mut uno, pins, &script, args.realtime, |ms| {
@@ -100,10 +101,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     });
     bar.finish_and_clear();
 
-    let commands = recording
-        .frames
-        .first()
-        .map(|first| twin::play(&recording.heard, first.start, recording.frames.len()).widths);
+    let commands = commands(&recording);
     let instants = analysis::instants(&robot, &recording.frames);
     write_file(&args.svg, &timeline::draw(&robot, &instants, &script))?;
     let report = Report {
@@ -140,6 +138,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
         State::Alive => Ok(()),
         _ => Err(Failure::Impossible(report.ended)),
     }
+}
+
+/// The widths that the firmware's core asks for, if the firmware's banner says
+/// that it was built from the same core and tables as this program.
+fn commands(recording: &Recording) -> Option<Vec<[u16; 4]>> {
+    let first = recording.frames.first()?.start;
+    let commands = twin::play(&recording.heard, first, recording.frames.len());
+    let mut robot = recording
+        .dialogue
+        .iter()
+        .filter(|said| said.by == Speaker::Robot);
+    let same = robot.next()?.line == commands.said.lines().next()?;
+    same.then_some(commands.widths)
 }
 
 fn ended(recording: &Recording) -> String {

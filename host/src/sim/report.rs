@@ -112,6 +112,12 @@ impl Report {
                 row.slew
             )?;
         }
+        if self.servos.iter().any(|row| row.width_error.is_none()) {
+            writeln!(
+                out,
+                "?: this firmware was not built from the same source as this program"
+            )?;
+        }
         writeln!(out)
     }
 
