@@ -139,7 +139,7 @@ impl Console {
         } else if self.watch_due {
             self.watch_due = false;
             Text::WatchTime.print(out)?;
-            answer::number(out, self.motion.frames().into(), 0)?;
+            answer::number(out, self.motion.frames(), 0)?;
             Text::WatchPose.print(out)?;
             answer::pose(out, self.motion.pose(), ',')?;
             end_line(out)
@@ -149,7 +149,6 @@ impl Console {
     }
 
     #[inline(never)]
-
     fn obey(&mut self, command: Command) -> Result<Answer, Refusal> {
         let resting = self.motion.activity() == Activity::Rest;
         match command {
@@ -259,7 +258,6 @@ fn print_banner<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
 }
 
 #[inline(never)]
-
 fn print_help<W: uWrite + ?Sized>(out: &mut W, line: usize) -> Result<(), W::Error> {
     let text = HELP.get(line).copied().unwrap_or(Text::HelpStop);
     text.print(out)?;

@@ -219,7 +219,6 @@ impl Motion {
     }
 
     #[inline(never)]
-
     fn proceed(&mut self) {
         self.turn_to_goal();
         self.change_pace();
