@@ -218,36 +218,13 @@ impl FiveBar {
     /// The paper's second constraint equation has theta2, l1, l2 where theta4,
     /// l4, l3 belong.
     pub fn inverse(&self, point: Vector) -> Result<[Assembly; 4], Fault> {
-        if !point.is_finite() {
-            return Err(Fault::NotFinite);
-        }
-        let to_left = point - self.left_shaft();
-        let to_right = point - self.right_shaft();
-        let bend_left = bend(to_left, self.crank_left, self.coupler_left, true)?;
-        let bend_right = bend(to_right, self.crank_right, self.coupler_right, false)?;
+        let arms = self.arms(point)?;
         let assembly = |left: Elbow, right: Elbow| {
-            // Outward is to the left of the line from the left shaft to the
-            // point, and to the right of the line from the right shaft.
-            let left_crank = match left {
-                Elbow::Outward => bend_left,
-                Elbow::Inward => bend_left.mirrored(),
-            };
-            let right_crank = match right {
-                Elbow::Outward => bend_right.mirrored(),
-                Elbow::Inward => bend_right,
-            };
-            let left_crank = rotate(left_crank, to_left);
-            let right_crank = rotate(right_crank, to_right);
-            let from_left = to_left - left_crank * (self.crank_left / left_crank.length());
-            let from_right = to_right - right_crank * (self.crank_right / right_crank.length());
+            let (left_crank, right_crank, branch) = arms.bent(left, right);
             Assembly {
                 left,
                 right,
-                branch: if from_left.cross(from_right) >= 0.0 {
-                    Branch::Ahead
-                } else {
-                    Branch::Behind
-                },
+                branch,
                 theta_left: left_crank.angle(),
                 theta_right: right_crank.angle(),
             }
@@ -259,6 +236,66 @@ impl FiveBar {
             assembly(Inward, Outward),
             assembly(Inward, Inward),
         ])
+    }
+
+    /// The pose with the apex at a point and both elbows outward: the inverse
+    /// without its arc tangents.
+    pub fn reach(&self, point: Vector) -> Result<FiveBarPose, Fault> {
+        let (left, right, branch) = self.arms(point)?.bent(Elbow::Outward, Elbow::Outward);
+        self.close(branch, left, right)
+    }
+
+    fn arms(&self, point: Vector) -> Result<Arms, Fault> {
+        if !point.is_finite() {
+            return Err(Fault::NotFinite);
+        }
+        let to_left = point - self.left_shaft();
+        let to_right = point - self.right_shaft();
+        Ok(Arms {
+            bars: *self,
+            to_left,
+            to_right,
+            left: bend(to_left, self.crank_left, self.coupler_left, true)?,
+            right: bend(to_right, self.crank_right, self.coupler_right, false)?,
+        })
+    }
+}
+
+/// Both arms on their way to a point.
+struct Arms {
+    bars: FiveBar,
+    /// From each shaft to the point.
+    to_left: Vector,
+    to_right: Vector,
+    /// Each crank against that line, bent counter-clockwise.
+    left: Vector,
+    right: Vector,
+}
+
+impl Arms {
+    /// Crank directions (length one) for a choice of elbows, and the branch.
+    fn bent(&self, left: Elbow, right: Elbow) -> (Vector, Vector, Branch) {
+        // Outward is to the left of the line from the left shaft to the point,
+        // and to the right of the line from the right shaft.
+        let left = match left {
+            Elbow::Outward => self.left,
+            Elbow::Inward => self.left.mirrored(),
+        };
+        let right = match right {
+            Elbow::Outward => self.right.mirrored(),
+            Elbow::Inward => self.right,
+        };
+        let unit = |v: Vector| v * (1.0 / v.length());
+        let left = unit(rotate(left, self.to_left));
+        let right = unit(rotate(right, self.to_right));
+        let from_left = self.to_left - left * self.bars.crank_left;
+        let from_right = self.to_right - right * self.bars.crank_right;
+        let branch = if from_left.cross(from_right) >= 0.0 {
+            Branch::Ahead
+        } else {
+            Branch::Behind
+        };
+        (left, right, branch)
     }
 }
 
