@@ -40,7 +40,6 @@ pub enum Answer {
 }
 
 /// Prints bytes of seven bits as they are.
-#[inline(never)]
 pub fn ascii<W: uWrite + ?Sized>(out: &mut W, bytes: &[u8]) -> Result<(), W::Error> {
     for byte in bytes {
         out.write_char(char::from(byte & 0x7f))?;
@@ -49,7 +48,6 @@ pub fn ascii<W: uWrite + ?Sized>(out: &mut W, bytes: &[u8]) -> Result<(), W::Err
 }
 
 /// Prints four chassis angles in degrees, with a separator between them.
-#[inline(never)]
 pub fn pose<W: uWrite + ?Sized>(out: &mut W, pose: &Pose, between: char) -> Result<(), W::Error> {
     for servo in 0..4 {
         if servo > 0 {
@@ -61,7 +59,6 @@ pub fn pose<W: uWrite + ?Sized>(out: &mut W, pose: &Pose, between: char) -> Resu
 }
 
 /// Prints a number, the last `decimals` of its digits behind a point.
-#[inline(never)]
 pub fn number<W>(out: &mut W, value: u32, decimals: usize) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
@@ -95,7 +92,6 @@ flash! {
 }
 
 /// Prints a number that may be negative, `decimals` behind the point.
-#[inline(never)]
 pub fn signed<W: uWrite + ?Sized>(
     out: &mut W,
     value: i16,
@@ -134,7 +130,6 @@ impl Refusal {
     }
 }
 
-#[inline(never)]
 fn print_misread<W: uWrite + ?Sized>(misread: Misread, out: &mut W) -> Result<(), W::Error> {
     let text = match misread {
         Misread::Unknown => Text::Unknown,
@@ -169,7 +164,6 @@ fn print_travel<W: uWrite + ?Sized>(index: u8, out: &mut W) -> Result<(), W::Err
 }
 
 /// Prints what is wrong with a pose: the margin, its value and its limit.
-#[inline(never)]
 pub fn print_hazard<W: uWrite + ?Sized>(hazard: Hazard, out: &mut W) -> Result<(), W::Error> {
     let which = hazard.check.which();
     let kind = hazard.check.kind();
@@ -209,7 +203,6 @@ fn dots<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
     out.write_char('.')
 }
 
-#[inline(never)]
 fn servo<W: uWrite + ?Sized>(out: &mut W, index: u8) -> Result<(), W::Error> {
     out.write_char('A')?;
     out.write_char(char::from(b'1' + (index & 3)))

@@ -60,7 +60,6 @@ pub const WATCH_MOST: u16 = 10_000;
 const ANGLE_MOST: i32 = TURN_CENTIDEG;
 
 /// Reads a line that is trimmed, not empty and in lower case.
-#[inline(never)]
 pub fn parse(line: &[u8]) -> Result<Command, Misread> {
     let mut words = Words(line);
     let first = words.next();
@@ -101,7 +100,6 @@ struct Words<'a>(&'a [u8]);
 
 impl<'a> Words<'a> {
     /// The next word; empty at the end of the line.
-    #[inline(never)]
     fn next(&mut self) -> &'a [u8] {
         let rest = self.0.trim_ascii_start();
         let length = rest
@@ -137,7 +135,6 @@ fn pose(mut words: Words) -> Result<Command, Misread> {
 }
 
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
-#[inline(never)]
 fn gait(line: &[u8]) -> Result<Command, Misread> {
     let mut misread = Misread::Unknown;
     for id in GaitId::all() {
@@ -168,7 +165,6 @@ fn whole(mut words: Words) -> Option<u16> {
 }
 
 /// An angle with at most two decimals, in hundredths.
-#[inline(never)]
 fn centideg(word: &[u8]) -> Option<i32> {
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),
@@ -187,7 +183,6 @@ fn centideg(word: &[u8]) -> Option<i32> {
 }
 
 /// Leading digits as a number, saturating, and what follows them.
-#[inline(never)]
 fn number(word: &[u8]) -> (Option<u16>, &[u8]) {
     let (mut value, mut rest) = (None, word);
     while let [first, others @ ..] = rest

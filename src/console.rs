@@ -77,6 +77,7 @@ impl Console {
     }
 
     /// One frame on: the pulses to send in it. To be called 50 times a second.
+    // Out of line, so that a simulator can time it by its name.
     #[inline(never)]
     pub fn frame(&mut self) -> Pulses {
         let was_held = self.motion.hazard().is_some();
@@ -99,6 +100,7 @@ impl Console {
     }
 
     /// Takes a byte from the serial line and acts on it if it ends a line.
+    // Out of line, as the next: half a kilobyte of flash.
     #[inline(never)]
     pub fn hear(&mut self, byte: u8) {
         self.answer = match self.line.push(byte) {
@@ -148,7 +150,6 @@ impl Console {
         }
     }
 
-    #[inline(never)]
     fn obey(&mut self, command: Command) -> Result<Answer, Refusal> {
         let resting = self.motion.activity() == Activity::Rest;
         match command {
@@ -239,7 +240,6 @@ impl Default for Console {
 }
 
 /// `# lizard 0.1.0 tables 1a2b3c4d, send help for the commands`.
-#[inline(never)]
 fn print_banner<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
     Text::Banner.print(out)?;
     Text::Version.print(out)?;
@@ -257,7 +257,6 @@ fn print_banner<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
     end_line(out)
 }
 
-#[inline(never)]
 fn print_help<W: uWrite + ?Sized>(out: &mut W, line: usize) -> Result<(), W::Error> {
     let text = HELP.get(line).copied().unwrap_or(Text::HelpStop);
     text.print(out)?;

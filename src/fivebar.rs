@@ -73,7 +73,6 @@ impl FiveBar {
     /// robot cannot be; type-1 of the left and of the right crank, negative
     /// for an elbow bent inwards. All zero where the loop cannot close or the
     /// crank tips meet.
-    #[inline(never)]
     pub fn margins(&self, left: Direction, right: Direction) -> [i16; 3] {
         // Half the unit of the bars, 1/128 mm, so that a distance of up to
         // 254 mm fits and the shift is one of whole bytes.
@@ -95,7 +94,6 @@ impl FiveBar {
     }
 
     /// The type-1 margin of a crank: `cross + 2 g dot` over `2 L`.
-    #[inline(never)]
     fn elbow(&self, tips: Tips, crank: Direction, slope: i16) -> i16 {
         let cross = upper((mul(tips.along, crank.sin) - mul(tips.across, crank.cos)) << 1);
         let dot = upper((mul(tips.along, crank.cos) + mul(tips.across, crank.sin)) << 1);

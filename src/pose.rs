@@ -30,7 +30,6 @@ pub struct Servo {
 
 impl Servo {
     /// The pulse width, in CPU cycles, that turns the servo to `sweep`.
-    #[inline(never)]
     pub fn width(&self, sweep: i16) -> u16 {
         let turned = (mul(sweep, self.gain) + (1 << 13)) >> 14;
         self.neutral_cycles.wrapping_add(turned as u16)

@@ -44,7 +44,6 @@ impl Slider {
     ///
     /// Written for the left side, where the front arm leads its crank by a
     /// right angle; the right side is its mirror image.
-    #[inline(never)]
     pub fn length_sq(&self, front: Direction, rear: Direction) -> u32 {
         let aside = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
         let ahead = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);

@@ -26,19 +26,19 @@ texts! {
     Banner = "# lizard ";
     Version = env!("CARGO_PKG_VERSION");
     BannerTables = " tables ";
-    BannerEnd = ", send help";
+    BannerEnd = ", send help for the commands";
     WatchTime = "# t=";
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
 
     // Help, a line each.
     HelpGaits = "# gaits:";
-    HelpStop = "# stop: freeze here";
-    HelpRest = "# rest: pulses off, stand wakes";
+    HelpStop = "# stop: freeze in this pose";
+    HelpRest = "# rest: end the pulses, stand wakes the servos";
     HelpSpeed = "# speed <10..100>: percent of a gait's pace";
     HelpPose = "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame";
-    HelpStatus = "# status: how things are";
-    HelpWatch = "# watch <n>: pose every n frames, 0 ends it";
+    HelpStatus = "# status: gait, phase, pose, smallest margin, counters";
+    HelpWatch = "# watch <n>: report the pose every n frames, 0 ends it";
 
     // Answers, and the words of commands.
     Ok = "ok ";
@@ -64,14 +64,14 @@ texts! {
     Err = "err ";
 
     // Reasons.
-    Unknown = "unknown command, send help";
+    Unknown = "unknown command, send help for the list";
     Surplus = "this command takes no argument";
     Incomplete = "this command wants one more word";
-    SpeedWants = "speed wants a whole number";
+    SpeedWants = "speed wants a whole number, 10..100";
     SpeedRange = "speed must be 10..100";
-    WatchWants = "watch wants a whole number";
+    WatchWants = "watch wants a whole number, 0..10000";
     WatchRange = "watch must be 0..10000";
-    PoseWants = "pose wants four angles with at most two decimals";
+    PoseWants = "pose wants four angles in degrees, at most two decimals";
     Beyond = " reaches ";
     Type2Head = "type-2 margin of the head";
     Type2Tail = "type-2 margin of the tail";
@@ -84,7 +84,7 @@ texts! {
     Slider = " slider is at ";
     Within = " mm, stroke ";
     TooLong = "a line has at most 63 characters";
-    Resting = "servos are resting, send stand";
+    Resting = "servos are resting, send stand first";
 }
 
 const COUNT: usize = SENTENCES.len();
@@ -97,7 +97,6 @@ flash! {
 
 impl Text {
     /// Prints the sentence.
-    #[inline(never)]
     pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
         for at in self.place() {
             out.write_char(char::from(BYTES.at(at).load() & 0x7f))?;
@@ -106,7 +105,6 @@ impl Text {
     }
 
     /// True if the sentence is just this word.
-    #[inline(never)]
     pub fn is(self, word: &[u8]) -> bool {
         let place = self.place();
         place.len() == word.len()

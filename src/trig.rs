@@ -17,7 +17,6 @@ pub struct Direction {
 
 impl Direction {
     /// The direction of an angle in 1/65536 turn.
-    #[inline(never)]
     pub fn of(angle: u16) -> Self {
         let across = angle & 0x3fff;
         let rising = quarter(across);
@@ -51,7 +50,6 @@ impl Direction {
 const STEPS: usize = 128;
 
 /// The sine over the first quarter, `across` in 0..=0x4000.
-#[inline(never)]
 fn quarter(across: u16) -> i16 {
     let index = usize::from(across >> 7);
     let here = QUARTER.at(index).load();
