@@ -29,6 +29,7 @@ enum Command {
     Velocity(paper::velocity::Args),
     Singularity(paper::singularity::Args),
     Mobility(paper::mobility::Args),
+    Design(paper::design::Args),
     Sim(sim::Args),
     Draw(draw::Args),
 }
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Velocity(args) => paper::velocity::run(args),
         Command::Singularity(args) => paper::singularity::run(args),
         Command::Mobility(args) => paper::mobility::run(args),
+        Command::Design(args) => paper::design::run(args),
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),
     };

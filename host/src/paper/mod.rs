@@ -1,6 +1,7 @@
 //! The paper, section by section: *Optimal Kinematic Design of a Robotic Lizard
 //! using Four-Bar and Five-Bar Mechanisms*.
 
+pub mod design;
 pub mod inverse;
 pub mod mobility;
 pub mod poses;

@@ -1,0 +1,41 @@
+//! The performance charts: every figure over the whole (r1, r2, r3) triangle.
+
+use indicatif::{ParallelProgressIterator, ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::performance::Performance;
+use super::proportions::{Proportions, triangle};
+
+/// A point of the charts. Lengths in units of D.
+#[derive(Clone, Copy, Serialize)]
+pub struct Point {
+    /// Where in the triangle.
+    #[serde(flatten)]
+    pub proportions: Proportions,
+    /// What it is worth.
+    #[serde(flatten)]
+    pub performance: Performance,
+}
+
+/// The charts on a grid of this step, computed on all cores; always the same
+/// numbers in the same order.
+pub fn chart(step: f64, rings: usize, progress: &ProgressBar) -> Vec<Point> {
+    let points = triangle(step);
+    progress.set_length(points.len() as u64);
+    points
+        .into_par_iter()
+        .progress_with(progress.clone())
+        .map(|proportions| Point {
+            proportions,
+            performance: Performance::of(&proportions.at_scale(1.0), rings),
+        })
+        .collect()
+}
+
+/// A bar on standard error; it hides itself where that is no terminal.
+pub fn bar(what: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} {eta}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(0).with_style(style).with_message(what)
+}

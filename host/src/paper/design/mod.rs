@@ -1,0 +1,345 @@
+//! `lizard design`: the paper's dimensional synthesis (performance-chart-based
+//! design methodology), and a search beyond it.
+
+mod chart;
+mod performance;
+mod proportions;
+mod search;
+
+use std::io::{self, BufWriter, Write};
+
+use lizard_robot::Robot;
+use serde::Serialize;
+
+use crate::pose_args::finite;
+use crate::{Failure, RobotFile};
+
+pub use chart::{Point, bar, chart};
+pub use performance::{CLAIM, Conditioning, Performance, lci};
+pub use proportions::{Proportions, SUM, triangle};
+pub use search::{Demands, Design, design, search};
+
+/// Rings across the inscribed circle for one design, and for each of many.
+const FINE: usize = 128;
+/// See [`FINE`].
+pub const COARSE: usize = 32;
+
+/// Dimensional synthesis of the head and tail five-bar.
+///
+/// From non-dimensional links r1, r2, r3 (crank, coupler, half base; they add up
+/// to 0.9) and the base l0: workspace, maximal inscribed circle (MIC), local
+/// conditioning index (LCI) over it, dimensional factor D and link table. Without
+/// options these are the paper's.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  lizard design
+  lizard design --r1 0.35 --r2 0.4 --l0 24
+  lizard design --chart > chart.csv
+  lizard design --search")]
+pub struct Args {
+    /// Distance between the two servo shafts, mm [default: 20]
+    #[arg(long, value_name = "MM", value_parser = finite)]
+    l0: Option<f64>,
+    /// Crank; of r1, r2, r3 give two or three [default: 0.3]
+    #[arg(long, value_parser = finite)]
+    r1: Option<f64>,
+    /// Coupler [default: 0.5]
+    #[arg(long, value_parser = finite)]
+    r2: Option<f64>,
+    /// Half the base [default: 0.1]
+    #[arg(long, value_parser = finite)]
+    r3: Option<f64>,
+    /// Print the performance charts over the whole triangle, as CSV
+    #[arg(long, conflicts_with = "search")]
+    chart: bool,
+    /// Rank all designs under the servos' travel and the margins
+    #[arg(long)]
+    search: bool,
+    /// Grid of --chart and --search
+    #[arg(long, default_value_t = 0.02, value_parser = step)]
+    step: f64,
+    /// Sweep that --search demands of every servo, degrees to either side
+    #[arg(long, default_value_t = 20.0, value_parser = sweep)]
+    sweep: f64,
+    /// Shortest link that --search admits, mm; two M3 joints need about this
+    #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = finite)]
+    shortest: f64,
+    /// How many designs --search prints
+    #[arg(long, default_value_t = 12)]
+    top: usize,
+    /// JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+fn step(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(step) if (0.002..=0.2).contains(&step) => Ok(step),
+        _ => Err("it must be 0.002 to 0.2".to_string()),
+    }
+}
+
+fn sweep(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(sweep) if (1.0..=60.0).contains(&sweep) => Ok(sweep),
+        _ => Err("it must be 1 to 60 degrees".to_string()),
+    }
+}
+
+/// Prints the synthesis, the charts or the ranking.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let proportions = args.proportions().map_err(Failure::Input)?;
+    let l0 = args.l0.unwrap_or(20.0);
+    if l0 <= 0.0 {
+        return Err(Failure::Input(format!("l0 is {l0} mm, it must be above 0")));
+    }
+    let robot = args.robot.load()?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    if args.chart {
+        charts(&args, &mut out)?;
+    } else if args.search {
+        ranking(&args, &robot, l0, proportions, &mut out)?;
+    } else {
+        let report = Report::new(proportions, l0);
+        if args.json {
+            serde_json::to_writer_pretty(&mut out, &report)?;
+            writeln!(out)?;
+        } else {
+            out.write_all(report.text(&robot).as_bytes())?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+impl Args {
+    fn proportions(&self) -> Result<Proportions, String> {
+        match (self.r1, self.r2, self.r3) {
+            (None, None, None) => Ok(Proportions::PAPER),
+            (Some(r1), Some(r2), Some(r3)) => Proportions::new(r1, r2, r3),
+            (Some(r1), Some(r2), None) => Proportions::new(r1, r2, SUM - r1 - r2),
+            (Some(r1), None, Some(r3)) => Proportions::new(r1, SUM - r1 - r3, r3),
+            (None, Some(r2), Some(r3)) => Proportions::new(SUM - r2 - r3, r2, r3),
+            _ => Err("give two or three of --r1, --r2, --r3".to_string()),
+        }
+    }
+}
+
+/// One design, lengths in mm.
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    proportions: Proportions,
+    /// Dimensional factor D.
+    d: f64,
+    l0: f64,
+    l1: f64,
+    l2: f64,
+    #[serde(flatten)]
+    performance: Performance,
+}
+
+impl Report {
+    fn new(proportions: Proportions, l0: f64) -> Self {
+        let d = proportions.scale_for_base(l0);
+        let bars = proportions.at_scale(d);
+        Self {
+            proportions,
+            d,
+            l0: bars.base,
+            l1: bars.crank_left,
+            l2: bars.coupler_left,
+            performance: Performance::of(&bars, FINE),
+        }
+    }
+
+    fn text(&self, robot: &Robot) -> String {
+        let Proportions { r1, r2, r3 } = self.proportions;
+        let p = &self.performance;
+        let mut page = format!(
+            "design space   r1 {r1:.4}   r2 {r2:.4}   r3 {r3:.4}   sum {:.4}   0 < r1, r2 < 0.9 and 0 < r3 < 0.45: yes
+scale          D = R3 / r3 = {:.3} / {r3:.4} = {:.3} mm
+workspace      {:.1} mm^2, upper half {:.1} mm^2; rings of {:.2} to {:.2} mm about each shaft
+",
+            r1 + r2 + r3,
+            self.l0 / 2.0,
+            self.d,
+            p.area,
+            p.area / 2.0,
+            (self.l1 - self.l2).abs(),
+            self.l1 + self.l2,
+        );
+        match &p.lci {
+            None => page += "MIC            none: half the base is longer than crank and coupler\n",
+            Some(lci) => {
+                page += &format!(
+                    "MIC            radius {:.3} mm ({:.3} D), centre (0, {:.3}) mm
+LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of the area
+",
+                    p.r_mic,
+                    p.r_mic / self.d,
+                    p.y_mic,
+                    lci.mean,
+                    lci.least,
+                    lci.most,
+                    100.0 * lci.share_above,
+                );
+                page += &verdict(lci, p.r_mic);
+            }
+        }
+        let l = &robot.lizard.links;
+        page += &format!(
+            "
+link                          mm   from
+l0, l5                  {:8.2}   the servos' size
+l1, l4, l6, l9          {:8.2}   r1 D
+l2, l3, l7, l8          {:8.2}   r2 D
+l11, l14, l16, l19      {:8.2}   side arms, as long as the cranks, at C = 90 deg to them
+l12, l13, l17, l18      {:8.2}   robot.toml; the paper gives no rule
+l10, l15                {:8.2}   robot.toml; the paper gives no rule
+lg10, lg12              {:8.2}   robot.toml; the paper gives no rule
+lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
+",
+            self.l0,
+            self.l1,
+            self.l2,
+            self.l1,
+            l.l12,
+            l.l10,
+            robot.lizard.leg.ground,
+            robot.lizard.leg.crank,
+        );
+        page
+    }
+}
+
+/// Where "LCI > 0.7" holds.
+fn verdict(lci: &Conditioning, r_mic: f64) -> String {
+    let mean = if lci.mean > CLAIM { "holds" } else { "fails" };
+    let bound = if lci.least > CLAIM { "holds" } else { "fails" };
+    format!(
+        "\"LCI > {CLAIM}\"    {mean} as a mean, {bound} as a bound; as a bound it holds within {:.2} mm of the centre ({:.0} % of the radius)\n",
+        lci.radius_above,
+        100.0 * lci.radius_above / r_mic,
+    )
+}
+
+fn charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
+    let progress = bar("performance charts");
+    let points = chart(args.step, COARSE, &progress);
+    progress.finish_and_clear();
+    if args.json {
+        serde_json::to_writer(&mut *out, &points)?;
+        return Ok(writeln!(out)?);
+    }
+    writeln!(
+        out,
+        "r1,r2,r3,area,r_mic,y_mic,lci_mean,lci_least,lci_most,share_above_0.7,radius_above_0.7"
+    )?;
+    for Point {
+        proportions: at,
+        performance: p,
+    } in points
+    {
+        write!(
+            out,
+            "{:.4},{:.4},{:.4},{:.6},{:.6},{:.6}",
+            at.r1, at.r2, at.r3, p.area, p.r_mic, p.y_mic
+        )?;
+        match p.lci {
+            Some(lci) => writeln!(
+                out,
+                ",{:.6},{:.6},{:.6},{:.6},{:.6}",
+                lci.mean, lci.least, lci.most, lci.share_above, lci.radius_above
+            )?,
+            None => writeln!(out, ",,,,,")?,
+        }
+    }
+    Ok(())
+}
+
+fn ranking(
+    args: &Args,
+    robot: &Robot,
+    l0: f64,
+    given: Proportions,
+    out: &mut impl Write,
+) -> Result<(), Failure> {
+    let travel = robot.servos.iter().map(|servo| {
+        let (least, most) = servo.travel();
+        most.min(-least)
+    });
+    let demands = Demands {
+        base: l0,
+        chassis: robot.lizard.links.l10,
+        leg: robot.lizard.leg.crank,
+        limits: robot.limits,
+        travel: travel.fold(f64::INFINITY, f64::min),
+        shortest: args.shortest,
+        sweep: args.sweep,
+    };
+    let progress = bar("designs");
+    let designs = search(args.step, &demands, &progress);
+    progress.finish_and_clear();
+    let shown = &designs[..designs.len().min(args.top)];
+    let reference = design(given, &demands);
+    if args.json {
+        serde_json::to_writer_pretty(&mut *out, &shown)?;
+        return Ok(writeln!(out)?);
+    }
+    writeln!(
+        out,
+        "{} of {} designs keep every margin and the stroke with all servos anywhere within +-{:.0} deg\n\
+         and have no link under {:.0} mm.\n\
+         Ranked by mean LCI, least margin (both within that sweep) and stride (with the widest safe sweep);\n\
+         * none is better in all three. Base l0 {l0} mm.\n",
+        designs.len(),
+        triangle(args.step).len(),
+        args.sweep,
+        args.shortest
+    )?;
+    writeln!(
+        out,
+        "rank     r1     r2     r3   crank  coupler mm   theta1  sweep deg   LCI  margin  stride mm  score"
+    )?;
+    let line = |out: &mut dyn Write, rank: &str, d: &Design| {
+        let Proportions { r1, r2, r3 } = d.proportions;
+        writeln!(
+            out,
+            "{rank:>4} {r1:6.3} {r2:6.3} {r3:6.3} {:7.1} {:11.1} {:8.0} {:10.1} {:5.3} {:7.3} {:10.1} {:6.3} {}",
+            r1 * d.d,
+            r2 * d.d,
+            d.neutral,
+            d.sweep,
+            d.lci,
+            d.margin,
+            d.stride,
+            d.score,
+            if d.pareto { "*" } else { "" }
+        )
+    };
+    for (i, design) in shown.iter().enumerate() {
+        line(out, &(i + 1).to_string(), design)?;
+    }
+    match reference {
+        None => writeln!(
+            out,
+            "\nThe given design (r1 {}, r2 {}, r3 {}) does not.",
+            given.r1, given.r2, given.r3
+        )?,
+        Some(mut own) => {
+            // Scored against the best of the list, as its members are.
+            let best = |of: fn(&Design) -> f64| designs.iter().map(of).fold(of(&own), f64::max);
+            let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
+            own.score = ((own.lci / lci) * (own.margin / margin) * (own.stride / stride)).cbrt();
+            let rank = 1 + designs
+                .iter()
+                .filter(|d| d.score > own.score + 1e-9)
+                .count();
+            writeln!(out, "\nthe given design:")?;
+            line(out, &rank.to_string(), &own)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! What a five-bar of given proportions is worth: workspace, maximal inscribed
+//! circle, and the local conditioning index over it.
+
+use lizard_kinematics::{Circle, FiveBar, Vector, Workspace};
+use serde::Serialize;
+
+/// The bound that the paper claims for the local conditioning index.
+pub const CLAIM: f64 = 0.7;
+
+/// A design's figures, for lengths in any one unit.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Performance {
+    /// Area of the theoretical workspace, both halves.
+    pub area: f64,
+    /// Radius of the maximal inscribed circle of the upper half; 0 if none.
+    pub r_mic: f64,
+    /// Height of its centre over the base.
+    pub y_mic: f64,
+    /// The index over that circle; none without a circle.
+    pub lci: Option<Conditioning>,
+}
+
+/// Statistics of the local conditioning index over the inscribed circle.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Conditioning {
+    /// Mean over the area (the global conditioning index).
+    pub mean: f64,
+    /// Least, on the rim: 0 where the circle touches the workspace's edge.
+    pub least: f64,
+    /// Largest.
+    pub most: f64,
+    /// Share of the area above the paper's 0.7.
+    pub share_above: f64,
+    /// Radius of the concentric circle within which all is at least 0.7.
+    pub radius_above: f64,
+}
+
+/// The local conditioning index with the apex at a point and outward elbows; 0
+/// where the point is on the rim or out of reach.
+pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
+    bars.reach(point).map_or(0.0, |pose| pose.lci())
+}
+
+impl Performance {
+    /// Computes everything; `rings` sets how finely the circle is sampled.
+    pub fn of(bars: &FiveBar, rings: usize) -> Self {
+        let workspace = Workspace::of(bars);
+        let circle = workspace.inscribed_circle();
+        Self {
+            area: workspace.area(),
+            r_mic: circle.map_or(0.0, |circle| circle.radius),
+            y_mic: circle.map_or(0.0, |circle| circle.centre.y),
+            lci: circle.map(|circle| Conditioning::over(bars, circle, rings)),
+        }
+    }
+}
+
+impl Conditioning {
+    /// Samples rings of equal area, each at its middle, then marches outward
+    /// until the index first falls below the claim.
+    fn over(bars: &FiveBar, circle: Circle, rings: usize) -> Self {
+        let spokes = 4 * rings;
+        let mut sum = 0.0;
+        let mut above = 0;
+        let (mut least, mut best) = (f64::INFINITY, (0.0_f64, circle.centre));
+        for spoke in 0..spokes {
+            let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spokes as f64);
+            for ring in 0..rings {
+                let radius = circle.radius * ((ring as f64 + 0.5) / rings as f64).sqrt();
+                let point = circle.centre + direction * radius;
+                let value = lci(bars, point);
+                sum += value;
+                above += usize::from(value > CLAIM);
+                least = least.min(value);
+                if value > best.0 {
+                    best = (value, point);
+                }
+            }
+        }
+        // The rim itself, with the four points where it touches the edge.
+        for spoke in 0..spokes {
+            let direction = Vector::direction(spoke as f64 * 360.0 / spokes as f64);
+            least = least.min(lci(bars, circle.centre + direction * circle.radius));
+        }
+        for shaft in [bars.left_shaft(), bars.right_shaft()] {
+            let away = circle.centre - shaft;
+            for side in [circle.radius, -circle.radius] {
+                let touch = circle.centre + away * (side / away.length());
+                least = least.min(lci(bars, touch));
+            }
+        }
+        let count = (rings * spokes) as f64;
+        Self {
+            mean: sum / count,
+            least,
+            most: climb(bars, circle, best, circle.radius / rings as f64),
+            share_above: above as f64 / count,
+            radius_above: Self::radius_above(bars, circle, rings),
+        }
+    }
+
+    fn radius_above(bars: &FiveBar, circle: Circle, rings: usize) -> f64 {
+        let step = circle.radius / (2 * rings) as f64;
+        (0..4 * rings)
+            .map(|spoke| {
+                let direction = Vector::direction(spoke as f64 * 90.0 / rings as f64);
+                let holds = |radius: f64| lci(bars, circle.centre + direction * radius) >= CLAIM;
+                let Some(first) = (0..=2 * rings).find(|&i| !holds(i as f64 * step)) else {
+                    return circle.radius;
+                };
+                let (mut inside, mut outside) = ((first as f64 - 1.0) * step, first as f64 * step);
+                if first == 0 {
+                    return 0.0;
+                }
+                for _ in 0..30 {
+                    let middle = (inside + outside) / 2.0;
+                    if holds(middle) {
+                        inside = middle;
+                    } else {
+                        outside = middle;
+                    }
+                }
+                inside
+            })
+            .fold(circle.radius, f64::min)
+    }
+}
+
+/// The largest index in the circle near a sample, by steps that halve.
+fn climb(bars: &FiveBar, circle: Circle, from: (f64, Vector), step: f64) -> f64 {
+    let (mut value, mut point) = from;
+    let mut size = step;
+    while size > 1e-5 * step {
+        let directions = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+        let next = directions
+            .map(|(x, y)| point + Vector::new(x, y) * size)
+            .into_iter()
+            .filter(|p| (*p - circle.centre).length() <= circle.radius)
+            .map(|p| (lci(bars, p), p))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        match next {
+            Some(next) if next.0 > value => (value, point) = next,
+            _ => size /= 2.0,
+        }
+    }
+    value
+}

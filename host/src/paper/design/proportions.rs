@@ -1,0 +1,85 @@
+//! The parameter design space: non-dimensional links r1 (crank), r2 (coupler),
+//! r3 (half the base) of a symmetrical five-bar, with r1 + r2 + r3 = 0.9.
+
+use lizard_kinematics::FiveBar;
+use serde::Serialize;
+
+/// r1 + r2 + r3.
+pub const SUM: f64 = 0.9;
+
+/// A point of the design space.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Proportions {
+    /// Crank, l1 / D.
+    pub r1: f64,
+    /// Coupler, l2 / D.
+    pub r2: f64,
+    /// Half the base, l0 / 2 D.
+    pub r3: f64,
+}
+
+impl Proportions {
+    /// Measured from a gecko's head, as the paper says.
+    pub const PAPER: Self = Self {
+        r1: 0.3,
+        r2: 0.5,
+        r3: 0.1,
+    };
+
+    /// Checks the constraints of the space: 0 < r1, r2 < 0.9, 0 < r3 < 0.45
+    /// (then r1 + r2 > r3 and the mechanism can be assembled), sum 0.9.
+    pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
+        for (name, value, most) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
+            if !(value > 0.0 && value < most) {
+                return Err(format!(
+                    "{name} is {value}, it must lie between 0 and {most}"
+                ));
+            }
+        }
+        let sum = r1 + r2 + r3;
+        if (sum - SUM).abs() > 1e-9 {
+            let k = SUM / sum;
+            return Err(format!(
+                "r1 + r2 + r3 is {sum:.6}, it must be {SUM}; the same shape is r1 {:.6}, r2 {:.6}, r3 {:.6}",
+                r1 * k,
+                r2 * k,
+                r3 * k
+            ));
+        }
+        Ok(Self { r1, r2, r3 })
+    }
+
+    /// The five-bar whose dimensional factor D is this, mm.
+    pub fn at_scale(&self, d: f64) -> FiveBar {
+        FiveBar {
+            base: 2.0 * self.r3 * d,
+            crank_left: self.r1 * d,
+            coupler_left: self.r2 * d,
+            coupler_right: self.r2 * d,
+            crank_right: self.r1 * d,
+        }
+    }
+
+    /// The dimensional factor for a base l0: D = R3 / r3.
+    pub fn scale_for_base(&self, l0: f64) -> f64 {
+        l0 / 2.0 / self.r3
+    }
+}
+
+/// The points of the whole triangle on a grid of this step, edges left out
+/// because a link vanishes there.
+pub fn triangle(step: f64) -> Vec<Proportions> {
+    let count = (SUM / step + 1e-9) as usize;
+    let mut points = Vec::new();
+    for i in 1..count {
+        for j in 1..count {
+            // From integers, so that no rounding decides what is on an edge.
+            let (r1, r2) = (i as f64 * step, j as f64 * step);
+            let r3 = SUM - r1 - r2;
+            if r3 > step * 1e-6 && r3 < SUM / 2.0 - step * 1e-6 {
+                points.push(Proportions { r1, r2, r3 });
+            }
+        }
+    }
+    points
+}

@@ -1,0 +1,194 @@
+//! Beyond the paper: which proportions would serve this robot best?
+//!
+//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning
+//! index afterwards. Here every point of the triangle is built at the given
+//! base, its cranks are mounted at the neutral angle that leaves them most
+//! sweep, and the sweep is limited by what limits the robot: all margins and
+//! the servos' travel. All four servos may be anywhere within it at once, so
+//! any gait of that amplitude is safe.
+
+use indicatif::{ParallelProgressIterator, ProgressBar};
+use lizard_kinematics::{FiveBar, Limits, Slider};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::proportions::{Proportions, triangle};
+
+/// What does not depend on the proportions.
+#[derive(Clone, Copy)]
+pub struct Demands {
+    /// Base l0, mm.
+    pub base: f64,
+    /// Chassis length l10, mm.
+    pub chassis: f64,
+    /// Leg crank, mm, for the stride.
+    pub leg: f64,
+    /// Least margins and slider travel.
+    pub limits: Limits,
+    /// Servo travel to either side of neutral, degrees.
+    pub travel: f64,
+    /// Shortest link that can be made, mm.
+    pub shortest: f64,
+    /// Sweep at which index and margin are compared, degrees.
+    pub sweep: f64,
+}
+
+/// A design that can sweep at least as far as is demanded.
+#[derive(Clone, Copy, Serialize)]
+pub struct Design {
+    /// Its proportions.
+    #[serde(flatten)]
+    pub proportions: Proportions,
+    /// Dimensional factor, mm.
+    pub d: f64,
+    /// theta1 at neutral, degrees; the others mirror it.
+    pub neutral: f64,
+    /// Largest safe sweep to either side, degrees.
+    pub sweep: f64,
+    /// How far a foot goes with it, mm.
+    pub stride: f64,
+    /// Least margin at the demanded sweep.
+    pub margin: f64,
+    /// Mean conditioning index at the demanded sweep.
+    pub lci: f64,
+    /// Mean conditioning index, margin and stride as shares of the best of
+    /// each, multiplied and rooted.
+    pub score: f64,
+    /// No other design is better in all three.
+    pub pareto: bool,
+}
+
+/// All designs of the triangle that meet the demands, best first.
+pub fn search(step: f64, demands: &Demands, progress: &ProgressBar) -> Vec<Design> {
+    let points = triangle(step);
+    progress.set_length(points.len() as u64);
+    let mut designs: Vec<Design> = points
+        .into_par_iter()
+        .progress_with(progress.clone())
+        .filter_map(|proportions| design(proportions, demands))
+        .collect();
+    rank(&mut designs);
+    designs
+}
+
+/// The best that can be made of some proportions; none if they cannot sweep as
+/// far as is demanded, or have too short a link.
+pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
+    let d = proportions.scale_for_base(demands.base);
+    let bars = proportions.at_scale(d);
+    if bars.crank_left.min(bars.coupler_left) < demands.shortest {
+        return None;
+    }
+    let (neutral, sweep) = (90..=170)
+        .map(|neutral| {
+            let neutral = f64::from(neutral);
+            (neutral, widest(&bars, neutral, demands))
+        })
+        .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
+    if sweep < demands.sweep {
+        return None;
+    }
+    let (margin, lci) = quality(&bars, neutral, demands.sweep);
+    Some(Design {
+        proportions,
+        d,
+        neutral,
+        sweep,
+        stride: 2.0 * demands.leg * sweep.to_radians().sin(),
+        margin,
+        lci,
+        score: 0.0,
+        pareto: false,
+    })
+}
+
+/// The largest sweep about a neutral angle that keeps every limit, degrees.
+fn widest(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
+    let (mut safe, mut unsafe_from) = (0.0, demands.travel.min(89.9));
+    if !holds(bars, neutral, safe, demands) {
+        return 0.0;
+    }
+    for _ in 0..9 {
+        let middle = (safe + unsafe_from) / 2.0;
+        if holds(bars, neutral, middle, demands) {
+            safe = middle;
+        } else {
+            unsafe_from = middle;
+        }
+    }
+    safe
+}
+
+/// Sample positions across the sweep, from -1 to 1.
+const ACROSS: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
+
+fn holds(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
+    let limits = &demands.limits;
+    let slider = flank(bars, demands);
+    // theta5 in tail-local angles is what theta1 is, so neutral mirrors.
+    let span = |front: f64, rear: f64| {
+        slider
+            .forward(-rear - 90.0, front + 90.0)
+            .map_or(f64::NAN, |pose| pose.d)
+    };
+    let nominal = span(neutral, neutral);
+    ACROSS.iter().all(|&i| {
+        let left = neutral + i * sweep;
+        left.to_radians().sin() >= limits.leg
+            && ACROSS.iter().all(|&j| {
+                let right = 180.0 - neutral + j * sweep;
+                let travel = span(left, neutral + j * sweep) - nominal;
+                travel >= limits.stroke_min
+                    && travel <= limits.stroke_max
+                    && bars.forward(left, right).is_ok_and(|pose| {
+                        pose.type2 >= limits.type2
+                            && pose.type1_left() >= limits.type1
+                            && pose.type1_right() >= limits.type1
+                            && pose.gap.x > 0.0
+                    })
+            })
+    })
+}
+
+/// A flank whose arms are as long as the cranks, as the paper's are.
+fn flank(bars: &FiveBar, demands: &Demands) -> Slider {
+    Slider {
+        offset: 0.0,
+        base: demands.chassis,
+        front: bars.crank_left,
+        rear: bars.crank_left,
+        nominal: 0.0,
+    }
+}
+
+/// Least margin and mean conditioning index within a sweep.
+fn quality(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
+    let mut least = f64::INFINITY;
+    let mut sum = 0.0;
+    for i in ACROSS {
+        let left = neutral + i * sweep;
+        least = least.min(left.to_radians().sin());
+        for j in ACROSS {
+            if let Ok(pose) = bars.forward(left, 180.0 - neutral + j * sweep) {
+                least = least.min(pose.margin());
+                sum += pose.lci();
+            }
+        }
+    }
+    (least, sum / (ACROSS.len() * ACROSS.len()) as f64)
+}
+
+fn rank(designs: &mut [Design]) {
+    let best = |of: fn(&Design) -> f64| designs.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
+    let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
+    let all = designs.to_vec();
+    for design in designs.iter_mut() {
+        let product =
+            (design.lci / lci) * (design.margin.max(0.0) / margin) * (design.stride / stride);
+        design.score = product.cbrt();
+        design.pareto = !all.iter().any(|other| {
+            other.lci > design.lci && other.margin > design.margin && other.stride > design.stride
+        });
+    }
+    designs.sort_by(|a, b| b.score.total_cmp(&a.score));
+}
