@@ -404,6 +404,28 @@ fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
 }
 
 #[test]
+fn a_function_that_calls_itself_is_timed_to_its_own_return() {
+    let image = c("#include <avr/io.h>
+        __attribute__((noinline)) void work(unsigned char depth) {
+            GPIOR0 = depth;
+            if (depth) work(depth - 1);
+            __builtin_avr_delay_cycles(1000);
+        }
+        int main(void) { work(9); for (;;) {} }");
+    let entry = image.function("work").expect("it is a function").address as u32;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    // Watched from inside the first call on: all that follow come from one place.
+    assert!(uno.run_until(1000, 1, |uno| !uno.marks().is_empty()));
+    let calls = uno.time_calls(entry, 20_000);
+    assert_eq!(calls.len(), 1);
+    assert!(
+        (9_000..9_300).contains(&calls[0].cycles()),
+        "{:?}",
+        calls[0]
+    );
+}
+
+#[test]
 fn interrupts_in_a_timed_call_are_told_apart() {
     let image = c("#include <avr/io.h>
         #include <avr/interrupt.h>
