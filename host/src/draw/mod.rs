@@ -1,6 +1,7 @@
 //! `lizard draw`: the robot from above.
 
 pub mod ink;
+mod labels;
 mod top_view;
 
 use std::io::{self, Write};

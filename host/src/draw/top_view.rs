@@ -1,15 +1,14 @@
 //! The mechanism from above, head up: chassis, five-bars, sliders and legs.
 
-use lizard_kinematics::{Solution, Vector, sin_cos, wrap};
+use lizard_kinematics::{Solution, Vector, wrap};
 use lizard_robot::Robot;
-use lizard_robot::servo::NAMES;
 use svg::Document;
 use svg::node::element::{Group, Path};
 
-use super::ink::{Anchor, DARK, GREY, SERVO, circle, line, rectangle, text};
+use super::ink::{DARK, SERVO, circle, line, rectangle};
 
-const SIZE: (f64, f64) = (1000.0, 1110.0);
-const PIXELS_PER_MM: f64 = 3.1;
+pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
+pub(super) const PIXELS_PER_MM: f64 = 3.1;
 
 /// An SG-90's body seen from above and how far its shaft is from its end, mm.
 const SERVO_BODY: (f64, f64) = (12.2, 22.8);
@@ -20,7 +19,7 @@ const STEEL: &str = "#555555";
 const FRAME: &str = "#f4f1ea";
 
 /// A joint of the robot: mm, chassis frame.
-type Joint = Vector;
+pub(super) type Joint = Vector;
 
 /// The robot at a solved pose, as SVG text; with names and measures if
 /// `labels`.
@@ -48,13 +47,13 @@ pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
         .to_string()
 }
 
-struct View<'a> {
-    robot: &'a Robot,
-    solution: &'a Solution,
+pub(super) struct View<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) solution: &'a Solution,
 }
 
 /// From the chassis frame to the page.
-fn page(joint: Joint) -> (f64, f64) {
+pub(super) fn page(joint: Joint) -> (f64, f64) {
     (
         SIZE.0 / 2.0 + PIXELS_PER_MM * joint.x,
         SIZE.1 / 2.0 - PIXELS_PER_MM * joint.y,
@@ -72,11 +71,11 @@ fn pivot(at: Joint, mm: f64) -> svg::node::element::Circle {
 }
 
 impl View<'_> {
-    fn angles(&self) -> [f64; 4] {
+    pub(super) fn angles(&self) -> [f64; 4] {
         self.solution.pose.into()
     }
 
-    fn shafts(&self) -> [Joint; 4] {
+    pub(super) fn shafts(&self) -> [Joint; 4] {
         self.robot.lizard.shafts()
     }
 
@@ -249,7 +248,7 @@ impl View<'_> {
         (hip, wrap(turned), wrap(turned + self.angles()[servo]))
     }
 
-    fn foot(&self, servo: usize) -> Joint {
+    pub(super) fn foot(&self, servo: usize) -> Joint {
         let (hip, _, crank) = self.leg_frame(servo);
         hip + Vector::direction(crank) * self.robot.lizard.leg.crank
     }
@@ -272,122 +271,6 @@ impl View<'_> {
         let pad = (8.0 * PIXELS_PER_MM, 11.0 * PIXELS_PER_MM);
         group.add(rectangle((foot.0 - pad.0 / 2.0, foot.1 - pad.1 / 2.0), pad, DARK).set("rx", 10))
     }
-
-    fn labels(&self, mut group: Group) -> Group {
-        let angles = self.angles();
-        for servo in 0..4 {
-            let shaft = self.shafts()[servo];
-            let left = matches!(servo, 0 | 3);
-            let side = if left { -1.0 } else { 1.0 };
-            let up = shaft.y.signum();
-            let place = Vector::new(side * 112.0, up * 112.0);
-            let anchor = if left { Anchor::End } else { Anchor::Start };
-            let (x, y) = page(place);
-            let toward = page(shaft + Vector::new(side * 3.5, up * 2.0));
-            let name = format!("{} · D{}", NAMES[servo], self.robot.servos[servo].pin);
-            let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
-            let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
-            let begin = (x + 6.0 * -side, y - 4.0);
-            group = group
-                .add(line(begin, toward, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
-                .add(
-                    text(&name, (x, y - 8.0), 20.0, SERVO[servo], anchor)
-                        .set("font-weight", "bold"),
-                )
-                .add(text(&angle, (x, y + 16.0), 18.0, DARK, anchor));
-        }
-        group = self.part_labels(group);
-        compass(group)
-    }
-
-    fn part_labels(&self, mut group: Group) -> Group {
-        let solution = self.solution;
-        let head = solution.head_point();
-        let tail = solution.tail_point();
-        let coordinates = |name: &str, at: Joint| format!("{name} ({:.1}, {:.1}) mm", at.x, at.y);
-        let (x, y) = page(head + Vector::new(0.0, 36.0));
-        group = group.add(text(
-            &coordinates("head", head),
-            (x, y),
-            18.0,
-            DARK,
-            Anchor::Middle,
-        ));
-        let (x, y) = page(tail + Vector::new(0.0, -34.0));
-        group = group.add(text(
-            &coordinates("tail", tail),
-            (x, y),
-            18.0,
-            DARK,
-            Anchor::Middle,
-        ));
-        for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
-            let anchor = if side < 0.0 {
-                Anchor::End
-            } else {
-                Anchor::Start
-            };
-            let (x, y) = page(Vector::new(side * 50.0, 0.0));
-            let travel = if slider.s.abs() < 0.05 {
-                "s = 0.0 mm".to_owned()
-            } else {
-                format!("s = {:+.1} mm", slider.s)
-            };
-            group = group
-                .add(text("slider", (x, y - 4.0), 17.0, GREY, anchor))
-                .add(text(&travel, (x, y + 18.0), 17.0, GREY, anchor));
-        }
-        for servo in 0..4 {
-            let foot = self.foot(servo);
-            let side = foot.x.signum();
-            let anchor = if side < 0.0 {
-                Anchor::End
-            } else {
-                Anchor::Start
-            };
-            let (x, y) = page(foot + Vector::new(side * 24.0, -2.0));
-            let name = [
-                "front left foot",
-                "front right foot",
-                "back right foot",
-                "back left foot",
-            ][servo];
-            group = group.add(text(name, (x, y), 17.0, GREY, anchor));
-        }
-        group
-    }
-}
-
-/// The axes of the chassis frame and a scale.
-fn compass(mut group: Group) -> Group {
-    let origin = (50.0, SIZE.1 - 50.0);
-    for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
-        let (sin, cos) = sin_cos(degrees);
-        let tip = (origin.0 + 62.0 * cos, origin.1 - 62.0 * sin);
-        let barb = |turn: f64| {
-            let (sin, cos) = sin_cos(degrees + turn);
-            (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
-        };
-        let at = if degrees == 0.0 {
-            (tip.0 + 10.0, tip.1 + 6.0)
-        } else {
-            (tip.0 - 10.0, tip.1 - 12.0)
-        };
-        group = group
-            .add(line(origin, tip, DARK, 2.0))
-            .add(line(tip, barb(155.0), DARK, 2.0))
-            .add(line(tip, barb(-155.0), DARK, 2.0))
-            .add(text(name, at, 16.0, DARK, Anchor::Start));
-    }
-    let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
-    let begin = (end.0 - 50.0 * PIXELS_PER_MM, end.1);
-    for at in [begin, end] {
-        group = group.add(line((at.0, at.1 - 7.0), (at.0, at.1 + 7.0), DARK, 2.0));
-    }
-    let middle = ((begin.0 + end.0) / 2.0, end.1 - 12.0);
-    group
-        .add(line(begin, end, DARK, 2.0))
-        .add(text("50 mm", middle, 16.0, DARK, Anchor::Middle))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 pub mod analysis;
 pub mod console;
+pub mod footfall;
 pub mod frame;
 mod report;
 pub mod script;

@@ -6,10 +6,9 @@ use svg::Document;
 use svg::node::element::Group;
 
 use super::analysis::Instant;
-use super::frame::FRAME;
+use super::footfall::{Phase, Stretch, stretches};
 use super::script::Script;
 use crate::draw::ink::{Anchor, DARK, GREY, GRID, PANEL, SERVO, curve, line, rectangle, text};
-use simulated_uno::FREQUENCY;
 
 const WIDTH: f64 = 1280.0;
 const LEFT: f64 = 200.0;
@@ -26,21 +25,6 @@ const HEIGHT: f64 = AXIS + 96.0;
 
 /// Where each servo's leg is.
 const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
-
-/// A foot slower than this (deg/s of its leg) stands still: a cubic or smoothstep
-/// end passes it within a frame.
-const STILL: f64 = 4.0;
-
-/// What a foot does from one frame to the next.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Phase {
-    /// It moves back: in a forward gait it pushes the body on.
-    Stance,
-    /// It moves forward.
-    Swing,
-    /// It stands still.
-    Still,
-}
 
 /// The picture as SVG text.
 #[must_use]
@@ -208,36 +192,11 @@ impl Chart<'_> {
                 SERVO[servo],
                 Anchor::End,
             ));
-        for (phase, from, to) in self.phases(servo) {
+        for Stretch { phase, from, to } in stretches(self.instants, servo) {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
             group = group.add(foot(phase, SERVO[servo], (x, top), (width, FOOT)));
         }
         group
-    }
-
-    /// What a foot does, as stretches of time.
-    fn phases(&self, servo: usize) -> Vec<(Phase, f64, f64)> {
-        let frame = FRAME as f64 / FREQUENCY as f64;
-        let mut phases: Vec<(Phase, f64, f64)> = Vec::new();
-        for pair in self.instants.windows(2) {
-            let (Some(before), Some(after)) = (pair[0].sweeps, pair[1].sweeps) else {
-                continue;
-            };
-            let rate = (after[servo] - before[servo]) / frame;
-            let phase = if rate.abs() < STILL {
-                Phase::Still
-            } else if rate > 0.0 {
-                Phase::Swing
-            } else {
-                Phase::Stance
-            };
-            let (from, to) = (pair[0].seconds, pair[1].seconds);
-            match phases.last_mut() {
-                Some((last, _, end)) if *last == phase && from - *end < frame / 2.0 => *end = to,
-                _ => phases.push((phase, from, to)),
-            }
-        }
-        phases
     }
 
     fn legend(&self, mut group: Group) -> Group {
@@ -340,94 +299,23 @@ fn spans(script: &Script, end: f64) -> Vec<(f64, f64, &str)> {
 mod tests {
     use super::*;
     use crate::sim::script::Step;
-    use lizard_robot::servo::FORWARD;
-
-    fn robot() -> Robot {
-        Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right")
-    }
-
-    /// Stand for a second, walk for four, turn left for two, rest for one.
-    fn instants(robot: &Robot) -> Vec<Instant> {
-        let gait = |name: &str, seconds: f64| {
-            let (_, gait) = robot.gait(name).expect("it is in robot.toml");
-            gait.angles(gait.phase(seconds))
-        };
-        let neutral: [f64; 4] = robot.neutral().into();
-        (0..400)
-            .map(|n| f64::from(n) / 50.0)
-            .map(|seconds| {
-                let angles = match seconds {
-                    t if t < 1.0 => Some(neutral),
-                    t if t < 5.0 => Some(gait("walk", t)),
-                    t if t < 7.0 => Some(gait("left", t)),
-                    _ => None,
-                };
-                let sweeps = angles
-                    .map(|angles| std::array::from_fn(|i| (angles[i] - neutral[i]) * FORWARD[i]));
-                Instant {
-                    seconds,
-                    angles,
-                    sweeps,
-                }
-            })
-            .collect()
-    }
-
-    #[test]
-    fn walk_is_three_quarters_stance_and_every_foot_returns_once_a_second() {
-        let robot = robot();
-        let instants = instants(&robot);
-        let chart = Chart {
-            robot: &robot,
-            instants: &instants,
-            seconds: 8.0,
-        };
-        for servo in 0..4 {
-            let phases = chart.phases(servo);
-            let within = |phase| {
-                let ours = phases.iter().filter(|(which, _, _)| *which == phase);
-                ours.map(|(_, from, to)| to.min(4.9) - from.max(1.1))
-                    .filter(|seconds| *seconds > 0.0)
-                    .collect::<Vec<f64>>()
-            };
-            let stance: f64 = within(Phase::Stance).iter().sum();
-            assert!((stance - 0.75 * 3.8).abs() < 0.15, "{servo}: {stance} s");
-            assert_eq!(within(Phase::Swing).len(), 4);
-        }
-    }
-
-    #[test]
-    fn a_foot_that_turns_left_pushes_forward_on_the_left_and_back_on_the_right() {
-        let robot = robot();
-        let instants = instants(&robot);
-        let chart = Chart {
-            robot: &robot,
-            instants: &instants,
-            seconds: 8.0,
-        };
-        let at = |servo: usize, time: f64| {
-            let phases = chart.phases(servo);
-            let here = phases
-                .iter()
-                .find(|(_, from, to)| (*from..*to).contains(&time));
-            here.map(|(phase, _, _)| *phase)
-        };
-        // The common stroke of `left` is its first fifth.
-        assert!(at(0, 6.1) == Some(Phase::Swing) && at(3, 6.1) == Some(Phase::Swing));
-        assert!(at(1, 6.1) == Some(Phase::Stance) && at(2, 6.1) == Some(Phase::Stance));
-        assert!(at(0, 7.5).is_none(), "it rests");
-    }
 
     #[test]
     fn each_unbroken_stretch_of_each_servo_is_one_curve() {
-        let robot = robot();
-        let mut instants = instants(&robot);
-        instants[100].angles = None;
+        let robot = Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right");
+        let neutral: [f64; 4] = robot.neutral().into();
+        let instants: Vec<Instant> = (0..400)
+            .map(|n| Instant {
+                seconds: f64::from(n) / 50.0,
+                angles: (n != 100 && n < 350).then_some(neutral),
+                sweeps: (n != 100 && n < 350).then_some([0.0; 4]),
+            })
+            .collect();
         let step = |ms, command: &str| Step {
             ms,
             command: command.into(),
         };
-        let steps = vec![step(1000, "walk"), step(2000, "status"), step(5000, "left")];
+        let steps = vec![step(1000, "walk"), step(2000, "status"), step(7000, "rest")];
         let script = Script {
             steps,
             end_ms: 8000,

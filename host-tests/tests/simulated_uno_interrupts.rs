@@ -1,0 +1,212 @@
+//! Interrupts and Timer1 of the simulated UNO, against counted cycles.
+
+use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::{Fidelity, Pin, Uno};
+
+const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
+const LED: Pin = Pin::d(13);
+
+/// Timer1 in CTC mode with a compare interrupt; the handler toggles the LED by
+/// its first instruction.
+const TICK: &str = "
+    .org 0
+        jmp start
+    .org 0x2c                   ; TIMER1_COMPA
+        jmp tick
+    .org 0x68
+    start:
+        ldi r16, 0x08 $ out SPH, r16
+        ldi r16, 0xff $ out SPL, r16
+        sbi DDRB, 5
+        ldi r17, 0x20
+        ldi r18, 0
+        ldi r16, hi8(9999) $ sts OCR1AH, r16
+        ldi r16, lo8(9999) $ sts OCR1AL, r16
+        ldi r16, 2 $ sts TIMSK1, r16
+        ldi r16, 1 $ out SMCR, r16
+        ldi r16, 0x09 $ sts TCCR1B, r16
+        sei
+    again:
+        sleep
+        rjmp again
+    tick:
+        out PORTB, r17
+        out PORTB, r18
+        reti
+";
+
+#[test]
+fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
+    // The counter starts with the last cycle of the `sts` to TCCR1B, which the
+    // model puts at its first; it matches 10 000 cycles later. Then 4 + 4 cycles
+    // to enter, 3 for the vector's jmp, 1 for out.
+    let mut uno = Uno::with_image(assembler(TICK), Fidelity::DataSheet);
+    uno.run_cycles(100_000);
+    let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
+    assert!(starts.len() >= 9);
+    // jmp 3, then 2 * (ldi, out) 4, sbi 2, ldi 2, 2 * (ldi, sts) 6, (ldi, sts) 3,
+    // (ldi, out) 2, ldi 1: the sts to TCCR1B begins at cycle 23.
+    let expected: Vec<u64> = (1..=starts.len() as u64)
+        .map(|n| 23 + n * 10_000 + 12)
+        .collect();
+    assert_eq!(starts, expected);
+
+    // Awake: entry 8, jmp 3, out, out, reti 4, rjmp 2, sleep 1 = 20 per tick.
+    let before = (uno.awake_cycles(), uno.cycle());
+    uno.run_cycles(1_000_000);
+    assert_eq!(uno.awake_cycles() - before.0, 20 * 100);
+}
+
+#[test]
+fn stock_simavr_enters_an_interrupt_for_nothing() {
+    let mut uno = Uno::with_image(assembler(TICK), Fidelity::Stock);
+    uno.run_cycles(100_000);
+    let first = uno.pulses(LED)[0].start;
+    // No entry; a cycle late from sleep; jmp 3, out 1.
+    assert_eq!(first, 23 + 10_000 + 1 + 4);
+}
+
+#[test]
+fn interrupts_are_counted_with_their_cycles() {
+    let mut uno = Uno::with_image(assembler(TICK), Fidelity::DataSheet);
+    uno.run_cycles(100_000);
+    let used = uno.interrupts();
+    assert_eq!(used.len(), 1);
+    assert_eq!(simulated_uno::vector_name(used[0].vector), "TIMER1_COMPA");
+    assert_eq!(used[0].entries, 9);
+    // entry 8, jmp 3, out, out, reti 4
+    assert_eq!(used[0].cycles, 9 * 17);
+}
+
+#[test]
+fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
+    let source = |count: usize| {
+        format!(
+            "jmp start
+             .org 0x2c
+             jmp tick
+             .org 0x68
+             start: ldi r16, 0x08 $ out SPH, r16
+             ldi r16, 0xff $ out SPL, r16
+             sbi DDRB, 5
+             ldi r16, 2 $ sts TIMSK1, r16
+             ldi r16, 1 $ sts TCCR1B, r16
+             wait: sbis TIFR1, 1 $ rjmp wait
+             sei
+             {}
+             sbi PORTB, 5
+             end: rjmp end
+             tick: cbi DDRB, 5
+             reti",
+            "nop\n".repeat(count)
+        )
+    };
+    // The handler makes the pin an input. One instruction after `sei` is done
+    // before it, so the LED has gone up only if it is the first.
+    for (nops, up) in [(0, true), (1, false)] {
+        let mut uno = Uno::with_image(assembler(&source(nops)), Fidelity::DataSheet);
+        uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
+        assert_eq!(!uno.edges().is_empty(), up, "{nops} nops");
+    }
+}
+
+#[test]
+fn enabling_an_interrupt_whose_flag_is_up_fires_it() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(TIMER1_OVF_vect) { PORTB = 0x20; }
+        int main(void) {
+            DDRB = 0x20;
+            TCCR1B = 1;
+            while (!(TIFR1 & 1)) {}
+            sei();
+            TIMSK1 = 1;
+            for (;;) {}
+        }");
+    let up_at = |fidelity| {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_cycles(100_000);
+        uno.edges().len()
+    };
+    assert_eq!(up_at(Fidelity::DataSheet), 1);
+    assert_eq!(
+        up_at(Fidelity::Stock),
+        0,
+        "stock simavr has learnt this: drop the correction"
+    );
+}
+
+#[test]
+fn writing_one_timer_flag_leaves_the_others() {
+    let image = c("#include <avr/io.h>
+        int main(void) {
+            OCR1A = 100; OCR1B = 200;
+            TCCR1B = 1;
+            while (!(TIFR1 & 4)) {}
+            TIFR1 = 2;
+            GPIOR0 = TIFR1;
+            for (;;) {}
+        }");
+    let mark = |fidelity| {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_cycles(2000);
+        uno.marks()[0].value
+    };
+    assert_eq!(mark(Fidelity::DataSheet), 4);
+    assert_eq!(
+        mark(Fidelity::Stock),
+        0,
+        "stock simavr has learnt this: drop the correction"
+    );
+}
+
+#[test]
+fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
+    // High byte of OCR1A, then a full write of OCR1B, then the low byte of
+    // OCR1A: silicon stores OCR1B's high byte in both.
+    let image = c("#include <avr/io.h>
+        int main(void) {
+            OCR1AH = 0x12;
+            OCR1BH = 0x34; OCR1BL = 0x56;
+            OCR1AL = 0x78;
+            GPIOR0 = OCR1AH; GPIOR0 = OCR1AL; GPIOR0 = OCR1BH; GPIOR0 = OCR1BL;
+            for (;;) {}
+        }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_cycles(500);
+    let marks: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
+    assert_eq!(marks, [0x34, 0x78, 0x34, 0x56]);
+}
+
+#[test]
+fn a_run_cut_into_pieces_gives_the_same_edges() {
+    for fidelity in BOTH {
+        let mut whole = Uno::with_image(assembler(TICK), fidelity);
+        whole.run_until_cycle(400_000);
+        let mut pieces = Uno::with_image(assembler(TICK), fidelity);
+        let mut step = 1;
+        while pieces.cycle() < 400_000 {
+            pieces.run_until_cycle((pieces.cycle() + step).min(400_000));
+            step = step % 997 + 13;
+        }
+        assert_eq!(pieces.edges(), whole.edges());
+        assert_eq!(pieces.asleep_cycles(), whole.asleep_cycles());
+    }
+}
+
+#[test]
+fn boards_on_several_threads_do_not_disturb_each_other() {
+    let run = |fidelity| {
+        let mut uno = Uno::with_image(assembler(TICK), fidelity);
+        uno.run_cycles(3_000_000);
+        (uno.edges(), uno.asleep_cycles())
+    };
+    let alone = BOTH.map(run);
+    let threads: Vec<_> = (0..6)
+        .map(|n| std::thread::spawn(move || (n % 2, run(BOTH[n % 2]))))
+        .collect();
+    for thread in threads {
+        let (n, result) = thread.join().expect("the thread ends");
+        assert_eq!(result, alone[n]);
+    }
+}
