@@ -32,8 +32,8 @@ const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
 const COMMANDS: [&str; 7] = ["help", "stop", "rest", "speed", "pose", "status", "watch"];
 /// The firmware keeps names in this many bytes.
 const NAME_LENGTH: usize = 12;
-/// Each gait costs flash, and up to four waveforms of an 8-bit index.
-const MOST: usize = 32;
+/// The console lists their names in one line of at most 192 bytes.
+const MOST: usize = 13;
 
 /// The robot that the gaits are for.
 pub(crate) struct Body {

@@ -19,6 +19,11 @@ const WIDTHS: (f64, f64) = (500.0, 2500.0);
 /// 22 us per degree is the most that the firmware's i16 gain holds.
 const GAINS: (f64, f64) = (1.0, 22.0);
 
+/// The firmware divides by a coupler in an i16 of 2^19 mm.
+const SHORTEST_COUPLER: f64 = 17.0;
+/// Slower than this and a stroke outlasts the firmware's count of its frames.
+const SLOWEST: f64 = 10.0;
+
 const LINKS: [&str; 20] = [
     "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",
     "l15", "l16", "l17", "l18", "l19",
@@ -29,7 +34,11 @@ pub(crate) fn links(root: &Section) -> Checked<Links> {
     let section = root.section("links", &LINKS)?;
     let mut lengths = [0.0; 20];
     for (length, name) in lengths.iter_mut().zip(LINKS) {
-        *length = section.number(name, SHORTEST, SIDE_REACH, "mm")?;
+        let shortest = match name {
+            "l2" | "l3" | "l7" | "l8" => SHORTEST_COUPLER,
+            _ => SHORTEST,
+        };
+        *length = section.number(name, shortest, SIDE_REACH, "mm")?;
     }
     let l = Links::from(lengths);
     let couplers = "the two couplers of a loop are equally long";
@@ -224,7 +233,7 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
         "stroke_max",
         limits.stroke_max,
     )?;
-    let speed = |name| section.number(name, 1.0, 1000.0, "deg/s");
+    let speed = |name| section.number(name, SLOWEST, 1000.0, "deg/s");
     Ok((
         limits,
         Pace {

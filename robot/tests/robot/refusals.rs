@@ -50,7 +50,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "l7 = 50.0 ",
         "l7 = -50.0 ",
-        "links.l7 is -50; it must be within 5 to 255 mm",
+        "links.l7 is -50; it must be within 17 to 255 mm",
     ),
     (
         "l7 = 50.0 ",
@@ -180,7 +180,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "gait_slew = 310.0",
         "gait_slew = 0",
-        "limits.gait_slew is 0; it must be within 1 to 1000 deg/s",
+        "limits.gait_slew is 0; it must be within 10 to 1000 deg/s",
     ),
     (
         "friction_back_over_forward = 1.0",
