@@ -30,6 +30,7 @@ enum Command {
     Singularity(paper::singularity::Args),
     Mobility(paper::mobility::Args),
     Design(paper::design::Args),
+    Errata(paper::errata::Args),
     Sim(sim::Args),
     Draw(draw::Args),
 }
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Singularity(args) => paper::singularity::run(args),
         Command::Mobility(args) => paper::mobility::run(args),
         Command::Design(args) => paper::design::run(args),
+        Command::Errata(args) => paper::errata::run(args),
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),
     };

@@ -196,6 +196,16 @@ fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mecha
     }
 }
 
+/// Freedoms of the body at a pose, by rank.
+pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+    measure(&body(lizard, solution)).freedoms
+}
+
+/// Freedoms of the front left leg at a pose, by rank.
+pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+    measure(&leg(lizard, solution, 0, "leg")).freedoms
+}
+
 fn measure(mechanism: &Mechanism) -> Report {
     let joints = mechanism.joints.len();
     let velocities = 3 * (mechanism.links - 1);

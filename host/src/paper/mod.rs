@@ -2,6 +2,7 @@
 //! using Four-Bar and Five-Bar Mechanisms*.
 
 pub mod design;
+pub mod errata;
 pub mod inverse;
 pub mod mobility;
 pub mod poses;

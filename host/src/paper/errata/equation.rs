@@ -1,0 +1,59 @@
+//! One printed equation: how it reads, how it should read, and by how much
+//! either misses the geometric solution at a sample.
+
+use super::sample::Sample;
+
+/// By how much a form misses at a sample; `None` where it has no real value.
+pub type Miss = fn(&Sample) -> Option<f64>;
+
+/// A printed equation.
+pub struct Equation {
+    /// Where it stands.
+    pub place: &'static str,
+    /// As printed.
+    pub printed: &'static str,
+    /// How far the printed form misses.
+    pub miss: Miss,
+    /// Unit of every miss of this equation.
+    pub unit: &'static str,
+    /// How far it misses when right-hand angles are read clockwise from -x,
+    /// where the paper's drawing suggests it.
+    pub clockwise: Option<Miss>,
+    /// What holds instead, and how far it misses.
+    pub corrected: Option<(&'static str, Miss)>,
+}
+
+/// A form's record over all samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Largest miss where there is a real value.
+    pub worst: f64,
+    /// Share of the samples without one.
+    pub unreal: f64,
+}
+
+impl Record {
+    /// Misses below this are rounding, whatever the unit.
+    const ROUNDING: f64 = 1e-6;
+
+    /// Measures one form.
+    pub fn of(miss: Miss, samples: &[Sample]) -> Self {
+        let mut worst = 0.0_f64;
+        let mut unreal = 0usize;
+        for sample in samples {
+            match miss(sample) {
+                Some(value) if value.is_finite() => worst = worst.max(value),
+                _ => unreal += 1,
+            }
+        }
+        Self {
+            worst,
+            unreal: unreal as f64 / samples.len().max(1) as f64,
+        }
+    }
+
+    /// True if nothing but rounding was found.
+    pub fn holds(&self) -> bool {
+        self.worst < Self::ROUNDING && self.unreal == 0.0
+    }
+}

@@ -1,0 +1,290 @@
+//! Section 4.2: forward position analysis of the body.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use lizard_kinematics::{Links, Vector};
+
+use super::equation::Equation;
+use super::sample::{Sample, apart, cis};
+
+/// In the paper's order.
+pub const EQUATIONS: &[Equation] = &[
+    Equation {
+        place: "4.2 head loop",
+        printed: "l1 cos θ1 + l2 cos θ2 - l3 cos θ3 - l4 cos θ4 - l0 = 0 (and sin)",
+        miss: |s| {
+            let (l, t) = (&s.lizard.links, s.angles().t);
+            Some(loop_gap(
+                [(l.l1, t[1]), (l.l2, t[2]), (l.l3, t[3]), (l.l4, t[4])],
+                l.l0,
+            ))
+        },
+        unit: "mm",
+        clockwise: Some(|s| {
+            let (l, t) = (&s.lizard.links, s.angles().t);
+            Some(loop_gap(
+                [
+                    (l.l1, t[1]),
+                    (l.l2, t[2]),
+                    (l.l3, PI - t[3]),
+                    (l.l4, PI - t[4]),
+                ],
+                l.l0,
+            ))
+        }),
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 head, θ3",
+        printed: "θ3 = 2 atan((-B - sqrt(B² - 4AC))/2A)",
+        miss: |s| {
+            let (a, b, c) = abc(s, s.angles().t[4]);
+            Some(apart(2.0 * root(a, b, c, -1.0)?.atan(), s.angles().t[3]))
+        },
+        unit: "deg",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 head, θ3 where A passes 0",
+        printed: "the same formula, θ4 within 1e-9° of A = 0",
+        miss: |s| near_vanishing_a(s),
+        unit: "deg",
+        clockwise: None,
+        corrected: Some((
+            "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
+            |s| {
+                let Some(zero) = vanishing_a(s) else {
+                    return Some(0.0);
+                };
+                let theta1 = s.s.pose.theta1;
+                let Ok(there) = s.lizard.head().forward(theta1, zero * 180.0 / PI) else {
+                    return Some(0.0);
+                };
+                let (l, t) = (&s.lizard.links, PI / 180.0);
+                let (theta2, theta3) = (there.theta_left_coupler(), there.theta_right_coupler());
+                Some(loop_gap(
+                    [
+                        (l.l1, theta1 * t),
+                        (l.l2, theta2 * t),
+                        (l.l3, theta3 * t),
+                        (l.l4, zero),
+                    ],
+                    l.l0,
+                ))
+            },
+        )),
+    },
+    Equation {
+        place: "4.2 head, θ2",
+        printed: "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
+        miss: |s| {
+            let (d, e, f) = def(s, 1.0);
+            let under = e * e + 4.0 * d * f;
+            let real = (under >= 0.0).then(|| (-e + under.sqrt()) / (2.0 * d))?;
+            Some(apart(2.0 * real.atan(), s.angles().t[2]))
+        },
+        unit: "deg",
+        clockwise: None,
+        corrected: Some((
+            "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
+            |s| {
+                let (d, e, f) = def(s, -1.0);
+                let under = e * e - 4.0 * d * f;
+                let real = (under >= 0.0).then(|| (e - under.sqrt()) / (2.0 * d))?;
+                Some(apart(2.0 * real.atan(), s.angles().t[2]))
+            },
+        )),
+    },
+    Equation {
+        place: "4.2 tail loop",
+        printed: "R6 + R7 - R8 - R9 - R5 = 0",
+        miss: |s| {
+            let (l, t) = (&s.lizard.links, s.angles().t);
+            Some(loop_gap(
+                [(l.l6, t[5]), (l.l7, t[6]), (l.l8, t[7]), (l.l9, t[8])],
+                l.l5,
+            ))
+        },
+        unit: "mm",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 left loop, its slider drawn out by s",
+        printed: "R11 + R12 - R13 - R14 - R10 = 0",
+        miss: |s| {
+            let (l, t, half) = (&s.lizard.links, s.angles().t, s.s.left.s / 2.0);
+            let sum = cis(l.l11, t[9]) + cis(l.l12 + half, t[10])
+                - cis(l.l13 + half, t[11])
+                - cis(l.l14, t[12])
+                - cis(l.l10, FRAC_PI_2);
+            Some(sum.length())
+        },
+        unit: "mm",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 right loop, its slider drawn out by s",
+        printed: "R16 + R17 - R18 - R19 - R15 = 0",
+        miss: |s| {
+            let (l, t, half) = (&s.lizard.links, s.angles().t, s.s.right.s / 2.0);
+            let sum = cis(l.l16, t[13]) + cis(l.l17 + half, t[14])
+                - cis(l.l18 + half, t[15])
+                - cis(l.l19, t[16])
+                - cis(l.l15, FRAC_PI_2);
+            Some(sum.length())
+        },
+        unit: "mm",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 left slider halves",
+        printed: "θ10 + θ11 = 0",
+        miss: |s| Some(apart(s.angles().t[10] + s.angles().t[11], 0.0)),
+        unit: "deg",
+        clockwise: Some(|s| Some(apart(s.angles().t[10] + (PI - s.angles().t[11]), 0.0))),
+        corrected: Some(("θ11 = θ10 + 180°", |s| {
+            Some(apart(s.angles().t[11], s.angles().t[10] + PI))
+        })),
+    },
+    Equation {
+        place: "4.2 right slider halves",
+        printed: "θ14 + θ15 = 0",
+        miss: |s| Some(apart(s.angles().t[14] + s.angles().t[15], 0.0)),
+        unit: "deg",
+        clockwise: Some(|s| Some(apart(s.angles().t[14] + (PI - s.angles().t[15]), 0.0))),
+        corrected: Some(("θ15 = θ14 + 180°", |s| {
+            Some(apart(s.angles().t[15], s.angles().t[14] + PI))
+        })),
+    },
+    Equation {
+        place: "4.2 arm on A1",
+        printed: "θ1 - θ12 + C1 = 0",
+        miss: |s| Some(apart(s.angles().t[1] + FRAC_PI_2, s.angles().t[12])),
+        unit: "deg",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 arm on A2",
+        printed: "θ4 - θ16 + C2 = 0",
+        miss: |s| Some(apart(s.angles().t[4] + FRAC_PI_2, s.angles().t[16])),
+        unit: "deg",
+        clockwise: Some(|s| {
+            Some(apart(
+                PI - s.angles().t[4] + FRAC_PI_2,
+                PI - s.angles().t[16],
+            ))
+        }),
+        corrected: Some(("θ16 = θ4 - C2", |s| {
+            Some(apart(s.angles().t[4] - FRAC_PI_2, s.angles().t[16]))
+        })),
+    },
+    Equation {
+        place: "4.2 arm on A4",
+        printed: "θ9 - θ5 + C3 = 0",
+        miss: |s| Some(apart(s.angles().t[9] + FRAC_PI_2, s.angles().t[5])),
+        unit: "deg",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 arm on A3",
+        printed: "θ13 - θ8 + C4 = 0",
+        miss: |s| Some(apart(s.angles().t[13] + FRAC_PI_2, s.angles().t[8])),
+        unit: "deg",
+        clockwise: Some(|s| {
+            Some(apart(
+                PI - s.angles().t[13] + FRAC_PI_2,
+                PI - s.angles().t[8],
+            ))
+        }),
+        corrected: Some(("θ13 = θ8 + C4", |s| {
+            Some(apart(s.angles().t[13] - FRAC_PI_2, s.angles().t[8]))
+        })),
+    },
+];
+
+/// |first + second - third - fourth - base|, mm.
+fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
+    let [a, b, c, d] = links.map(|(length, angle)| cis(length, angle));
+    (a + b - c - d - Vector::new(base, 0.0)).length()
+}
+
+/// tan of half an angle by the quadratic formula.
+fn root(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
+    let under = b * b - 4.0 * a * c;
+    (under >= 0.0).then(|| (-b + sign * under.sqrt()) / (2.0 * a))
+}
+
+/// A, B, C as printed, at some theta4.
+fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
+    let Links {
+        l0, l1, l2, l3, l4, ..
+    } = s.lizard.links;
+    let theta1 = s.angles().t[1];
+    let k1 = l4 * theta4.sin() - l1 * theta1.sin();
+    let k2 = l4 * theta4.cos() - l1 * theta1.cos() + l0;
+    let common = l3 * l3 - l2 * l2 + k2 * k2 + k1 * k1;
+    (
+        (common - 2.0 * k2 * l3) / 2.0,
+        2.0 * k1 * l3,
+        (common + 2.0 * k2 * l3) / 2.0,
+    )
+}
+
+/// D, E, F as printed, with the sign of l0 in K4 given.
+fn def(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
+    let Links {
+        l0, l1, l2, l3, l4, ..
+    } = s.lizard.links;
+    let t = s.angles().t;
+    let k3 = -l4 * t[4].sin() + l1 * t[1].sin();
+    let k4 = -l4 * t[4].cos() + l1 * t[1].cos() + base_sign * l0;
+    let common = l3 * l3 - l2 * l2 - k4 * k4 - k3 * k3;
+    (
+        (common + 2.0 * k4 * l2) / 2.0,
+        2.0 * k3 * l2,
+        (common - 2.0 * k4 * l2) / 2.0,
+    )
+}
+
+/// The theta4 at which A vanishes for the sample's theta1, radians, if any in
+/// [-90, 90] degrees.
+fn vanishing_a(s: &Sample) -> Option<f64> {
+    let a = |theta4: f64| abc(s, theta4).0;
+    let at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
+    let start = (-90..90).find(|&i| a(at(i)) * a(at(i + 1)) < 0.0)?;
+    let (mut low, mut high) = (at(start), at(start + 1));
+    for _ in 0..60 {
+        let middle = (low + high) / 2.0;
+        if a(low) * a(middle) <= 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(low)
+}
+
+/// The printed theta3 close to where A vanishes. Samples without such a theta4
+/// say nothing and count as no miss.
+fn near_vanishing_a(s: &Sample) -> Option<f64> {
+    let Some(zero) = vanishing_a(s) else {
+        return Some(0.0);
+    };
+    let theta4 = zero + (s.chance[0] - 0.5) * 2e-9 * PI / 180.0;
+    let Ok(truth) = s
+        .lizard
+        .head()
+        .forward(s.s.pose.theta1, theta4 * 180.0 / PI)
+    else {
+        return Some(0.0);
+    };
+    let (a, b, c) = abc(s, theta4);
+    let printed = 2.0 * root(a, b, c, -1.0)?.atan();
+    Some(apart(printed, truth.theta_right_coupler() * PI / 180.0))
+}

@@ -1,0 +1,138 @@
+//! Section 4.2: forward position analysis of the legs.
+
+use lizard_kinematics::{Leg, Vector};
+
+use super::equation::Equation;
+use super::sample::{Sample, apart, cis};
+
+/// In the paper's order.
+pub const EQUATIONS: &[Equation] = &[
+    Equation {
+        place: "4.2 leg loops",
+        printed: "LG1 + LG12 - LG13 - LG10 = 0, and with LG10 for legs 2 to 4",
+        miss: |s| {
+            let leg = &s.lizard.leg;
+            worst_of(s, ALL, |theta| {
+                let sum = cis(leg.crank, theta) + Vector::new(leg.coupler - leg.ground, 0.0)
+                    - cis(leg.follower, theta);
+                Some(sum.length())
+            })
+        },
+        unit: "mm; LG20, LG30, LG40 are meant",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 θ_lg13, front legs",
+        printed: "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
+        miss: |s| follower(s, FRONT, 1.0, None),
+        unit: "deg",
+        clockwise: None,
+        corrected: Some(("the root with - for 0 < θ_lg < 180°", |s| {
+            follower(s, FRONT, -1.0, None)
+        })),
+    },
+    Equation {
+        place: "4.2 θ_lg13, back legs",
+        printed: "the same, with the + root",
+        miss: |s| follower(s, BACK, 1.0, None),
+        unit: "deg",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "4.2 H, legs 2 to 4",
+        printed: "H = -2 sin θ1",
+        miss: |s| {
+            let h = Some(-2.0 * s.angles().t[1].sin());
+            let front = follower(s, &[4], -1.0, h);
+            let back = follower(s, BACK, 1.0, h);
+            Some(front?.max(back?))
+        },
+        unit: "deg in θ_lg13, root already corrected",
+        clockwise: None,
+        corrected: Some(("H = -2 sin θ_lgi", |s| {
+            Some(follower(s, &[4], -1.0, None)?.max(follower(s, BACK, 1.0, None)?))
+        })),
+    },
+    Equation {
+        place: "4.2 θ_lg12, front legs",
+        printed: "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
+        miss: |s| coupler(s, FRONT, -1.0, -1.0),
+        unit: "deg",
+        clockwise: None,
+        corrected: Some(("J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ", |s| {
+            coupler(s, FRONT, 1.0, -1.0)
+        })),
+    },
+    Equation {
+        place: "4.2 θ_lg12, back legs",
+        printed: "the same",
+        miss: |s| coupler(s, BACK, -1.0, -1.0),
+        unit: "deg",
+        clockwise: None,
+        corrected: Some((
+            "J and L as above, and the + root for 180° < θ_lg < 360°",
+            |s| coupler(s, BACK, 1.0, 1.0),
+        )),
+    },
+];
+
+/// The servo angles that drive the legs, by the paper's numbers.
+const FRONT: &[usize] = &[1, 4];
+const BACK: &[usize] = &[8, 5];
+const ALL: &[usize] = &[1, 4, 8, 5];
+
+/// The worst of a miss over some legs.
+fn worst_of(s: &Sample, legs: &[usize], miss: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    legs.iter()
+        .map(|&leg| miss(s.angles().t[leg]))
+        .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
+}
+
+/// G, H, I as printed; H may come from elsewhere. The parallelogram's follower
+/// stands as its crank does.
+fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
+    let Leg {
+        ground,
+        crank,
+        coupler,
+        follower,
+    } = s.lizard.leg;
+    worst_of(s, legs, |theta| {
+        let c = theta.cos();
+        let last = (crank * crank + follower * follower + ground * ground - coupler * coupler)
+            / (2.0 * crank * follower);
+        let g = c - ground / crank - ground * c / follower + last;
+        let h = h.unwrap_or(-2.0 * theta.sin());
+        let i = ground / crank - (ground / follower + 1.0) * c + last;
+        Some(apart(2.0 * half(g, h, i, sign)?.atan(), theta))
+    })
+}
+
+/// J, K, L with the sign of the terms in lg12: -1 as printed, +1 as it should
+/// be. The parallelogram's coupler stays at 0.
+fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
+    let Leg {
+        ground,
+        crank,
+        coupler,
+        follower,
+    } = s.lizard.leg;
+    worst_of(s, legs, |theta| {
+        let c = theta.cos();
+        let last = (follower * follower - ground * ground - crank * crank - coupler * coupler)
+            / (2.0 * crank * coupler);
+        let j = c - ground / crank + slip * ground * c / coupler + last;
+        let k = -2.0 * theta.sin();
+        let l = ground / crank + (slip * ground / coupler - 1.0) * c + last;
+        Some(apart(2.0 * half(j, k, l, sign)?.atan(), 0.0))
+    })
+}
+
+/// tan of half an angle by the quadratic formula. Rounding may carry the root's
+/// argument below zero where it is zero.
+fn half(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
+    let under = b * b - 4.0 * a * c;
+    (under > -1e-12).then(|| (-b + sign * under.max(0.0).sqrt()) / (2.0 * a))
+}

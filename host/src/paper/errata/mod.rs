@@ -1,0 +1,232 @@
+//! `lizard errata`: every printed equation, measured against the geometric
+//! solution. Nothing in the table is typed in but the equations themselves.
+
+mod equation;
+mod forward;
+mod inverse;
+mod legs;
+mod sample;
+mod singular;
+mod synthesis;
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::Failure;
+use equation::{Equation, Record};
+use sample::Sample;
+
+/// Which of the paper's equations hold.
+///
+/// Each is evaluated at random poses (theta1, -theta5 in 90..180, theta4, -theta8
+/// in 0..90; the same poses on every run) and compared with the geometric
+/// solution, as printed and as corrected. Where the drawings suggest it, it is
+/// also tried with right-hand angles measured clockwise from -x.
+#[derive(clap::Args)]
+#[command(after_help = "docs/errata.md is made by:
+  lizard errata --markdown > docs/errata.md")]
+pub struct Args {
+    /// Number of random poses
+    #[arg(long, default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    samples: u32,
+    /// The table as Markdown
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
+    /// JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Samples of docs/errata.md.
+pub const SAMPLES: u32 = 20_000;
+
+/// One equation with what was measured.
+#[derive(Serialize)]
+pub struct Entry {
+    place: &'static str,
+    printed: &'static str,
+    holds: bool,
+    /// The worst miss, in `unit`.
+    worst: f64,
+    /// Share of the samples at which the printed form has no real value.
+    unreal: f64,
+    unit: &'static str,
+    /// With right-hand angles clockwise from -x; null where that reading does
+    /// not arise.
+    holds_clockwise: Option<bool>,
+    corrected: Option<&'static str>,
+    corrected_worst: Option<f64>,
+    corrected_holds: Option<bool>,
+}
+
+/// Measures every equation and prints the table.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let entries = measure(args.samples);
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &entries)?;
+        writeln!(out)?;
+    } else if args.markdown {
+        out.write_all(markdown(&entries, args.samples).as_bytes())?;
+    } else {
+        out.write_all(text(&entries, args.samples).as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Every equation in the paper's order, measured over some poses.
+pub fn measure(samples: u32) -> Vec<Entry> {
+    let samples: Vec<Sample> = Sample::many(samples as usize).collect();
+    let all: Vec<&Equation> = [
+        synthesis::EQUATIONS,
+        inverse::EQUATIONS,
+        forward::EQUATIONS,
+        legs::EQUATIONS,
+        singular::EQUATIONS,
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    all.into_par_iter()
+        .map(|equation| {
+            let printed = Record::of(equation.miss, &samples);
+            let corrected = equation
+                .corrected
+                .map(|(_, miss)| Record::of(miss, &samples));
+            Entry {
+                place: equation.place,
+                printed: equation.printed,
+                holds: printed.holds(),
+                worst: printed.worst,
+                unreal: printed.unreal,
+                unit: equation.unit,
+                holds_clockwise: equation
+                    .clockwise
+                    .map(|miss| Record::of(miss, &samples).holds()),
+                corrected: equation.corrected.map(|(form, _)| form),
+                corrected_worst: corrected.map(|record| record.worst),
+                corrected_holds: corrected.map(|record| record.holds()),
+            }
+        })
+        .collect()
+}
+
+impl Entry {
+    /// The verdict in words.
+    fn verdict(&self) -> &'static str {
+        match (self.holds, self.holds_clockwise) {
+            (true, Some(false)) => "holds, but not clockwise",
+            (true, _) => "holds",
+            (false, Some(true)) => "fails; holds clockwise",
+            (false, _) => "fails",
+        }
+    }
+
+    /// The worst miss in words; rounding is not told apart from rounding.
+    fn miss(&self) -> String {
+        if self.holds {
+            return "rounding".to_string();
+        }
+        let mut words = format!("{} {}", figures(self.worst), self.unit);
+        if self.unreal >= 0.999_95 {
+            words = "no real value".to_string();
+        } else if self.unreal > 0.0 {
+            let _ = write!(
+                words,
+                ", no real value at {:.0} % of poses",
+                100.0 * self.unreal
+            );
+        }
+        words
+    }
+
+    /// True if a form that holds was found.
+    pub fn is_settled(&self) -> bool {
+        self.holds || self.corrected_holds == Some(true)
+    }
+}
+
+/// Three figures, without an exponent.
+fn figures(value: f64) -> String {
+    let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
+    format!("{value:.0$}", digits as usize)
+}
+
+fn text(entries: &[Entry], samples: u32) -> String {
+    let holding = entries.iter().filter(|entry| entry.holds).count();
+    let mut page = format!(
+        "{} printed equations at {samples} random poses: {holding} hold, {} do not.\n",
+        entries.len(),
+        entries.len() - holding
+    );
+    for entry in entries {
+        let mark = if entry.holds { "holds" } else { "FAILS" };
+        let _ = write!(
+            page,
+            "\n{mark}  {}\n       printed    {}\n",
+            entry.place, entry.printed
+        );
+        if !entry.holds {
+            let _ = writeln!(page, "       worst      {}", entry.miss());
+        }
+        match entry.holds_clockwise {
+            Some(true) => page += "       clockwise  holds\n",
+            Some(false) => page += "       clockwise  fails\n",
+            None => {}
+        }
+        if let (Some(form), Some(holds)) = (entry.corrected, entry.corrected_holds) {
+            let note = if holds { "holds" } else { "fails" };
+            let _ = writeln!(page, "       corrected  {form}: {note}");
+        }
+    }
+    page
+}
+
+/// docs/errata.md.
+pub fn markdown(entries: &[Entry], samples: u32) -> String {
+    let holding = entries.iter().filter(|entry| entry.holds).count();
+    let mut page = format!(
+        "# Errata of the paper, measured
+
+Made by `lizard errata --markdown`; a test fails when it is out of date. Nothing
+here is typed in but the equations themselves.
+
+Each printed equation of *Optimal Kinematic Design of a Robotic Lizard using
+Four-Bar and Five-Bar Mechanisms* was evaluated at {samples} random poses (theta1 and
+-theta5 in 90 to 180, theta4 and -theta8 in 0 to 90 degrees, the paper's lengths)
+and compared with the geometric solution, whose loops close within 1e-9 mm. Angles
+are counter-clockwise from +x in the chassis frame throughout. \"Clockwise\" is a
+second reading, in which the angles of the right-hand links are measured clockwise
+from -x, as the drawings suggest: then several signs come out right, but the loop
+equations and the theta3 formula, which the paper uses with them, do not. A miss below 1e-6 in
+its unit counts as rounding.
+
+**{holding} of {} hold as printed.** Every corrected form below was measured at the same
+poses and holds.
+
+| where | printed | verdict | worst miss | corrected |
+|---|---|---|---|---|
+",
+        entries.len()
+    );
+    let cell = |text: &str| text.replace('|', "\\|");
+    for entry in entries {
+        let corrected = match (entry.corrected, entry.corrected_holds) {
+            (Some(form), Some(true)) => cell(form),
+            (Some(form), _) => format!("{} (fails too)", cell(form)),
+            _ => "-".to_string(),
+        };
+        let _ = writeln!(
+            page,
+            "| {} | {} | {} | {} | {corrected} |",
+            cell(entry.place),
+            cell(entry.printed),
+            entry.verdict(),
+            cell(&entry.miss())
+        );
+    }
+    page
+}

@@ -1,0 +1,121 @@
+//! Random poses of the paper's robot, the same ones on every run.
+
+use std::f64::consts::PI;
+
+use lizard_kinematics::{Leg, Links, Lizard, Pose, Solution, Vector};
+
+/// The paper's table of links as printed: l16 twice, l17 never.
+pub const TABLE: [(&[usize], f64); 5] = [
+    (&[0, 5], 20.0),
+    (&[1, 4, 6, 9, 14, 11, 16, 19], 30.0),
+    (&[2, 3, 7, 8], 50.0),
+    (&[12, 13, 16, 18], 45.0),
+    (&[10, 15], 135.0),
+];
+
+/// The paper's robot; the second l16 of its table read as l17.
+pub fn paper_lizard() -> Lizard {
+    let mut l = [0.0; 20];
+    for (links, length) in TABLE {
+        for &i in links {
+            l[if i == 16 && length == 45.0 { 17 } else { i }] = length;
+        }
+    }
+    Lizard {
+        links: Links::from(l),
+        leg: Leg {
+            ground: 50.0,
+            crank: 45.0,
+            coupler: 50.0,
+            follower: 45.0,
+        },
+    }
+}
+
+/// A solved pose, and random numbers for what is not about a pose.
+pub struct Sample {
+    /// The robot.
+    pub lizard: Lizard,
+    /// The geometric solution.
+    pub s: Solution,
+    /// Uniform in [0, 1).
+    pub chance: [f64; 2],
+}
+
+/// All angles of the paper in radians, chassis frame, counter-clockwise.
+pub struct Angles {
+    /// theta1 to theta16; index 0 is unused.
+    pub t: [f64; 17],
+}
+
+impl Sample {
+    /// `count` poses with theta1 and -theta5 in [90, 180], theta4 and -theta8 in
+    /// [0, 90]: all that the outward elbows allow on the robot's own side.
+    pub fn many(count: usize) -> impl Iterator<Item = Self> {
+        let lizard = paper_lizard();
+        let mut chance = Chance(1);
+        std::iter::repeat_with(move || {
+            let mut within = |least: f64| least + 90.0 * chance.next();
+            let pose = Pose {
+                theta1: within(90.0),
+                theta4: within(0.0),
+                theta8: 360.0 - within(0.0),
+                theta5: 360.0 - within(90.0),
+            };
+            let chance = [chance.next(), chance.next()];
+            let s = lizard.solve(&pose).ok()?;
+            Some(Self { lizard, s, chance })
+        })
+        .flatten()
+        .take(count)
+    }
+
+    /// Every angle of the paper.
+    pub fn angles(&self) -> Angles {
+        let p = &self.s.pose;
+        let mut t = [0.0; 17];
+        t[1] = p.theta1;
+        t[2] = self.s.theta2();
+        t[3] = self.s.theta3();
+        t[4] = p.theta4;
+        t[5] = p.theta5;
+        t[6] = self.s.theta6();
+        t[7] = self.s.theta7();
+        t[8] = p.theta8;
+        t[9] = p.theta5 - 90.0;
+        t[10] = self.s.left.phi();
+        t[11] = t[10] + 180.0;
+        t[12] = p.theta1 + 90.0;
+        t[13] = p.theta8 + 90.0;
+        t[14] = self.s.right.phi();
+        t[15] = t[14] + 180.0;
+        t[16] = p.theta4 - 90.0;
+        Angles {
+            t: t.map(|degrees| degrees * PI / 180.0),
+        }
+    }
+}
+
+/// A vector from length and angle in radians.
+pub fn cis(length: f64, radians: f64) -> Vector {
+    Vector::new(length * radians.cos(), length * radians.sin())
+}
+
+/// The difference of two directions in degrees, 0 to 180; radians in.
+pub fn apart(a: f64, b: f64) -> f64 {
+    lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
+}
+
+/// SplitMix64: the table must be the same on every run and every host.
+struct Chance(u64);
+
+impl Chance {
+    /// Uniform in [0, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

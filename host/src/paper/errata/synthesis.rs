@@ -1,0 +1,179 @@
+//! Sections 2 and 3: mobility and dimensional synthesis.
+
+use std::f64::consts::PI;
+
+use lizard_kinematics::{Vector, Workspace};
+
+use super::equation::Equation;
+use super::sample::{Sample, TABLE, cis};
+use crate::paper::design::{CLAIM, Proportions, SUM, lci};
+use crate::paper::mobility;
+
+/// In the paper's order.
+pub const EQUATIONS: &[Equation] = &[
+    Equation {
+        place: "2.1 mobility of the body",
+        printed: "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
+        miss: |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs()),
+        unit: "freedoms against the rank of the constraints",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "2.2 mobility of a leg",
+        printed: "M = 1",
+        miss: |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs()),
+        unit: "freedoms against the rank of the constraints",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "3.1 dimensional factor",
+        printed: "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9",
+        miss: |s| {
+            let (d, p) = (10.0 + 100.0 * s.chance[0], Proportions::PAPER);
+            let bars = p.at_scale(d);
+            let sum = bars.crank_left + bars.coupler_left + bars.base / 2.0;
+            Some(
+                (sum / SUM - d)
+                    .abs()
+                    .max((p.scale_for_base(bars.base) - d).abs()),
+            )
+        },
+        unit: "mm",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "3.1 design space",
+        printed: "r3 < 0.45 assures r1 + r2 > r3",
+        miss: |s| {
+            let r3 = 0.45 * s.chance[0];
+            Some((r3 - (SUM - r3)).max(0.0))
+        },
+        unit: "D",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "3.1.2 workspace circles (all four)",
+        printed: "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
+        miss: |s| circles(s, |y| y),
+        unit: "mm in radius",
+        clockwise: None,
+        corrected: Some(("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
+            circles(s, |y| y * y)
+        })),
+    },
+    Equation {
+        place: "3.1.3 maximal inscribed circle",
+        printed: "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
+        miss: |s| {
+            let bars = s.lizard.head();
+            let (sum, difference) = (
+                bars.crank_left + bars.coupler_left,
+                (bars.crank_left - bars.coupler_left).abs(),
+            );
+            let r = (sum - difference) / 2.0;
+            let y = ((sum + difference).powi(2) / 4.0 - (bars.base / 2.0).powi(2)).sqrt();
+            let clearance = |x: f64, y: f64| {
+                let to_left = (x + bars.base / 2.0).hypot(y);
+                let to_right = (x - bars.base / 2.0).hypot(y);
+                [to_left, to_right]
+                    .iter()
+                    .map(|d| (d - difference).min(sum - d))
+                    .fold(f64::INFINITY, f64::min)
+            };
+            // It is inscribed, and no other centre has more room.
+            let other = clearance(sum * (2.0 * s.chance[0] - 1.0), sum * s.chance[1]);
+            Some((clearance(0.0, y) - r).abs().max(other - r))
+        },
+        unit: "mm",
+        clockwise: None,
+        corrected: None,
+    },
+    Equation {
+        place: "3.1.4 conditioning",
+        printed: "LCI > 0.7 inside the inscribed circle",
+        miss: |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0)),
+        unit: "of LCI short",
+        clockwise: None,
+        corrected: Some((
+            "LCI > 0.7 inside the concentric circle of half the radius; over the whole circle as a mean only",
+            |s| Some((CLAIM - lci_at(s, 0.5)).max(0.0)),
+        )),
+    },
+    Equation {
+        place: "3.2 table of links",
+        printed: "l12, l13, l16, l18 = 45 (l16 = 30 before)",
+        miss: |_| Some(missing(|i, _| i)),
+        unit: "links without a length",
+        clockwise: None,
+        corrected: Some(("l12, l13, l17, l18 = 45", |_| {
+            Some(missing(
+                |i, length| if i == 16 && length == 45.0 { 17 } else { i },
+            ))
+        })),
+    },
+    Equation {
+        place: "3.2 legs",
+        printed: "the parallelogram does not operate in the singularity zone",
+        miss: |s| {
+            let (least, flat) = (0.3, 360.0 * s.chance[0]);
+            Some((least - flat.to_radians().sin().abs()).max(0.0))
+        },
+        unit: "of the margin 0.3 short",
+        clockwise: None,
+        corrected: Some((
+            "change points at theta_lg = 0 and 180; the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
+            |s| {
+                let theta: f64 = 90.0 + 72.5 * (2.0 * s.chance[0] - 1.0);
+                Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
+            },
+        )),
+    },
+];
+
+/// A point on the rim of an arm's reach, put into a circle equation whose y
+/// term is given; the miss is in the radius.
+fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
+    let bars = s.lizard.head();
+    let mut worst = 0.0_f64;
+    for shaft in [-bars.base / 2.0, bars.base / 2.0] {
+        for radius in [
+            bars.crank_left + bars.coupler_left,
+            (bars.crank_left - bars.coupler_left).abs(),
+        ] {
+            let rim = cis(radius, PI * s.chance[0]);
+            // x11 is the shaft's x more; the equation takes it off again.
+            let (x11, y11) = (rim.x + shaft, rim.y);
+            let square = (x11 - shaft).powi(2) + term(y11);
+            worst = worst.max((square.sqrt() - radius).abs());
+        }
+    }
+    Some(worst)
+}
+
+/// The index at a random point of the inscribed circle shrunk by a factor.
+fn lci_at(s: &Sample, shrink: f64) -> f64 {
+    let bars = s.lizard.head();
+    Workspace::of(&bars)
+        .inscribed_circle()
+        .map_or(0.0, |circle| {
+            let radius = circle.radius * shrink * s.chance[0].sqrt();
+            lci(
+                &bars,
+                circle.centre + Vector::direction(360.0 * s.chance[1]) * radius,
+            )
+        })
+}
+
+/// How many of l0 to l19 the table leaves out, its entries read in some way.
+fn missing(read: fn(usize, f64) -> usize) -> f64 {
+    let named = |link: usize| {
+        TABLE
+            .iter()
+            .any(|(links, length)| links.iter().any(|&i| read(i, *length) == link))
+    };
+    (0..20).filter(|&link| !named(link)).count() as f64
+}
