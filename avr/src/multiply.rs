@@ -12,86 +12,71 @@ pub const fn mul(a: i16, b: i16) -> i32 {
     a as i32 * b as i32
 }
 
+/// The two halves, low and high, of `$a * $b` read as unsigned, and then
+/// whatever `$more` instructions make of them: four products of bytes, added at
+/// their places. Half the cycles of the compiler's call to a 32 by 32 bit
+/// multiplication.
+#[cfg(target_arch = "avr")]
+macro_rules! product {
+    ($a:expr, $b:expr $(, $more:literal)*) => {{
+        let low: u16;
+        let high: u16;
+        // SAFETY: arithmetic on registers only; r1 is zero again at the end,
+        // as the calling convention wants it.
+        unsafe {
+            core::arch::asm!(
+                "mul {a:l}, {b:l}",
+                "movw {low}, r0",
+                "mul {a:h}, {b:h}",
+                "movw {high}, r0",
+                "mul {a:h}, {b:l}",
+                "add {low:h}, r0",
+                "adc {high:l}, r1",
+                "clr {zero}",
+                "adc {high:h}, {zero}",
+                "mul {a:l}, {b:h}",
+                "add {low:h}, r0",
+                "adc {high:l}, r1",
+                "adc {high:h}, {zero}",
+                "clr r1",
+                $($more,)*
+                a = in(reg_pair) $a,
+                b = in(reg_pair) $b,
+                low = out(reg_pair) low,
+                high = out(reg_pair) high,
+                zero = out(reg) _,
+                options(pure, nomem, nostack),
+            );
+        }
+        u32::from(high) << 16 | u32::from(low)
+    }};
+}
+
 /// `a * b` of unsigned factors, without losing the upper half.
-///
-/// Four products of bytes, added at their places: half the cycles of the
-/// compiler's call to a 32 by 32 bit multiplication.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul_unsigned(a: u16, b: u16) -> u32 {
-    let low: u16;
-    let high: u16;
-    // SAFETY: arithmetic on registers only; r1 is zero again at the end, as
-    // the calling convention wants it.
-    unsafe {
-        core::arch::asm!(
-            "mul {a:l}, {b:l}",
-            "movw {low}, r0",
-            "mul {a:h}, {b:h}",
-            "movw {high}, r0",
-            "mul {a:h}, {b:l}",
-            "add {low:h}, r0",
-            "adc {high:l}, r1",
-            "clr {zero}",
-            "adc {high:h}, {zero}",
-            "mul {a:l}, {b:h}",
-            "add {low:h}, r0",
-            "adc {high:l}, r1",
-            "adc {high:h}, {zero}",
-            "clr r1",
-            a = in(reg_pair) a,
-            b = in(reg_pair) b,
-            low = out(reg_pair) low,
-            high = out(reg_pair) high,
-            zero = out(reg) _,
-            options(pure, nomem, nostack),
-        );
-    }
-    u32::from(high) << 16 | u32::from(low)
+    product!(a, b)
 }
 
-/// `a * b` of signed factors, without losing the upper half.
+/// `a * b` of signed factors, without losing the upper half. A negative factor
+/// read as unsigned is 2^16 too large, so the other one is taken off the upper
+/// half.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul(a: i16, b: i16) -> i32 {
-    let low: u16;
-    let high: u16;
-    // SAFETY: arithmetic on registers only; r1 is zero again at the end, as
-    // the calling convention wants it. A negative factor read as unsigned is
-    // 2^16 too large, so the other one is taken off the upper half.
-    unsafe {
-        core::arch::asm!(
-            "mul {a:l}, {b:l}",
-            "movw {low}, r0",
-            "mul {a:h}, {b:h}",
-            "movw {high}, r0",
-            "mul {a:h}, {b:l}",
-            "add {low:h}, r0",
-            "adc {high:l}, r1",
-            "clr {zero}",
-            "adc {high:h}, {zero}",
-            "mul {a:l}, {b:h}",
-            "add {low:h}, r0",
-            "adc {high:l}, r1",
-            "adc {high:h}, {zero}",
-            "clr r1",
-            "sbrs {a:h}, 7",
-            "rjmp 2f",
-            "sub {high:l}, {b:l}",
-            "sbc {high:h}, {b:h}",
-            "2:",
-            "sbrs {b:h}, 7",
-            "rjmp 3f",
-            "sub {high:l}, {a:l}",
-            "sbc {high:h}, {a:h}",
-            "3:",
-            a = in(reg_pair) a,
-            b = in(reg_pair) b,
-            low = out(reg_pair) low,
-            high = out(reg_pair) high,
-            zero = out(reg) _,
-            options(pure, nomem, nostack),
-        );
-    }
-    (u32::from(high) << 16 | u32::from(low)) as i32
+    product!(
+        a,
+        b,
+        "sbrs {a:h}, 7",
+        "rjmp 2f",
+        "sub {high:l}, {b:l}",
+        "sbc {high:h}, {b:h}",
+        "2:",
+        "sbrs {b:h}, 7",
+        "rjmp 3f",
+        "sub {high:l}, {a:l}",
+        "sbc {high:h}, {a:h}",
+        "3:"
+    ) as i32
 }
