@@ -63,7 +63,6 @@ clean: ## remove everything that was built
 
 .lint:
 	@cargo fmt --check
-	@cd avr && cargo fmt --check
 	@cd host && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
 	@cd host && cargo clippy --workspace --all-targets --quiet -- -D warnings
