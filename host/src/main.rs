@@ -31,6 +31,7 @@ enum Command {
     Mobility(paper::mobility::Args),
     Design(paper::design::Args),
     Errata(paper::errata::Args),
+    Charts(paper::charts::Args),
     Sim(sim::Args),
     Draw(draw::Args),
 }
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Mobility(args) => paper::mobility::run(args),
         Command::Design(args) => paper::design::run(args),
         Command::Errata(args) => paper::errata::run(args),
+        Command::Charts(args) => paper::charts::run(args),
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),
     };

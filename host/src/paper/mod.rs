@@ -1,6 +1,7 @@
 //! The paper, section by section: *Optimal Kinematic Design of a Robotic Lizard
 //! using Four-Bar and Five-Bar Mechanisms*.
 
+pub mod charts;
 pub mod design;
 pub mod errata;
 pub mod inverse;

@@ -86,3 +86,43 @@ fn the_crank_tips_coincide_where_the_paper_never_looks() {
         assert!((pose.theta_right.abs() - 109.47122).abs() < 1e-5);
     }
 }
+
+#[test]
+fn no_path_of_good_margins_leads_to_crossed_cranks() {
+    // Poses with every margin, legs too, at .3, on a half degree grid between
+    // the legs' change points at 0 and 180, cut into connected regions: none
+    // holds both signs of K2.
+    const N: usize = 360;
+    let state = |left: usize, right: usize| {
+        let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);
+        let pose = HEAD.forward(left, right).ok()?;
+        let leg = pose.left.y.abs().min(pose.right.y.abs());
+        (pose.margin().min(leg) >= 0.3).then_some(pose.gap.x > 0.0)
+    };
+    let grid: Vec<Option<bool>> = (0..N * N).map(|i| state(i / N, i % N)).collect();
+    let mut seen = vec![false; N * N];
+    let (mut crossed, mut uncrossed) = (0, 0);
+    for start in 0..N * N {
+        if grid[start].is_none() || seen[start] {
+            continue;
+        }
+        let mut todo = vec![start];
+        seen[start] = true;
+        while let Some(i) = todo.pop() {
+            let (left, right) = (i / N, i % N);
+            assert_eq!(grid[i], grid[start], "a way across at {left} {right}");
+            match grid[i] {
+                Some(true) => uncrossed += 1,
+                _ => crossed += 1,
+            }
+            for (dl, dr) in [(1, 0), (N - 1, 0), (0, 1), (0, N - 1)] {
+                let next = (left + dl) % N * N + (right + dr) % N;
+                if grid[next].is_some() && !seen[next] {
+                    seen[next] = true;
+                    todo.push(next);
+                }
+            }
+        }
+    }
+    assert!(crossed > 100 && uncrossed > 100, "{crossed} {uncrossed}");
+}

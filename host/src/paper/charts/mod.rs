@@ -1,0 +1,124 @@
+//! `lizard charts`: the paper's figures, and those that it lacks, as SVG and
+//! PNG.
+
+mod performance;
+mod plot;
+mod raster;
+mod singularity;
+mod stroke;
+mod workspace;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lizard_robot::Robot;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::paper::design;
+use crate::{Failure, PoseArgs, RobotFile, draw};
+
+/// Grid of the performance charts, and rings of their circles.
+const STEP: f64 = 0.005;
+const RINGS: usize = 16;
+
+/// Draws all charts into a folder, each as SVG and PNG.
+///
+/// workspace (with the maximal inscribed circle), conditioning (the LCI map),
+/// performance (over the whole design space), singularity (with the gaits'
+/// paths), stroke (slider travel in each gait), top-view (at neutral, or at the
+/// pose given).
+#[derive(clap::Args)]
+#[command(after_help = "Example:
+  lizard charts docs/charts --svg-only")]
+pub struct Args {
+    /// Folder for the files; made if need be
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Write no PNG
+    #[arg(long)]
+    svg_only: bool,
+    /// Print the list of files as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    pose: PoseArgs,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(Serialize)]
+struct Drawn {
+    chart: &'static str,
+    files: Vec<PathBuf>,
+}
+
+/// Draws and writes everything.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
+    let solution = robot
+        .lizard
+        .solve(&pose)
+        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+    let mut pictures = charts(&robot);
+    pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
+    fs::create_dir_all(&args.folder).map_err(|fault| cannot_write(&args.folder, fault))?;
+    let options = (!args.svg_only).then(raster::options);
+    if options
+        .as_ref()
+        .is_some_and(|options| options.fontdb.is_empty())
+    {
+        eprintln!(
+            "lizard: no fonts on this machine, the PNG files have no text (apt install fonts-dejavu-core)"
+        );
+    }
+    let drawn: Vec<Drawn> = pictures
+        .par_iter()
+        .map(|(name, svg)| {
+            let mut files = vec![write(&args.folder, name, "svg", svg.as_bytes())?];
+            if let Some(options) = &options {
+                let png = raster::png(svg, options)
+                    .map_err(|fault| Failure::Impossible(format!("{name}.png: {fault}")))?;
+                files.push(write(&args.folder, name, "png", &png)?);
+            }
+            Ok(Drawn { chart: name, files })
+        })
+        .collect::<Result<_, Failure>>()?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&drawn)?);
+    } else {
+        for file in drawn.iter().flat_map(|drawn| &drawn.files) {
+            println!("{}", file.display());
+        }
+    }
+    Ok(())
+}
+
+/// Every chart that does not depend on a pose, with its name.
+pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
+    let progress = design::bar("performance charts");
+    let points = design::chart(STEP, RINGS, &progress);
+    progress.finish_and_clear();
+    vec![
+        ("workspace", workspace::workspace(robot)),
+        ("conditioning", workspace::conditioning(robot)),
+        ("performance", performance::performance(&points, STEP)),
+        ("singularity", singularity::singularity(robot)),
+        ("stroke", stroke::stroke(robot)),
+    ]
+}
+
+/// Writes a file whole or not at all.
+fn write(folder: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
+    let path = folder.join(format!("{name}.{ending}"));
+    let part = folder.join(format!(".{name}.{ending}.part"));
+    fs::write(&part, bytes)
+        .and_then(|()| fs::rename(&part, &path))
+        .map_err(|fault| cannot_write(&path, fault))?;
+    Ok(path)
+}
+
+fn cannot_write(path: &Path, fault: std::io::Error) -> Failure {
+    Failure::Impossible(format!("cannot write {}: {fault}", path.display()))
+}

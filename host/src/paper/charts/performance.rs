@@ -1,0 +1,114 @@
+//! The performance charts over the whole design space.
+
+use std::collections::HashMap;
+
+use svg::node::element::Group;
+
+use super::plot::{Axis, Plot, Scale, VIRIDIS, page, title};
+use crate::draw::ink::{Anchor, DARK, circle, line, text};
+use crate::paper::design::{Point, Proportions, SUM};
+
+const SIZE: (f64, f64) = (1530.0, 570.0);
+const PANEL: f64 = 340.0;
+
+/// Workspace area, inscribed circle and mean conditioning index over r1 and r2.
+pub fn performance(points: &[Point], step: f64) -> String {
+    let key = |p: &Proportions| ((p.r1 / step).round() as i64, (p.r2 / step).round() as i64);
+    let cells: HashMap<_, _> = points.iter().map(|p| (key(&p.proportions), p)).collect();
+    let look_up = |x: f64, y: f64| {
+        cells
+            .get(&((x / step).round() as i64, (y / step).round() as i64))
+            .copied()
+    };
+    type Value = fn(&Point) -> Option<f64>;
+    let panels: [(&str, Value, f64, usize); 3] = [
+        ("workspace area / D²", |p| Some(p.performance.area), 2.5, 2),
+        (
+            "radius of the inscribed circle / D",
+            |p| (p.performance.r_mic > 0.0).then_some(p.performance.r_mic),
+            0.5,
+            2,
+        ),
+        (
+            "mean LCI in the inscribed circle",
+            |p| p.performance.lci.map(|lci| lci.mean),
+            1.0,
+            1,
+        ),
+    ];
+    let mut group = title(
+        Group::new(),
+        90.0,
+        "Performance charts of the five-bar",
+        "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no circle, or no design; ring: the paper's design",
+    );
+    for (i, (name, value, most, digits)) in panels.into_iter().enumerate() {
+        let plot = Plot {
+            corner: (90.0 + 480.0 * i as f64, 150.0),
+            size: (PANEL, PANEL),
+            x: (0.0, SUM),
+            y: (0.0, SUM),
+        };
+        let scale = Scale {
+            least: 0.0,
+            most,
+            colours: VIRIDIS,
+        };
+        let count = (SUM / step).round() as usize;
+        // Cells are centred on the grid's points.
+        let wide = Plot {
+            corner: plot.at(-step / 2.0, SUM + step / 2.0),
+            size: (PANEL * (SUM + step) / SUM, PANEL * (SUM + step) / SUM),
+            x: (-step / 2.0, SUM + step / 2.0),
+            y: (-step / 2.0, SUM + step / 2.0),
+        };
+        let axes = (
+            Axis {
+                step: 0.1,
+                name: "r1, crank",
+            },
+            Axis {
+                step: 0.1,
+                name: if i == 0 { "r2, coupler" } else { "" },
+            },
+        );
+        group = plot.grid(group, &axes.0, &axes.1);
+        group = wide.map(group, (count + 1, count + 1), |x, y| {
+            look_up(x, y)
+                .and_then(value)
+                .map(|value| scale.colour(value))
+        });
+        for r3 in [0.1, 0.2, 0.3, 0.4] {
+            let (from, to) = (plot.at(0.0, SUM - r3), plot.at(SUM - r3, 0.0));
+            group = group.add(line(from, to, "white", 0.8).set("stroke-dasharray", "3 4"));
+        }
+        let (x, y) = plot.at(Proportions::PAPER.r1, Proportions::PAPER.r2);
+        group = group
+            .add(
+                circle((x, y), 7.0, "none")
+                    .set("stroke", "white")
+                    .set("stroke-width", 5.0),
+            )
+            .add(
+                circle((x, y), 7.0, "none")
+                    .set("stroke", "#d55e00")
+                    .set("stroke-width", 2.5),
+            );
+        group = plot.axes(group, &axes.0, &axes.1);
+        group = group.add(text(
+            name,
+            (plot.corner.0, 128.0),
+            17.0,
+            DARK,
+            Anchor::Start,
+        ));
+        group = scale.key(
+            group,
+            (plot.corner.0 + PANEL + 20.0, 150.0),
+            PANEL,
+            "",
+            digits,
+        );
+    }
+    page(SIZE, group)
+}

@@ -1,0 +1,274 @@
+//! Axes, banded maps and their scales: what every chart is made of.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use svg::node::element::{Group, Path, Polyline};
+
+use crate::draw::ink::{Anchor, DARK, GREY, GRID, curve, line, rectangle, text};
+
+/// Viridis in ten bands: even steps in lightness, so that it reads in grey and
+/// for every kind of colour vision.
+pub const VIRIDIS: &[&str] = &[
+    "#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58",
+    "#b5de2b", "#fde725",
+];
+
+/// Light blues, for maps that carry coloured lines.
+pub const BLUES: &[&str] = &[
+    "#f7fbff", "#e3eef8", "#d0e1f2", "#b7d4ea", "#9ac7e0", "#7fb8da", "#65a9d2",
+];
+
+/// What is out of the question.
+pub const SHUT: &str = "#d4d0cb";
+
+/// A rectangle of the page with a coordinate system.
+#[derive(Clone, Copy)]
+pub struct Plot {
+    /// Left upper corner on the page.
+    pub corner: (f64, f64),
+    /// Width and height on the page.
+    pub size: (f64, f64),
+    /// Range from left to right.
+    pub x: (f64, f64),
+    /// Range from bottom to top.
+    pub y: (f64, f64),
+}
+
+/// One axis' ticks and name.
+pub struct Axis<'a> {
+    /// Distance of ticks.
+    pub step: f64,
+    /// Name and unit.
+    pub name: &'a str,
+}
+
+impl Plot {
+    /// Where a point lies on the page.
+    pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        (
+            self.corner.0 + self.size.0 * (x - self.x.0) / (self.x.1 - self.x.0),
+            self.corner.1 + self.size.1 * (self.y.1 - y) / (self.y.1 - self.y.0),
+        )
+    }
+
+    /// Page units for a unit of x.
+    pub fn scale(&self) -> f64 {
+        self.size.0 / (self.x.1 - self.x.0)
+    }
+
+    /// The right and lower edges.
+    fn end(&self) -> (f64, f64) {
+        (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
+    }
+
+    /// A grid in the background.
+    pub fn grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
+        for value in ticks(self.x, x.step) {
+            let at = self.at(value, 0.0).0;
+            group = group.add(line((at, self.corner.1), (at, self.end().1), GRID, 1.0));
+        }
+        for value in ticks(self.y, y.step) {
+            let at = self.at(0.0, value).1;
+            group = group.add(line((self.corner.0, at), (self.end().0, at), GRID, 1.0));
+        }
+        group
+    }
+
+    /// Frame, ticks, numbers and names.
+    pub fn axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
+        let (right, bottom) = self.end();
+        group = group.add(
+            rectangle(self.corner, self.size, "none")
+                .set("stroke", DARK)
+                .set("stroke-width", 1.0),
+        );
+        for value in ticks(self.x, x.step) {
+            let at = self.at(value, 0.0).0;
+            group = group
+                .add(line((at, bottom), (at, bottom + 6.0), DARK, 1.0))
+                .add(text(
+                    &number(value, x.step),
+                    (at, bottom + 23.0),
+                    15.0,
+                    DARK,
+                    Anchor::Middle,
+                ));
+        }
+        for value in ticks(self.y, y.step) {
+            let at = self.at(0.0, value).1;
+            group = group
+                .add(line(
+                    (self.corner.0 - 6.0, at),
+                    (self.corner.0, at),
+                    DARK,
+                    1.0,
+                ))
+                .add(text(
+                    &number(value, y.step),
+                    (self.corner.0 - 10.0, at + 5.0),
+                    15.0,
+                    DARK,
+                    Anchor::End,
+                ));
+        }
+        let below = ((self.corner.0 + right) / 2.0, bottom + 50.0);
+        let beside = (self.corner.0 - 58.0, (self.corner.1 + bottom) / 2.0);
+        group
+            .add(text(x.name, below, 17.0, DARK, Anchor::Middle))
+            .add(text(y.name, beside, 17.0, DARK, Anchor::Middle).set(
+                "transform",
+                format!("rotate(-90 {} {})", beside.0, beside.1),
+            ))
+    }
+
+    /// A map in bands of colour, one path for each. Equal neighbours in a row
+    /// become one rectangle of it.
+    pub fn map(
+        &self,
+        mut group: Group,
+        cells: (usize, usize),
+        colour: impl Fn(f64, f64) -> Option<&'static str>,
+    ) -> Group {
+        let width = (self.x.1 - self.x.0) / cells.0 as f64;
+        let height = (self.y.1 - self.y.0) / cells.1 as f64;
+        let mut outlines: BTreeMap<&str, String> = BTreeMap::new();
+        for row in 0..cells.1 {
+            let y = self.y.0 + row as f64 * height;
+            let at = |column: usize| self.x.0 + column as f64 * width;
+            let of = |column: usize| colour(at(column) + width / 2.0, y + height / 2.0);
+            let mut from = 0;
+            let mut fill = of(0);
+            for column in 1..=cells.0 {
+                let next = if column < cells.0 { of(column) } else { None };
+                if column < cells.0 && next == fill {
+                    continue;
+                }
+                if let Some(fill) = fill {
+                    let (left, top) = self.at(at(from), y + height);
+                    let (right, bottom) = self.at(at(column), y);
+                    let (wide, high) = (right - left, bottom - top);
+                    let _ = write!(
+                        outlines.entry(fill).or_default(),
+                        "M{left:.1} {top:.1}h{wide:.1}v{high:.1}h-{wide:.1}z"
+                    );
+                }
+                (from, fill) = (column, next);
+            }
+        }
+        for (fill, outline) in outlines {
+            let bands = Path::new().set("d", outline).set("fill", fill);
+            group = group.add(bands.set("shape-rendering", "crispEdges"));
+        }
+        group
+    }
+
+    /// A line through points.
+    pub fn curve(&self, points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
+        let points: Vec<_> = points.iter().map(|&(x, y)| self.at(x, y)).collect();
+        curve(&points, colour, width)
+    }
+}
+
+/// Multiples of a step within a range.
+fn ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
+    let first = (range.0 / step - 1e-9).ceil() as i64;
+    let last = (range.1 / step + 1e-9).floor() as i64;
+    (first..=last).map(move |i| i as f64 * step)
+}
+
+/// A tick's number, with as many digits as the step needs.
+fn number(value: f64, step: f64) -> String {
+    let digits = (0..4)
+        .find(|&digits| (step * 10f64.powi(digits)).fract().abs() < 1e-9)
+        .unwrap_or(4);
+    format!("{:.1$}", value + 0.0, digits as usize)
+}
+
+/// Colours for a quantity.
+pub struct Scale {
+    /// Value at the lower end of the first band.
+    pub least: f64,
+    /// Value at the upper end of the last band.
+    pub most: f64,
+    /// The bands' colours.
+    pub colours: &'static [&'static str],
+}
+
+impl Scale {
+    /// The colour of a value; what lies outside gets the nearest band.
+    pub fn colour(&self, value: f64) -> &'static str {
+        let share = (value - self.least) / (self.most - self.least);
+        // A value on a limit belongs to the band above it, whatever its rounding.
+        let band = (share * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
+        self.colours[band.min(self.colours.len() - 1)]
+    }
+
+    /// A vertical key with the bands' limits.
+    pub fn key(
+        &self,
+        mut group: Group,
+        corner: (f64, f64),
+        height: f64,
+        name: &str,
+        digits: usize,
+    ) -> Group {
+        let count = self.colours.len();
+        let band = height / count as f64;
+        for (i, colour) in self.colours.iter().enumerate() {
+            let top = corner.1 + height - (i + 1) as f64 * band;
+            group = group.add(rectangle((corner.0, top), (22.0, band), colour));
+        }
+        for i in 0..=count {
+            let value = self.least + (self.most - self.least) * i as f64 / count as f64;
+            let at = corner.1 + height - i as f64 * band;
+            group = group.add(text(
+                &format!("{value:.digits$}"),
+                (corner.0 + 30.0, at + 5.0),
+                14.0,
+                DARK,
+                Anchor::Start,
+            ));
+        }
+        group
+            .add(rectangle(corner, (22.0, height), "none").set("stroke", DARK))
+            .add(text(
+                name,
+                (corner.0, corner.1 - 14.0),
+                15.0,
+                DARK,
+                Anchor::Start,
+            ))
+    }
+}
+
+/// A page's title and the line below it.
+pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
+    group
+        .add(text(words, (left, 40.0), 24.0, DARK, Anchor::Start).set("font-weight", "bold"))
+        .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
+}
+
+/// A short line and its meaning.
+pub fn entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
+    group
+        .add(line(at, (at.0 + 34.0, at.1), colour, 3.0).set("stroke-dasharray", dashes))
+        .add(text(
+            words,
+            (at.0 + 44.0, at.1 + 5.0),
+            15.0,
+            DARK,
+            Anchor::Start,
+        ))
+}
+
+/// A page of a size.
+pub fn page(size: (f64, f64), group: Group) -> String {
+    svg::Document::new()
+        .set("viewBox", (0.0, 0.0, size.0, size.1))
+        .set("width", size.0)
+        .set("height", size.1)
+        .add(rectangle((0.0, 0.0), size, "white"))
+        .add(group)
+        .to_string()
+}

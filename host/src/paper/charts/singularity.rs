@@ -1,0 +1,315 @@
+//! The plane of the two head servos: margins, singular curves, and the paths
+//! that the gaits take through it.
+
+use lizard_kinematics::{Check, FiveBar, Pose, SingularPose, Singularity, wrap};
+use lizard_robot::{Gait, Robot};
+use svg::node::element::Group;
+
+use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, page, title};
+use crate::draw::ink::{Anchor, DARK, circle, line, rectangle, text};
+
+const SIZE: (f64, f64) = (1500.0, 860.0);
+const WHOLE: (f64, f64) = (0.0, 180.0);
+/// Okabe and Ito's colours and more dark ones; dashes tell apart what colour may
+/// not.
+const STYLES: [(&str, &str); 10] = [
+    ("#000000", ""),
+    ("#d55e00", ""),
+    ("#117733", ""),
+    ("#0b5394", ""),
+    ("#aa4499", "7 5"),
+    ("#882255", ""),
+    ("#882255", "7 5"),
+    ("#b58900", ""),
+    ("#332288", ""),
+    ("#332288", "7 5"),
+];
+const A1: &str = "#882255";
+const A2: &str = "#b58900";
+
+/// Least margin of the head over theta1 and theta4; the gaits beside it.
+pub fn singularity(robot: &Robot) -> String {
+    let scale = Scale {
+        least: 0.3,
+        most: 1.0,
+        colours: BLUES,
+    };
+    let axes = |step| {
+        (
+            Axis {
+                step,
+                name: "theta1 (A1), deg",
+            },
+            Axis {
+                step,
+                name: "theta4 (A2), deg",
+            },
+        )
+    };
+    let left = Plot {
+        corner: (90.0, 110.0),
+        size: (600.0, 600.0),
+        x: WHOLE,
+        y: WHOLE,
+    };
+    let paths = paths(robot);
+    let near = surroundings(&paths);
+    let right = Plot {
+        corner: (800.0, 110.0),
+        size: (400.0, 400.0),
+        ..near
+    };
+    let mut group = Group::new();
+    for (plot, cells) in [(&left, 360), (&right, 200)] {
+        group = plot.map(group, (cells, cells), |x, y| {
+            Some(least(robot, x, y).map_or(SHUT, |least| scale.colour(least)))
+        });
+    }
+    group = curves(group, &left, robot);
+    // Where the right panel lies in the left one.
+    let corner = left.at(near.x.0, near.y.1);
+    let end = left.at(near.x.1, near.y.0);
+    group = group.add(
+        rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none")
+            .set("stroke", DARK)
+            .set("stroke-width", 2.0),
+    );
+    for (i, (_, path)) in paths.iter().enumerate() {
+        let (colour, dashes) = STYLES[i % STYLES.len()];
+        if path.len() > 1 {
+            group = group.add(right.curve(path, "white", 4.5)).add(
+                right
+                    .curve(path, colour, 2.2)
+                    .set("stroke-dasharray", dashes),
+            );
+        }
+    }
+    for (i, (_, path)) in paths.iter().enumerate() {
+        if let [(x, y)] = path[..] {
+            let dot = circle(right.at(x, y), 6.0, STYLES[i % STYLES.len()].0);
+            group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
+        }
+    }
+    let (x, y) = axes(20.0);
+    group = left.axes(group, &x, &y);
+    let (x, y) = axes(10.0);
+    group = right.axes(group, &x, &y);
+    for (i, (names, path)) in paths.iter().enumerate() {
+        let (colour, dashes) = STYLES[i % STYLES.len()];
+        let at = (1226.0, 124.0 + 27.0 * i as f64);
+        let names = names.replace('-', " ");
+        if path.len() > 1 {
+            group = entry(group, at, colour, dashes, &names);
+        } else {
+            group = group
+                .add(circle((at.0 + 17.0, at.1), 6.0, colour))
+                .add(text(
+                    &names,
+                    (at.0 + 44.0, at.1 + 5.0),
+                    15.0,
+                    DARK,
+                    Anchor::Start,
+                ));
+        }
+    }
+    group = scale.key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);
+    let keys = [
+        (A1, "", "arm of A1 straight or folded (type 1)"),
+        (A2, "", "arm of A2 straight or folded (type 1)"),
+    ];
+    for (i, (colour, dashes, words)) in keys.into_iter().enumerate() {
+        group = entry(
+            group,
+            (930.0, 640.0 + 28.0 * i as f64),
+            colour,
+            dashes,
+            words,
+        );
+    }
+    group = cross(group, (947.0, 696.0))
+        .add(text(
+            "crank tips coincide (type 2)",
+            (974.0, 701.0),
+            15.0,
+            DARK,
+            Anchor::Start,
+        ))
+        .add(rectangle((930.0, 716.0), (34.0, 18.0), SHUT))
+        .add(text(
+            "below the robot's limits, or cranks crossed",
+            (974.0, 730.0),
+            15.0,
+            DARK,
+            Anchor::Start,
+        ))
+        .add(text(
+            "Margins: type 2, type 1 and front legs.",
+            (930.0, 762.0),
+            15.0,
+            DARK,
+            Anchor::Start,
+        ));
+    group = title(
+        group,
+        90.0,
+        "Singularities of the head, and where the gaits go",
+        "left: all angles of A1 and A2; right: the marked square with the path of each gait",
+    );
+    page(SIZE, group)
+}
+
+/// The least of the head's margins where the head is safe; the tail at neutral
+/// and the sliders leave it out.
+fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
+    let pose = Pose {
+        theta1,
+        theta4,
+        ..robot.neutral()
+    };
+    let s = robot.lizard.solve(&pose).ok()?;
+    let broken = robot
+        .limits
+        .violations(&s)
+        .any(|v| !matches!(v.what, Check::StrokeLeft | Check::StrokeRight));
+    let m = &s.margins;
+    let margins = [m.apex_head, m.type1_a1, m.type1_a2, m.leg_fl, m.leg_fr];
+    (!broken).then(|| margins.into_iter().fold(1.0, f64::min))
+}
+
+/// Each path in the plane with the names of the gaits that take it. A gait read
+/// backwards takes the same path.
+fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
+    let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    for gait in &robot.gaits {
+        let path = path(gait);
+        let known = paths.iter_mut().find(|(_, other)| same(other, &path));
+        match known {
+            Some((names, _)) => {
+                names.push_str(", ");
+                names.push_str(&gait.name);
+            }
+            None => paths.push((gait.name.clone(), path)),
+        }
+    }
+    paths
+}
+
+fn path(gait: &Gait) -> Vec<(f64, f64)> {
+    let at = |i: i32| {
+        let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
+        (theta1, theta4)
+    };
+    let start = at(0);
+    let moves = (1..500).any(|i| (at(i).0 - start.0).hypot(at(i).1 - start.1) > 1e-6);
+    if moves {
+        (0..=500).map(at).collect()
+    } else {
+        vec![start]
+    }
+}
+
+/// True if every point of either path is close to the other.
+fn same(one: &[(f64, f64)], two: &[(f64, f64)]) -> bool {
+    let near = |point: &(f64, f64), path: &[(f64, f64)]| {
+        path.iter()
+            .any(|other| (point.0 - other.0).hypot(point.1 - other.1) < 0.5)
+    };
+    one.iter().all(|point| near(point, two)) && two.iter().all(|point| near(point, one))
+}
+
+/// A square around all paths.
+fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
+    let all = || paths.iter().flat_map(|(_, path)| path);
+    let of = |pick: fn(&(f64, f64)) -> f64| {
+        let least = all().map(pick).fold(f64::INFINITY, f64::min);
+        let most = all().map(pick).fold(f64::NEG_INFINITY, f64::max);
+        ((least + most) / 2.0, (most - least) / 2.0)
+    };
+    let ((x, wide), (y, high)) = (of(|p| p.0), of(|p| p.1));
+    let half = (wide.max(high) + 5.0).ceil();
+    Plot {
+        corner: (0.0, 0.0),
+        size: (1.0, 1.0),
+        x: (x.round() - half, x.round() + half),
+        y: (y.round() - half, y.round() + half),
+    }
+}
+
+/// The singular curves within the plot, as short pieces.
+fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
+    let bars = robot.lizard.head();
+    group = sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
+    // Once more with the other crank leading, where the first runs steeply: the
+    // five-bar seen in a mirror, in which left and right change places.
+    let mirrored = FiveBar {
+        base: bars.base,
+        crank_left: bars.crank_right,
+        coupler_left: bars.coupler_right,
+        coupler_right: bars.coupler_left,
+        crank_right: bars.crank_left,
+    };
+    group = sweep(group, plot, |theta4| {
+        let unmirror = |pose: SingularPose| SingularPose {
+            kind: match pose.kind {
+                Singularity::LeftArm => Singularity::RightArm,
+                Singularity::RightArm => Singularity::LeftArm,
+                Singularity::Couplers => Singularity::Couplers,
+            },
+            theta_left: wrap(180.0 - pose.theta_right),
+            theta_right: theta4,
+        };
+        mirrored
+            .singular_with(180.0 - theta4)
+            .map(unmirror)
+            .collect()
+    });
+    for pose in bars.coinciding_tips() {
+        if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
+            group = cross(group, plot.at(pose.theta_left, pose.theta_right));
+        }
+    }
+    group
+}
+
+/// Joins the singular poses of one angle to those of the next.
+fn sweep(mut group: Group, plot: &Plot, at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
+    const STEP: f64 = 0.5;
+    let inside = |pose: &&SingularPose| {
+        [pose.theta_left, pose.theta_right]
+            .iter()
+            .all(|theta| (0.0..=180.0).contains(theta))
+    };
+    let apart = |a: &SingularPose, b: &SingularPose| {
+        (a.theta_left - b.theta_left).hypot(a.theta_right - b.theta_right)
+    };
+    let mut before: Vec<SingularPose> = Vec::new();
+    for i in 0..=360 {
+        let here = at(f64::from(i) * STEP);
+        for pose in here.iter().filter(inside) {
+            let nearest = before
+                .iter()
+                .filter(inside)
+                .filter(|other| other.kind == pose.kind && apart(other, pose) < 4.0 * STEP)
+                .min_by(|a, b| apart(a, pose).total_cmp(&apart(b, pose)));
+            if let Some(from) = nearest {
+                let colour = match pose.kind {
+                    Singularity::LeftArm => A1,
+                    Singularity::RightArm => A2,
+                    Singularity::Couplers => DARK,
+                };
+                let start = plot.at(from.theta_left, from.theta_right);
+                let end = plot.at(pose.theta_left, pose.theta_right);
+                group = group.add(line(start, end, colour, 2.5));
+            }
+        }
+        before = here;
+    }
+    group
+}
+
+fn cross(group: Group, (x, y): (f64, f64)) -> Group {
+    let r = 7.0;
+    group
+        .add(line((x - r, y - r), (x + r, y + r), DARK, 3.0))
+        .add(line((x - r, y + r), (x + r, y - r), DARK, 3.0))
+}

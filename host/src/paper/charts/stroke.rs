@@ -1,0 +1,118 @@
+//! How far the sliders travel in each gait.
+
+use lizard_robot::{Gait, Robot};
+use svg::node::element::Group;
+
+use super::plot::{Axis, Plot, SHUT, entry, page, title};
+use crate::draw::ink::{Anchor, DARK, GREY, rectangle, text};
+
+const COLUMNS: usize = 4;
+const PANEL: (f64, f64) = (255.0, 150.0);
+const PITCH: (f64, f64) = (330.0, 240.0);
+const LEFT: &str = "#0072b2";
+const RIGHT: &str = "#d55e00";
+
+/// Travel of both sliders over a cycle of every gait, and the limits.
+pub fn stroke(robot: &Robot) -> String {
+    let rows = robot.gaits.len().div_ceil(COLUMNS);
+    let size = (
+        90.0 + PITCH.0 * COLUMNS as f64,
+        130.0 + PITCH.1 * rows as f64,
+    );
+    let limits = &robot.limits;
+    let range = (limits.stroke_min - 5.0, limits.stroke_max + 5.0);
+    let mut group = title(
+        Group::new(),
+        60.0,
+        "Slider travel over a cycle of each gait",
+        "s in mm from nominal; grey: beyond the stroke that robot.toml allows",
+    );
+    group = entry(
+        group,
+        (size.0 - 300.0, 36.0),
+        LEFT,
+        "",
+        "left slider (A1, A4)",
+    );
+    group = entry(
+        group,
+        (size.0 - 300.0, 62.0),
+        RIGHT,
+        "7 4",
+        "right slider (A2, A3)",
+    );
+    for (i, gait) in robot.gaits.iter().enumerate() {
+        let plot = Plot {
+            corner: (
+                80.0 + PITCH.0 * (i % COLUMNS) as f64,
+                120.0 + PITCH.1 * (i / COLUMNS) as f64,
+            ),
+            size: PANEL,
+            x: (0.0, 1.0),
+            y: range,
+        };
+        group = panel(group, &plot, robot, gait);
+    }
+    page(size, group)
+}
+
+fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &Gait) -> Group {
+    let axes = (
+        Axis {
+            step: 0.25,
+            name: "phase",
+        },
+        Axis {
+            step: 15.0,
+            name: if plot.corner.0 < PITCH.0 { "s, mm" } else { "" },
+        },
+    );
+    group = plot.grid(group, &axes.0, &axes.1);
+    for (from, to) in [
+        (plot.y.0, robot.limits.stroke_min),
+        (robot.limits.stroke_max, plot.y.1),
+    ] {
+        let (top, bottom) = (plot.at(0.0, to), plot.at(0.0, from));
+        group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), SHUT));
+    }
+    let travel: Vec<(f64, f64, f64)> = (0..=400)
+        .map(|i| f64::from(i) / 400.0)
+        .filter_map(|phase| {
+            let s = robot.lizard.solve(&gait.pose(phase)).ok()?;
+            Some((phase, s.left.s, s.right.s))
+        })
+        .collect();
+    let of = |pick: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
+        travel.iter().map(|at| (at.0, pick(at))).collect()
+    };
+    group = group.add(plot.curve(&of(|at| at.1), LEFT, 2.5)).add(
+        plot.curve(&of(|at| at.2), RIGHT, 2.5)
+            .set("stroke-dasharray", "7 4"),
+    );
+    group = plot.axes(group, &axes.0, &axes.1);
+    let values = || travel.iter().flat_map(|at| [at.1, at.2]);
+    let least = values().fold(f64::INFINITY, f64::min);
+    let most = values().fold(f64::NEG_INFINITY, f64::max);
+    let head = (plot.corner.0, plot.corner.1 - 10.0);
+    // To a tenth, without a negative zero.
+    let tenth = |s: f64| (s * 10.0).round() / 10.0 + 0.0;
+    let range = format!("{:+.1} to {:+.1} mm", tenth(least), tenth(most));
+    group
+        .add(
+            text(
+                &gait.name.replace('-', " "),
+                head,
+                17.0,
+                DARK,
+                Anchor::Start,
+            )
+            .set("font-weight", "bold"),
+        )
+        .add(text(
+            &range,
+            (plot.corner.0 + plot.size.0, head.1),
+            14.0,
+            GREY,
+            Anchor::End,
+        ))
+}

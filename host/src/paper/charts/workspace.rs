@@ -1,0 +1,198 @@
+//! Where the head point can go, and how well the servos steer it there.
+
+use lizard_kinematics::{Circle, Vector, Workspace};
+use lizard_robot::Robot;
+use svg::node::element::{Circle as Ring, Group};
+
+use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry, page, title};
+use crate::draw::ink::{Anchor, DARK, GREY, circle, text};
+use crate::paper::design::{CLAIM, Performance, lci};
+
+const SIZE: (f64, f64) = (1120.0, 900.0);
+const MM: Axis<'static> = Axis {
+    step: 20.0,
+    name: "x, mm from the middle of l0",
+};
+const MM_UP: Axis<'static> = Axis {
+    step: 20.0,
+    name: "y, mm",
+};
+const RED: &str = "#d55e00";
+const BLUE: &str = "#0072b2";
+
+/// The four circles, the workspace between them, the inscribed circle, and the
+/// head at neutral.
+pub fn workspace(robot: &Robot) -> String {
+    let bars = robot.lizard.head();
+    let space = Workspace::of(&bars);
+    let reach = (space.outer / 20.0).ceil() * 20.0 + 20.0;
+    let plot = Plot {
+        corner: (90.0, 90.0),
+        size: (720.0, 720.0),
+        x: (-reach, reach),
+        y: (-reach, reach),
+    };
+    let mut group = plot.grid(Group::new(), &MM, &MM_UP);
+    group = plot.map(group, (480, 480), |x, y| {
+        space
+            .contains(Vector::new(x, y))
+            .then_some(if y >= 0.0 { "#cfe3f1" } else { "#e6e3df" })
+    });
+    for shaft in [bars.left_shaft(), bars.right_shaft()] {
+        for radius in [space.inner, space.outer] {
+            group = group.add(ring(&plot, shaft, radius, GREY, 1.2).set("stroke-dasharray", "5 4"));
+        }
+    }
+    if let Some(mic) = space.inscribed_circle() {
+        group = group.add(ring(&plot, mic.centre, mic.radius, RED, 3.0));
+    }
+    for path in look_paths(robot) {
+        group = group.add(plot.curve(&path, "#009e73", 2.5));
+    }
+    group = mechanism(group, &plot, robot);
+    group = plot.axes(group, &MM, &MM_UP);
+    group = title(
+        group,
+        90.0,
+        "Theoretical workspace of the head",
+        "all points that both arms reach; the tail has the same behind",
+    );
+    let p = Performance::of(&bars, 32);
+    let left = 840.0;
+    group = entry(group, (left, 120.0), GREY, "5 4", "limits of each arm");
+    group = entry(group, (left, 148.0), RED, "", "maximal inscribed circle");
+    group = entry(
+        group,
+        (left, 176.0),
+        "#009e73",
+        "",
+        "path of the gesture \"look\"",
+    );
+    group = entry(group, (left, 204.0), DARK, "", "five-bar at neutral");
+    let facts = [
+        format!("area {:.1} mm²", p.area),
+        format!("upper half {:.1} mm² (blue)", p.area / 2.0),
+        format!("circle: radius {:.2} mm,", p.r_mic),
+        format!("centre (0, {:.2}) mm", p.y_mic),
+    ];
+    for (i, fact) in facts.iter().enumerate() {
+        group = group.add(text(
+            fact,
+            (left, 250.0 + 24.0 * i as f64),
+            16.0,
+            DARK,
+            Anchor::Start,
+        ));
+    }
+    page(SIZE, group)
+}
+
+/// The local conditioning index over the upper workspace, outward elbows.
+pub fn conditioning(robot: &Robot) -> String {
+    let bars = robot.lizard.head();
+    let space = Workspace::of(&bars);
+    let reach = (space.outer / 20.0).ceil() * 20.0;
+    let plot = Plot {
+        corner: (90.0, 90.0),
+        size: (720.0, 720.0 * 110.0 / 160.0),
+        x: (-reach, reach),
+        y: (-reach * 0.25, reach * 1.125),
+    };
+    let scale = Scale {
+        least: 0.0,
+        most: 1.0,
+        colours: VIRIDIS,
+    };
+    let mut group = plot.grid(Group::new(), &MM, &MM_UP);
+    group = plot.map(group, (480, 330), |x, y| {
+        let point = Vector::new(x, y);
+        space.contains(point).then(|| match bars.reach(point) {
+            Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&bars, point)),
+            _ => SHUT,
+        })
+    });
+    let p = Performance::of(&bars, 64);
+    if let (Some(mic), Some(index)) = (space.inscribed_circle(), p.lci) {
+        let held = Circle {
+            radius: index.radius_above,
+            ..mic
+        };
+        group = group
+            .add(ring(&plot, mic.centre, mic.radius, "white", 6.0))
+            .add(ring(&plot, mic.centre, mic.radius, RED, 3.0))
+            .add(ring(&plot, held.centre, held.radius, "white", 5.0))
+            .add(ring(&plot, held.centre, held.radius, DARK, 2.0).set("stroke-dasharray", "7 4"));
+        let left = 850.0;
+        group = entry(
+            group,
+            (left - 10.0, 530.0),
+            RED,
+            "",
+            "maximal inscribed circle",
+        );
+        group = entry(
+            group,
+            (left - 10.0, 558.0),
+            DARK,
+            "7 4",
+            &format!("all ≥ {CLAIM} within {:.2} mm", index.radius_above),
+        );
+        group = group.add(text(
+            &format!("in the circle: mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of its area", index.mean, index.least, index.most, 100.0 * index.share_above),
+            (90.0, 690.0), 16.0, DARK, Anchor::Start));
+    }
+    group = plot.axes(group, &MM, &MM_UP);
+    group = scale.key(group, (870.0, 120.0), 360.0, "LCI", 1);
+    group = title(
+        group,
+        90.0,
+        "Local conditioning index of the head",
+        "outward elbows, spectral norm; grey: cranks crossed, or behind the base",
+    );
+    page((SIZE.0, 720.0), group)
+}
+
+/// A circle of the plot.
+fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
+    circle(plot.at(centre.x, centre.y), radius * plot.scale(), "none")
+        .set("stroke", colour)
+        .set("stroke-width", width)
+}
+
+/// The head's closed paths that gaits give by points.
+fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
+    robot
+        .gait("look")
+        .into_iter()
+        .map(|(_, gait)| {
+            (0..=200)
+                .filter_map(|i| robot.lizard.solve(&gait.pose(f64::from(i) / 200.0)).ok())
+                .map(|s| (s.head.apex.x, s.head.apex.y))
+                .collect()
+        })
+        .collect()
+}
+
+fn mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
+    if let Ok(s) = robot.lizard.solve(&robot.neutral()) {
+        let h = &s.head;
+        let points = [
+            h.bars.left_shaft(),
+            h.left_tip,
+            h.apex,
+            h.right_tip,
+            h.bars.right_shaft(),
+        ]
+        .map(|p| (p.x, p.y));
+        group = group.add(plot.curve(&points, DARK, 4.0));
+        for (i, (x, y)) in points.into_iter().enumerate() {
+            let fill = if i % 4 == 0 { BLUE } else { "white" };
+            group = group.add(
+                circle(plot.at(x, y), 6.0, fill)
+                    .set("stroke", DARK)
+                    .set("stroke-width", 2.0),
+            );
+        }
+    }
+    group
+}
