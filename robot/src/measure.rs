@@ -65,16 +65,18 @@ pub(crate) fn links(root: &Section) -> Checked<Links> {
     )?;
     short("links.l2", "the head's coupler", l.l2, LOOP_REACH)?;
     short("links.l7", "the tail's coupler", l.l7, LOOP_REACH)?;
+    // A shaft that stands aside of the other is farther from it.
+    let aside = (l.l5 - l.l0).abs() / 2.0;
     short(
         "links.l10",
-        "the left side's l10 + l11 + l14",
-        l.l10 + l.l11 + l.l14,
+        "the left side's l10 + l11 + l14 + |l5 - l0|/2",
+        l.l10 + l.l11 + l.l14 + aside,
         SIDE_REACH,
     )?;
     short(
         "links.l15",
-        "the right side's l15 + l16 + l19",
-        l.l15 + l.l16 + l.l19,
+        "the right side's l15 + l16 + l19 + |l5 - l0|/2",
+        l.l15 + l.l16 + l.l19 + aside,
         SIDE_REACH,
     )?;
     Ok(l)

@@ -45,7 +45,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "l11 = 30.0",
         "l11 = 100.0",
-        "links.l10: the left side's l10 + l11 + l14 is 265 mm; the firmware's fixed point holds less than 255 mm",
+        "links.l10: the left side's l10 + l11 + l14 + |l5 - l0|/2 is 265 mm; the firmware's fixed point holds less than 255 mm",
     ),
     (
         "l7 = 50.0 ",
