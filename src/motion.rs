@@ -292,9 +292,10 @@ impl Motion {
     }
 }
 
-/// Percent as a pace: 2622/256 is 1024/100 to four digits.
+/// Percent as a pace, to nearest, so that the slowest is within half a percent
+/// of itself: 2622/256 is 1024/100 to four digits.
 fn pace_of(percent: u8) -> u16 {
-    (mul_unsigned(u16::from(percent), 2622) >> 8) as u16
+    ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
 }
 
 impl Default for Motion {
