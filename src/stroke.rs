@@ -9,8 +9,9 @@ use lizard_avr::{mul, mul_unsigned};
 use crate::pose::Pose;
 use crate::robot::SLEW;
 
-/// The shortest stroke, in frames: even a small correction is not a jerk.
-const SHORTEST: u16 = 4;
+/// The shortest stroke, in frames: even a small correction is not a jerk. With
+/// eight, no stroke changes a servo's speed faster than the gaits do.
+const SHORTEST: u16 = 8;
 
 /// Frames for each 1/65536 turn, Q16, rounded up. 3/2 of the mean pace is the
 /// peak, and rounding in a frame may add up to three steps to it.
