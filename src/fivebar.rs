@@ -82,7 +82,8 @@ impl FiveBar {
         let Some(slope) = self.slope.at(tips_sq) else {
             return [0; 3];
         };
-        let square = (tips_sq >> self.square_shift) as i16;
+        // To nearest: where the margin is small, so are the bits that are left.
+        let square = ((tips_sq + (1 << (self.square_shift - 1))) >> self.square_shift) as i16;
         let area = (mul(slope, square) >> 9) as u16;
         let apex = saturate((mul_unsigned(area, self.per_square) >> 15) as i32);
         let tips = Tips { along, across };
