@@ -29,7 +29,7 @@ pub const ONE_Q15: i32 = 1 << 15;
 /// One gait cycle, as a phase.
 pub const CYCLE: u32 = 1 << 24;
 
-/// The angle that is nearest to `centideg`, less than two turns either way.
+/// The angle at `centideg`, less than two turns either way, within 0.004 deg.
 pub fn angle_from_centideg(centideg: i32) -> u16 {
     // No remainder, no quotient and no loop that the compiler takes for one:
     // each of them is a kilobyte of library.
@@ -40,7 +40,7 @@ pub fn angle_from_centideg(centideg: i32) -> u16 {
     if within >= TURN_CENTIDEG {
         within -= TURN_CENTIDEG;
     }
-    // 65536/36000 is 1 + 53769/65536 to within half a step over the turn.
+    // 65536/36000 is 1 + 53769/65536 to within a fifth of a step over the turn.
     let within = within as u16;
     within.wrapping_add(((mul_unsigned(within, 53_769) + 0x8000) >> 16) as u16)
 }
