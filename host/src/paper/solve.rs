@@ -1,6 +1,9 @@
 //! `lizard solve`: the forward solution of everything, by Algorithm 1.
 
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufRead, IsTerminal, Write};
+use std::panic::resume_unwind;
+use std::sync::mpsc;
+use std::thread;
 
 use lizard_kinematics::Pose;
 use lizard_robot::Robot;
@@ -12,6 +15,9 @@ use crate::{Failure, PoseArgs, RobotFile};
 
 /// Poses that are solved together; memory is bounded by it.
 const BATCH: usize = 8192;
+
+/// Blocks of lines, a sixteenth of a batch each, that may wait to be written.
+const AHEAD: usize = 32;
 
 /// Where every joint is, for one pose or a stream of them.
 ///
@@ -36,18 +42,14 @@ pub struct Args {
 /// Solves what was asked for.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let mut out = BufWriter::new(io::stdout().lock());
     match args.pose.get() {
-        Some(pose) => out.write_all(&one(&robot, &pose, args.json)?)?,
-        None if io::stdin().is_terminal() => {
-            return Err(Failure::Input(
-                "give a pose with --theta1 --theta4 --theta5 --theta8, or poses as CSV on standard input"
-                    .to_string(),
-            ));
-        }
-        None => stream(&robot, args.json, &mut out)?,
+        Some(pose) => Ok(io::stdout().write_all(&one(&robot, &pose, args.json)?)?),
+        None if io::stdin().is_terminal() => Err(Failure::Input(
+            "give a pose with --theta1 --theta4 --theta5 --theta8, or poses as CSV on standard input"
+                .to_string(),
+        )),
+        None => stream(&robot, args.json),
     }
-    Ok(out.flush()?)
 }
 
 /// One pose, as a page or an object.
@@ -61,13 +63,42 @@ fn one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
     Ok(line)
 }
 
-/// Solves batches on all cores and writes them in order. Poses before a
-/// malformed line are still answered, each in a whole line.
-fn stream(robot: &Robot, json: bool, out: &mut impl Write) -> Result<(), Failure> {
+/// Solves batches on all cores and writes them in order, one batch while the
+/// next is solved. Poses before a malformed line are still answered, each in a
+/// whole line.
+fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
+    let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
+    thread::scope(|scope| {
+        let writer = scope.spawn(move || write(to_write, json));
+        let read = solve_all(robot, json, &mut poses, &solved);
+        drop(solved);
+        // What could not be written matters more than what could not be read.
+        writer.join().unwrap_or_else(|panic| resume_unwind(panic))?;
+        read
+    })
+}
+
+/// Writes what comes, until no more can come.
+fn write(lines: mpsc::Receiver<Vec<u8>>, json: bool) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
     if !json {
         writeln!(out, "{}", record::HEADING)?;
     }
+    for block in lines {
+        out.write_all(&block)?;
+    }
+    Ok(out.flush()?)
+}
+
+/// Solves batch after batch and sends their lines on. Ends early, without a
+/// word, where the writer has given up; it has the word.
+fn solve_all(
+    robot: &Robot,
+    json: bool,
+    poses: &mut Poses<impl BufRead>,
+    solved: &mpsc::SyncSender<Vec<u8>>,
+) -> Result<(), Failure> {
     let mut batch = Vec::with_capacity(BATCH);
     loop {
         batch.clear();
@@ -81,19 +112,19 @@ fn stream(robot: &Robot, json: bool, out: &mut impl Write) -> Result<(), Failure
                 }
             }
         }
+        let last = batch.len() < BATCH;
         let blocks: Vec<_> = batch
             .par_chunks(BATCH / 16)
             .map(|poses| lines(robot, poses, json))
             .collect();
         for block in blocks {
-            out.write_all(&block?)?;
+            if solved.send(block?).is_err() {
+                return Ok(());
+            }
         }
         match fault {
-            Some(failure) => {
-                out.flush()?;
-                return Err(failure);
-            }
-            None if batch.len() < BATCH => return Ok(()),
+            Some(failure) => return Err(failure),
+            None if last => return Ok(()),
             None => {}
         }
     }
