@@ -28,8 +28,11 @@ use crate::stroke::Stroke;
 /// Full pace; also the most that a pace may be.
 const FULL: u16 = 1024;
 
-/// A motion gathers or loses all its pace in eight frames, 0.16 s.
-const PACE_STEP: u16 = FULL / 8;
+/// A motion gathers or loses all its pace in seven frames, 0.14 s. In an odd
+/// number of steps a gait goes a whole number of its frames meanwhile, so that
+/// at full pace the frames meet the corners between its moves: half a frame
+/// beside them, two legs would move at once there, and cost crawl 1.2 %.
+const PACE_STEP: u16 = FULL.div_ceil(7);
 
 /// Servos wake one after the other, 0.1 s apart, to spare the supply.
 const WAKE_APART: u8 = 5;
