@@ -5,7 +5,11 @@
 //! `guard*` walk its decision over every pose that matters, `motion*` follow
 //! its frames, `console*` talk to it.
 
+mod console;
+mod console_angles;
+mod console_refusals;
 mod frames;
+mod ground;
 mod guard_links;
 mod guard_poses;
 mod guard_printed;
