@@ -4,7 +4,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use lizard_host::{draw, gaits, paper, sim};
+use lizard_host::{bench, draw, gaits, paper, sim};
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
 ///
@@ -34,6 +34,7 @@ enum Command {
     Charts(paper::charts::Args),
     Sim(sim::Args),
     Draw(draw::Args),
+    Bench(bench::Args),
 }
 
 fn main() -> ExitCode {
@@ -49,6 +50,7 @@ fn main() -> ExitCode {
         Command::Charts(args) => paper::charts::run(args),
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),
+        Command::Bench(args) => bench::run(args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -198,7 +198,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
 }
 
 /// The firmware: the one given, or the one that `make firmware` leaves.
-fn elf(given: Option<&Path>) -> Result<PathBuf, Failure> {
+pub(crate) fn elf(given: Option<&Path>) -> Result<PathBuf, Failure> {
     const BUILT: &str = "target/avr-atmega328p/release/lizard.elf";
     let missing = |what: String| Failure::Input(format!("{what}; build it with `make firmware`"));
     match given {

@@ -1,0 +1,56 @@
+//! What the firmware costs: every budget of `lizard bench` that is counted in
+//! cycles or bytes.
+
+use lizard_host::bench::{Figures, rows};
+use lizard_host_tests::{FRAME, FirmwareBench, robot};
+use simulated_uno::Fidelity;
+
+use crate::{SECOND, doing};
+
+#[test]
+fn every_budget_is_met() {
+    let figures = Figures::measure(&FirmwareBench::elf(), robot(), |_| {}).expect("it runs");
+    for row in rows(&figures).iter().filter(|row| !row.wall_clock) {
+        println!(
+            "{:<30} {:>8.1} {:<6} {:?}",
+            row.what, row.measured, row.unit, row.budget
+        );
+        assert!(row.is_met(), "{row:?}");
+    }
+    // A measurement that found nothing would meet most budgets.
+    assert!(figures.tick_mean > 1000.0 && figures.tick_worst as f64 > figures.tick_mean);
+    assert!(figures.guard > 1000.0 && figures.guard < figures.tick_mean);
+    assert!(figures.serial_interrupt > 50 && figures.tick_latency > figures.tick_worst);
+    assert!(figures.servo_interrupts > 1000.0 && figures.main > figures.tick_mean);
+}
+
+#[test]
+fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
+    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+        for gait in &robot().gaits {
+            let mut bench = doing(&gait.name.replace('-', " "), fidelity);
+            let awake = bench.uno.awake_cycles();
+            bench.run_ms(4000);
+            let awake = (bench.uno.awake_cycles() - awake) / (4 * SECOND);
+            assert!(
+                awake < FRAME / 10,
+                "{}: {awake} cycles in a frame",
+                gait.name
+            );
+        }
+    }
+}
+
+#[test]
+fn every_tick_computes_one_frame() {
+    let mut bench = doing("crawl", Fidelity::DataSheet);
+    bench.run_for_frames(0);
+    let calls = bench.time_calls("Console::frame", 2000);
+    assert_eq!(calls.len() as u64, 2 * SECOND);
+    for pair in calls.windows(2) {
+        // The same distance after each tick, but for an instruction that ends and
+        // the branches in between.
+        let apart = pair[1].enter - pair[0].enter;
+        assert!(apart.abs_diff(FRAME) < 100, "{apart}");
+    }
+}

@@ -1,0 +1,128 @@
+//! What the ELF is made of: no panic, no float, no core::fmt, and tables that
+//! stay in flash.
+
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
+
+use crate::{Status, awake};
+
+fn image() -> Image {
+    Image::read(FirmwareBench::elf()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The functions whose path has one of these in it.
+fn functions_with(parts: &[&str]) -> Vec<String> {
+    let image = image();
+    let functions = image.symbols().iter().filter(|symbol| symbol.function);
+    let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
+    assert!(
+        paths.iter().any(|path| path.ends_with("Console::frame")),
+        "the ELF has its symbols"
+    );
+    paths
+        .into_iter()
+        .filter(|path| parts.iter().any(|part| path.contains(part)))
+        .collect()
+}
+
+#[test]
+fn nothing_in_it_can_panic() {
+    let found = functions_with(&[
+        "panic",
+        "rust_begin_unwind",
+        "unwrap_failed",
+        "expect_failed",
+        "bounds_check",
+    ]);
+    assert!(found.is_empty(), "{found:?}");
+}
+
+#[test]
+fn nothing_in_it_formats_the_way_of_core() {
+    let found = functions_with(&["core::fmt", "Formatter", "Display", "Debug"]);
+    assert!(found.is_empty(), "{found:?}");
+}
+
+#[test]
+fn nothing_in_it_is_floating_point() {
+    // avr-libc's and compiler-rt's routines: __addsf3, __muldf3, __floatsisf,
+    // __fixunssfsi, __fp_split3 and their kin, and libm.
+    let image = image();
+    let functions = image.symbols().iter().filter(|symbol| symbol.function);
+    let is_float = |name: &str| {
+        let bare = name.trim_start_matches('_');
+        let helper = name.starts_with("__");
+        let ends = ["sf2", "sf3", "df2", "df3", "sf", "df"];
+        helper
+            && (ends.iter().any(|end| bare.ends_with(end))
+                || bare.starts_with("fp_")
+                || bare.starts_with("float")
+                || bare.starts_with("fix"))
+            || [
+                "sinf", "cosf", "sqrtf", "sin", "cos", "sqrt", "atan2", "acos",
+            ]
+            .contains(&bare)
+            || name.contains("f32")
+            || name.contains("f64")
+            || name.contains("libm")
+    };
+    let found: Vec<&str> = functions
+        .map(|symbol| symbol.name.as_str())
+        .filter(|name| is_float(name))
+        .collect();
+    assert!(found.is_empty(), "{found:?}");
+}
+
+#[test]
+fn tables_and_sentences_stay_in_flash() {
+    let bench = awake(Fidelity::DataSheet);
+    let ram: Vec<u8> = (SRAM_START..SRAM_END)
+        .map(|at| bench.uno.peek(at))
+        .collect();
+    let holds = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
+    for (n, wave) in robot().tables.waves.iter().enumerate() {
+        for samples in wave.windows(6) {
+            // A held leg gives runs of one value, which RAM may well hold.
+            if samples.iter().all(|sample| *sample == samples[0]) {
+                continue;
+            }
+            let bytes: Vec<u8> = samples
+                .iter()
+                .flat_map(|sample| sample.to_le_bytes())
+                .collect();
+            assert!(!holds(&bytes), "wave {n} is in RAM");
+        }
+    }
+    // None of these has been said yet.
+    for sentence in [
+        "unknown command",
+        "must be",
+        "margin of",
+        "resting",
+        "percent",
+        "status",
+    ] {
+        assert!(!holds(sentence.as_bytes()), "{sentence:?} is in RAM");
+    }
+    assert!(holds(b"# lizard"), "the banner is where it was sent from");
+}
+
+#[test]
+fn no_interrupt_is_used_that_would_come_before_the_servos() {
+    let mut bench = awake(Fidelity::DataSheet);
+    for line in ["walk", "help", "status", "rest", "stand"] {
+        bench.say(line);
+        bench.run_ms(300);
+    }
+    let used: Vec<&str> = bench
+        .uno
+        .interrupts()
+        .iter()
+        .map(|used| simulated_uno::vector_name(used.vector))
+        .collect();
+    assert_eq!(
+        used,
+        ["TIMER1_COMPA", "TIMER1_COMPB", "USART_RX", "USART_UDRE"]
+    );
+    assert_eq!(Status::of(&mut bench).number("late"), 0.0);
+}

@@ -1,0 +1,139 @@
+//! The firmware's own ELF on a simulated UNO: what it says, what it sends to the
+//! servos, what it is made of and what it costs.
+//!
+//! Every claim about pulses and the serial line is tested twice, on stock simavr
+//! and on one corrected by the data sheet: they differ in interrupt latency and
+//! in the receiver, and what holds in both does not hang on either.
+
+use std::collections::HashMap;
+use std::thread;
+
+use lizard_host_tests::{FirmwareBench, Frame};
+use simulated_uno::Fidelity;
+
+mod console;
+mod costs;
+mod gaits;
+mod guard;
+mod image;
+mod pulses;
+mod serial;
+mod stopping;
+mod twin;
+
+/// Frames in a second.
+const SECOND: u64 = 50;
+
+/// Runs a test on both simulations at once.
+fn in_both(test: impl Fn(Fidelity) + Sync) {
+    for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+        test(*fidelity)
+    });
+}
+
+/// Runs a test for every case, each on a thread of its own.
+fn for_each<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
+    thread::scope(|scope| {
+        let runs: Vec<_> = cases
+            .iter()
+            .map(|case| (case, scope.spawn(|| test(case))))
+            .collect();
+        for (case, run) in runs {
+            assert!(run.join().is_ok(), "it fails for {case:?}");
+        }
+    });
+}
+
+/// A robot that has been told to do something and has had a second for it.
+fn doing(line: &str, fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = awake(fidelity);
+    assert_eq!(bench.say(line), format!("ok {line}"));
+    bench.run_ms(1000);
+    bench
+}
+
+/// A robot that stands, a second after power-on.
+fn awake(fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = FirmwareBench::boot_with(fidelity);
+    bench.run_ms(1000);
+    bench
+}
+
+/// Ends a flood and lets the robot answer what is left of it.
+fn end_flood(bench: &mut FirmwareBench) {
+    bench.uno.flood(b"");
+    bench.run_ms(3000);
+    bench.uno.send(b"\n");
+    bench.run_ms(200);
+}
+
+/// The widths of each frame, cycles.
+fn widths(frames: &[Frame]) -> Vec<[u64; 4]> {
+    frames.iter().map(Frame::widths).collect()
+}
+
+/// What `status` says, key by key.
+struct Status(HashMap<String, String>);
+
+impl Status {
+    fn of(bench: &mut FirmwareBench) -> Self {
+        let answer = bench.say("status");
+        let pairs = answer.strip_prefix("ok ").expect("status is never refused");
+        let pair = |pair: &str| {
+            let (key, value) = pair.split_once('=').expect("key=value");
+            (key.to_owned(), value.to_owned())
+        };
+        Self(pairs.split(' ').map(pair).collect())
+    }
+
+    fn text(&self, key: &str) -> &str {
+        let value = self.0.get(key);
+        value.unwrap_or_else(|| panic!("status has no {key}"))
+    }
+
+    fn number(&self, key: &str) -> f64 {
+        self.text(key)
+            .parse()
+            .unwrap_or_else(|_| panic!("{key}={}", self.text(key)))
+    }
+
+    fn pose(&self) -> [f64; 4] {
+        angles(self.text("pose"))
+    }
+}
+
+/// Four angles in degrees, as the console writes them.
+fn angles(list: &str) -> [f64; 4] {
+    let angles: Vec<f64> = list
+        .split(',')
+        .map(|angle| angle.parse().expect("a number"))
+        .collect();
+    angles.try_into().expect("four angles")
+}
+
+/// Random numbers that are the same in every run: splitmix64.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// 0 to `end` - 1.
+    fn below(&mut self, end: u64) -> u64 {
+        self.roll() % end
+    }
+
+    /// `from` to `to`.
+    fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * (self.roll() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn pick<'a, T>(&mut self, of: &'a [T]) -> &'a T {
+        &of[self.below(of.len() as u64) as usize]
+    }
+}

@@ -1,0 +1,131 @@
+//! Pulses to the cycle, whatever the serial line does.
+
+use lizard_host::sim::frame::{FRAME, Frame, servo_pins};
+use lizard_host::sim::twin;
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::{Edge, Fidelity, Uno, most_pins_high};
+
+use crate::{SECOND, Status, awake, end_flood, for_each, in_both};
+
+/// The servos' edges among those of the last frames.
+fn servo_edges(uno: &Uno) -> Vec<Edge> {
+    let pins = servo_pins(robot());
+    let of_servo = |edge: &Edge| pins.contains(&edge.pin);
+    uno.edges().into_iter().filter(of_servo).collect()
+}
+
+/// What holds of pulses at any time: one of each servo in each frame, 20 ms
+/// apart to the cycle, one pin high at a time.
+fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
+    for frame in frames {
+        for (servo, start) in frame.starts.into_iter().enumerate() {
+            let start = start.unwrap_or_else(|| panic!("no pulse: {frame:?}"));
+            // A slot of 4 ms for each, counted from A1's.
+            assert_eq!(start, frame.start + servo as u64 * FRAME / 5, "{frame:?}");
+        }
+    }
+    let edges = servo_edges(&bench.uno);
+    assert_eq!(edges.len(), 8 * frames.len(), "a pulse too many or too few");
+    assert_eq!(most_pins_high(&edges), 1);
+}
+
+/// A1's first pulse since power-on, on a bench that has not run for frames yet.
+fn first_pulse(bench: &FirmwareBench) -> u64 {
+    let edges = servo_edges(&bench.uno);
+    edges.first().expect("the robot stands").cycle
+}
+
+/// The widths that the core asks for when it hears no more than the first `heard`
+/// bytes.
+fn commanded(bench: &FirmwareBench, first: u64, heard: usize, frames: &[Frame]) -> Vec<[u64; 4]> {
+    let before = ((frames[0].start - first) / FRAME) as usize;
+    let commands = twin::play(&bench.uno.heard()[..heard], first, before + frames.len());
+    commands.widths[before..]
+        .iter()
+        .map(|widths| widths.map(u64::from))
+        .collect()
+}
+
+#[test]
+fn every_width_is_the_one_that_was_asked_for() {
+    for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
+        for gait in &robot().gaits {
+            let mut bench = awake(*fidelity);
+            let first = first_pulse(&bench);
+            bench.say(&gait.name.replace('-', " "));
+            let frames = bench.run_for_frames(6 * SECOND);
+            assert_in_step(&bench, &frames);
+            let heard = bench.uno.heard().len();
+            for (frame, asked) in frames.iter().zip(commanded(&bench, first, heard, &frames)) {
+                assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name);
+            }
+        }
+    });
+}
+
+#[test]
+fn a_saturated_line_both_ways_moves_no_edge() {
+    // None of these can become a command that moves, however many bytes are lost.
+    const FLOODS: [&str; 4] = ["status\n", "help\n", "?\r", "x"];
+    in_both(|fidelity| {
+        for flood in FLOODS {
+            let mut bench = awake(fidelity);
+            let first = first_pulse(&bench);
+            bench.say("watch 1");
+            bench.say("left");
+            let heard = bench.uno.heard().len();
+            bench.uno.flood(flood.as_bytes());
+            let sent = bench.bytes().len();
+            let frames = bench.run_for_frames(20 * SECOND);
+            let sent = bench.bytes().len() - sent;
+            assert_in_step(&bench, &frames);
+            for (frame, asked) in frames.iter().zip(commanded(&bench, first, heard, &frames)) {
+                assert_eq!(frame.widths(), asked, "{flood:?}: {frame:?}");
+            }
+            let changed = frames
+                .windows(2)
+                .filter(|pair| pair[0].widths != pair[1].widths);
+            assert!(changed.count() as u64 > 15 * SECOND, "the widths vary");
+            // Both lines are busy: 11 520 bytes a second come in, and unless the
+            // flood is all one overlong line the answers fill the line back.
+            let seconds = frames.len() as f64 / SECOND as f64;
+            let come = (bench.uno.heard().len() - heard) as f64 / seconds;
+            assert!(
+                come > 11_000.0 || fidelity == Fidelity::Stock && come > 10_000.0,
+                "{come} bytes a second"
+            );
+            let back = sent as f64 / seconds;
+            assert!(
+                back > 9_500.0 || flood == "x",
+                "{flood:?}: {back} bytes a second back"
+            );
+            end_flood(&mut bench);
+            let status = Status::of(&mut bench);
+            assert_eq!(status.number("late"), 0.0, "{flood:?}");
+            assert_eq!(
+                bench.uno.overruns(),
+                0,
+                "the receiver is always read in time"
+            );
+        }
+    });
+}
+
+#[test]
+fn frames_are_counted_right_through_a_flood() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        bench.run_for_frames(0);
+        let (cycle, before) = (bench.uno.cycle(), Status::of(&mut bench));
+        bench.uno.flood(b"status\nhelp\n");
+        bench.run_ms(20_000);
+        end_flood(&mut bench);
+        bench.run_for_frames(0);
+        let passed = (bench.uno.cycle() - cycle) / FRAME;
+        let after = Status::of(&mut bench);
+        assert_eq!(
+            after.number("frames") - before.number("frames"),
+            passed as f64
+        );
+    });
+}

@@ -1,0 +1,123 @@
+//! The console's promise about its line: nothing is lost while the sender waits
+//! for answers, and what a flood loses is counted.
+
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::Fidelity;
+
+use crate::{Dice, Status, awake, end_flood, in_both};
+
+/// Says a line; the answer must be there.
+fn wait_for(bench: &mut FirmwareBench, line: &str) {
+    let answer = bench.say(line);
+    assert!(answer.starts_with("ok "), "{line}: {answer}");
+}
+
+#[test]
+fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let mut dice = Dice(7);
+        wait_for(&mut bench, "watch 1");
+        let padded = format!("status{}", " ".repeat(57));
+        let lines = [
+            "status",
+            "help",
+            "walk",
+            "stop",
+            "speed 70",
+            "pose 138.59 41.41 318.59 221.41",
+            &padded,
+        ];
+        for _ in 0..600 {
+            wait_for(&mut bench, dice.pick(&lines));
+        }
+        wait_for(&mut bench, "watch 0");
+        let status = Status::of(&mut bench);
+        assert_eq!(
+            (status.number("rx_lost"), status.number("late")),
+            (0.0, 0.0)
+        );
+        assert_eq!(bench.uno.overruns(), 0);
+    });
+}
+
+#[test]
+fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
+    // Longest line right behind the longest answer, without waiting for it.
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let before = bench.lines().len();
+        bench.uno.send(b"help\n");
+        bench
+            .uno
+            .send(format!("walk{}\n", " ".repeat(58)).as_bytes());
+        bench.run_ms(300);
+        let last = bench.lines().last().expect("answers").text.clone();
+        assert_eq!(last, "ok walk");
+        assert!(bench.lines().len() > before + 2);
+        assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
+    });
+}
+
+#[test]
+fn what_a_flood_loses_is_counted() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let (before, lines) = (bench.uno.heard().len(), bench.lines().len());
+        bench.uno.flood(b"a\n");
+        bench.run_ms(5000);
+        end_flood(&mut bench);
+        let heard = (bench.uno.heard().len() - before) as f64;
+        let answers = (bench.lines().len() - lines) as f64;
+        let lost = Status::of(&mut bench).number("rx_lost");
+        println!("{fidelity:?}: {heard} heard, {lost} lost, {answers} answers");
+        assert!(answers > 1000.0 && lost > heard / 2.0);
+        // Each answer is for a line of at least two bytes, and losing bytes makes
+        // lines that are not much longer.
+        let kept = heard - lost;
+        assert!(
+            (2.0 * answers..4.0 * answers).contains(&kept),
+            "{kept} for {answers} answers"
+        );
+        // A flood ends, and nothing of it stays.
+        wait_for(&mut bench, "walk");
+        assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
+    });
+}
+
+#[test]
+fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
+    // While the answer to `help` fills the line back, main takes nothing; 64 bytes
+    // fit and the rest is lost.
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        bench.uno.send(b"help\n");
+        bench.run_ms(3);
+        bench.uno.send(&[b' '; 150]);
+        bench.run_ms(300);
+        bench.uno.send(b"\n");
+        bench.run_ms(100);
+        assert_eq!(Status::of(&mut bench).number("rx_lost"), 150.0 - 64.0);
+    });
+}
+
+#[test]
+fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
+    let mut dice = Dice(11);
+    let mut bench = awake(Fidelity::DataSheet);
+    for _ in 0..300 {
+        // No backspace or delete: they take bytes back.
+        let bytes: Vec<u8> = (0..dice.below(80))
+            .map(|_| (dice.roll() as u8).max(32))
+            .filter(|byte| *byte != 0x7f)
+            .collect();
+        let said = bench.lines().iter().filter(|line| line.is_answer()).count();
+        bench.uno.send(&bytes);
+        bench.uno.send(b"\n");
+        bench.run_ms(20);
+        let answers = bench.lines().iter().filter(|line| line.is_answer()).count() - said;
+        let blank = bytes.iter().all(|byte| *byte == b' ');
+        assert_eq!(answers, usize::from(!blank), "{bytes:?}");
+    }
+    assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
+}

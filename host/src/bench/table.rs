@@ -1,0 +1,91 @@
+//! The budgets as a table for people.
+
+use std::io::{self, Write};
+
+use super::budget::{Bound, Row, SERVO_LIBRARY};
+
+/// Prints the table.
+///
+/// # Errors
+/// Writing failed.
+pub fn print(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "{:<30} {:>10} {:<7} {:>16}   Arduino Servo",
+        "", "measured", "", "budget"
+    )?;
+    for row in rows {
+        let budget = match row.budget {
+            Bound::AtMost(most) => format!("at most {}", grouped(most, 0)),
+            Bound::AtLeast(least) => format!("at least {}", grouped(least, 0)),
+            Bound::None => "-".to_owned(),
+        };
+        let decimals = if row.unit == "%" || row.unit == "s" {
+            1
+        } else {
+            0
+        };
+        let line = format!(
+            "{:<30} {:>10} {:<7} {:>16}   {}{}",
+            row.what,
+            grouped(row.measured, decimals),
+            row.unit,
+            budget,
+            row.servo_library.unwrap_or(""),
+            if row.is_met() { "" } else { "  OVER BUDGET" },
+        );
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    writeln!(out, "\nA cycle is 62.5 ns. {SERVO_LIBRARY}.")
+}
+
+/// A number with its thousands apart.
+fn grouped(value: f64, decimals: usize) -> String {
+    let plain = format!("{value:.decimals$}");
+    let (whole, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let mut text = String::new();
+    for (n, digit) in whole.chars().enumerate() {
+        if n > 0 && (whole.len() - n).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text + fraction
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        for (value, decimals, text) in [
+            (0.0, 0, "0"),
+            (999.4, 0, "999"),
+            (16_384.0, 0, "16 384"),
+            (1_234_567.89, 1, "1 234 567.9"),
+        ] {
+            assert_eq!(grouped(value, decimals), text);
+        }
+    }
+
+    #[test]
+    fn a_broken_budget_stands_out() {
+        let row = Row {
+            what: "flash",
+            unit: "bytes",
+            measured: 20_000.0,
+            budget: Bound::AtMost(16_384.0),
+            servo_library: Some("5 994"),
+            wall_clock: false,
+        };
+        let mut text = Vec::new();
+        print(&[row], &mut text).expect("a vector takes it");
+        let text = String::from_utf8(text).expect("it is text");
+        assert!(text.contains("20 000 bytes"), "{text}");
+        assert!(
+            text.contains("at most 16 384   5 994  OVER BUDGET"),
+            "{text}"
+        );
+    }
+}
