@@ -61,6 +61,11 @@ clean: ## remove everything that was built
 .bench: .firmware .cli
 	@$(LIZARD) bench
 
+.docs: .firmware .cli
+	@$(LIZARD) errata --markdown > docs/errata.md
+	@$(LIZARD) draw --output docs/lizard.svg
+	@$(LIZARD) charts docs/charts
+
 .lint:
 	@cargo fmt --check
 	@cd host && cargo fmt --all --check
