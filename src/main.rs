@@ -1,9 +1,11 @@
 //! The firmware: the core on an Arduino UNO.
 //!
-//! One loop, woken by the tick of the pulses or by a byte. It takes input only
-//! while the serial line has room for the longest answer, so it never waits for
-//! a listener, and computes a frame for every tick, also for ticks that it was
-//! late for, so the pace is the timer's and not the processor's.
+//! One loop, woken by the tick of the pulses or by a byte, which does one thing
+//! at a time and looks for a tick first: a frame waits for one byte or one line
+//! at most. It takes input only while the serial line has room for the longest
+//! answer, so it never waits for a listener; and it computes a frame for every
+//! tick, also for one that it was late for, so the pace is the timer's and not
+//! the processor's.
 
 #![no_std]
 #![no_main]
@@ -23,23 +25,20 @@ fn main() -> ! {
     let mut console = Console::new();
     let mut seen = pulses::ticks();
     loop {
-        while serial::room() >= LONGEST_LINE {
-            if console.has_news() {
-                let counters = Counters {
-                    late: pulses::late(),
-                    rx_lost: serial::lost(),
-                };
-                let Ok(()) = console.speak(&mut serial::Writer, counters);
-            } else if let Some(byte) = serial::read() {
-                console.hear(byte);
-            } else {
-                break;
-            }
-        }
         if pulses::ticks() != seen {
             seen = seen.wrapping_add(1);
             pulses::submit(console.frame().0);
             led::set(beat(&console));
+        } else if serial::room() < LONGEST_LINE {
+            sleep::until_tick_or_byte(seen);
+        } else if console.has_news() {
+            let counters = Counters {
+                late: pulses::late(),
+                rx_lost: serial::lost(),
+            };
+            let Ok(()) = console.speak(&mut serial::Writer, counters);
+        } else if let Some(byte) = serial::read() {
+            console.hear(byte);
         } else {
             sleep::until_tick_or_byte(seen);
         }
