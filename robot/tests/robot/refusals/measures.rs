@@ -1,0 +1,192 @@
+//! Mistakes in measurements, servos and limits.
+
+use super::Mistake;
+
+pub const MISTAKES: &[Mistake] = &[
+    (
+        "l1 = 30.0 ",
+        r#"l1 = "30" "#,
+        r#"links.l1 is the string "30"; it must be a number"#,
+    ),
+    (
+        "l1 = 30.0 ",
+        "L1 = 30.0 ",
+        r#"links.L1 is not a known key; did you mean "l1"?"#,
+    ),
+    (
+        r#"l13 = 45.0
+"#,
+        "",
+        "links.l13 is missing; it must be a number",
+    ),
+    (
+        "l3 = 50.0 ",
+        "l3 = 51.0 ",
+        "links.l3 is 51, but links.l2 is 50; the two couplers of a loop are equally long",
+    ),
+    (
+        "l8 = 50.0 ",
+        "l8 = 40.0 ",
+        "links.l8 is 40, but links.l7 is 50; the two couplers of a loop are equally long",
+    ),
+    (
+        "l15 = 135.0",
+        "l15 = 134.0",
+        "links.l15 is 134, but links.l10 is 135; the chassis is a rectangle",
+    ),
+    (
+        "l0 = 20.0 ",
+        "l0 = 70.0 ",
+        "links.l0: the head's l0 + l1 + l4 is 130 mm; the firmware's fixed point holds less than 127 mm",
+    ),
+    (
+        "l11 = 30.0",
+        "l11 = 100.0",
+        "links.l10: the left side's l10 + l11 + l14 + |l5 - l0|/2 is 265 mm; the firmware's fixed point holds less than 255 mm",
+    ),
+    (
+        "l7 = 50.0 ",
+        "l7 = -50.0 ",
+        "links.l7 is -50; it must be within 17 to 255 mm",
+    ),
+    (
+        "l7 = 50.0 ",
+        "l7 = nan ",
+        "links.l7 is nan; it must be a number",
+    ),
+    (
+        "coupler = 50.0",
+        "coupler = 49.0",
+        "leg.coupler is 49, but leg.ground is 50; a leg is a parallelogram",
+    ),
+    (
+        "follower = 45.0",
+        "follower = 44.0",
+        "leg.follower is 44, but leg.crank is 45; a leg is a parallelogram",
+    ),
+    (
+        "hip_side = 35.0",
+        "hip_sdie = 35.0",
+        r#"leg.hip_sdie is not a known key; did you mean "hip_side"?"#,
+    ),
+    (
+        "[servo.A4]",
+        "[servo.A5]",
+        "servo.A5 is not a known key; allowed are A1, A2, A3, A4",
+    ),
+    (
+        r#"pin = "D10""#,
+        r#"pin = "D9""#,
+        r#"servo.A2.pin is "D9", which servo.A1 has already"#,
+    ),
+    (
+        r#"pin = "D3""#,
+        r#"pin = "D1""#,
+        r#"servo.A4.pin is "D1"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"#,
+    ),
+    (
+        r#"pin = "D3""#,
+        r#"pin = "D13""#,
+        r#"servo.A4.pin is "D13"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"#,
+    ),
+    (
+        r#"pin = "D3""#,
+        "pin = 3",
+        "servo.A4.pin is 3; it must be a string",
+    ),
+    (
+        r#"pin = "D3""#,
+        r#"pin = "D03""#,
+        r#"servo.A4.pin is "D03"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"#,
+    ),
+    (
+        r#"pin = "D3""#,
+        r#"pin = "A6""#,
+        r#"servo.A4.pin is "A6"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"#,
+    ),
+    (
+        "us_per_degree = 10.0",
+        "us_per_degree = 0",
+        "servo.A1.us_per_degree is 0; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
+    ),
+    (
+        "us_per_degree = 10.0",
+        "us_per_degree = -23.0",
+        "servo.A1.us_per_degree is -23; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
+    ),
+    (
+        "us_per_degree = 10.0",
+        "us_per_degre = 10.0",
+        r#"servo.A1.us_per_degre is not a known key; did you mean "us_per_degree"?"#,
+    ),
+    (
+        "min_us = 600.0",
+        "min_us = 400.0",
+        "servo.A1.min_us is 400; it must be within 500 to 2500 us",
+    ),
+    (
+        "max_us = 2400.0",
+        "max_us = 4000.0",
+        "servo.A1.max_us is 4000; it must be within 500 to 2500 us",
+    ),
+    (
+        "min_us = 600.0",
+        "min_us = 1600.0",
+        "servo.A1.min_us is 1600; it must be less than neutral_us, which is 1500",
+    ),
+    (
+        "neutral_us = 1500.0",
+        "neutral_us = 2400.0",
+        "servo.A1.neutral_us is 2400; it must be less than max_us, which is 2400",
+    ),
+    (
+        "neutral = 138.590378",
+        "neutral = 170.0",
+        "servo: the neutral pose is not safe: margin leg_fl 0.174 is below 0.300",
+    ),
+    (
+        "neutral = 138.590378",
+        "neutral = 60.0",
+        "servo: the neutral pose is not safe: margin type1_a1 -0.018 is below 0.300",
+    ),
+    (
+        "neutral = 138.590378",
+        "neutral = -221.4",
+        "servo.A1.neutral is -221.4; it must be within 0 to 360 deg",
+    ),
+    (
+        "type2 = 0.3 ",
+        "type2 = 0.05 ",
+        "limits.type2 is 0.05; it must be within 0.1 to 0.95 (a sine)",
+    ),
+    (
+        "leg = 0.3 ",
+        "leg = 1.3 ",
+        "limits.leg is 1.3; it must be within 0 to 0.95 (a sine)",
+    ),
+    (
+        "stroke_min = -15.0",
+        "stroke_min = 60.0",
+        "limits.stroke_min is 60; it must be less than stroke_max, which is 45",
+    ),
+    (
+        "stroke_max = 45.0",
+        "stroke_max = 200.0",
+        "limits.stroke_max is 200; it must be within -90 to 165 mm, so that the slider stays within 0 to 255 mm",
+    ),
+    (
+        "gait_slew = 310.0",
+        "gait_slew = 0",
+        "limits.gait_slew is 0; it must be within 10 to 1000 deg/s",
+    ),
+    (
+        "friction_back_over_forward = 1.0",
+        "friction_back_over_forward = -1.0",
+        "ground.friction_back_over_forward is -1; it must be within 0.1 to 10 (a ratio)",
+    ),
+    (
+        "[ground] ",
+        "[grund] ",
+        r#"grund is not a known key; did you mean "ground"?"#,
+    ),
+];
