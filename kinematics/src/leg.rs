@@ -10,6 +10,7 @@
 //! anti-parallelogram for 0 < theta_lg < 180, have sign slips in J and L, and
 //! read theta1 in H for all four legs.
 
+use crate::angle::wrap;
 use crate::vector::Vector;
 
 /// Link lengths of one leg in mm.
@@ -28,6 +29,8 @@ pub struct Leg {
 /// A leg at some crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegPose {
+    /// theta_lg, the crank's angle, degrees as given.
+    pub theta: f64,
     /// Direction of the crank, and of the follower, length one.
     pub direction: Vector,
     /// |sin theta_lg|: 0 at the change points.
@@ -37,7 +40,7 @@ pub struct LegPose {
 impl LegPose {
     /// theta_lg13: angle of the follower, (-180, 180] degrees.
     pub fn follower(&self) -> f64 {
-        self.direction.angle()
+        wrap(self.theta)
     }
 
     /// theta_lg12: angle of the coupler against the ground link, degrees;
@@ -53,9 +56,15 @@ impl Leg {
         self.ground == self.coupler && self.crank == self.follower
     }
 
-    /// The leg for a crank direction of length one.
-    pub fn close(&self, crank: Vector) -> LegPose {
+    /// The leg at a crank angle in degrees.
+    pub fn forward(&self, theta: f64) -> LegPose {
+        self.close(theta, Vector::direction(theta))
+    }
+
+    /// The leg at a crank angle in degrees whose direction is known already.
+    pub fn close(&self, theta: f64, crank: Vector) -> LegPose {
         LegPose {
+            theta,
             direction: crank,
             margin: crank.y.abs(),
         }

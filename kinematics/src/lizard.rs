@@ -175,7 +175,8 @@ impl Lizard {
     /// theta13 = theta8 + 90. (The paper prints the last two with the other
     /// sign, which would swing the right arms across the chassis.)
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
-        let cranks = <[f64; 4]>::from(*pose).map(Vector::direction);
+        let angles = <[f64; 4]>::from(*pose);
+        let cranks = angles.map(Vector::direction);
         let [a1, a2, a3, a4] = cranks;
         let at = |part: Part| move |fault: Fault| Infeasible { part, fault };
         let head = self
@@ -194,7 +195,7 @@ impl Lizard {
             .right()
             .close(a3.left(), a2.right())
             .map_err(at(Part::Right))?;
-        let legs = cranks.map(|crank| self.leg.close(crank));
+        let legs: [LegPose; 4] = core::array::from_fn(|i| self.leg.close(angles[i], cranks[i]));
         Ok(Solution {
             pose: *pose,
             head,

@@ -279,14 +279,14 @@ fn text(report: &Report) -> String {
                 [first, rest @ ..] => format!("no: {first}; and {} more", rest.len()),
             };
             page += &format!(
-                "  {:8} {:8} {:10.3} {:10.3}  {:7} {:+7.3}    {:7.0e}   {verdict}\n",
+                "  {:8} {:8} {:10.3} {:10.3}  {:7} {:+7.3}    {:>7}   {verdict}\n",
                 way.left,
                 way.right,
                 way.theta_left,
                 way.theta_right,
                 way.apex,
                 way.margin,
-                way.error_mm
+                rounding(way.error_mm)
             );
         }
         page.push('\n');
@@ -302,4 +302,13 @@ fn text(report: &Report) -> String {
         };
     }
     page
+}
+
+/// A miss in mm; rounding is not told apart from rounding.
+fn rounding(mm: f64) -> String {
+    if mm < 1e-9 {
+        "< 1e-9".to_string()
+    } else {
+        format!("{mm:.0e}")
+    }
 }

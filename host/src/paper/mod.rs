@@ -10,4 +10,5 @@ pub mod poses;
 pub mod record;
 pub mod singularity;
 pub mod solve;
+pub mod speed;
 pub mod velocity;

@@ -127,15 +127,30 @@ impl Record {
     }
 }
 
-/// The heading of [`row`].
-pub const HEADING: &str = "   theta1   theta4   theta8   theta5 |  \
-    theta2   theta3   theta6   theta7 |     head x, y mm     tail x, y mm |  \
-    s left s right | least margin      |";
+/// The heading of [`row`], in the same columns.
+pub fn heading() -> String {
+    format!(
+        " {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or why not",
+        "theta1",
+        "theta4",
+        "theta8",
+        "theta5",
+        "theta2",
+        "theta3",
+        "theta6",
+        "theta7",
+        "head x, y mm",
+        "tail x, y mm",
+        "s left",
+        "s right",
+        "least margin",
+    )
+}
 
 /// A solved pose in one line of a table.
 pub fn row(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits) -> String {
     let angles = <[f64; 4]>::from(*pose);
-    let mut line = String::with_capacity(HEADING.len() + 8);
+    let mut line = String::with_capacity(192);
     for angle in angles {
         let _ = write!(line, " {angle:8.3}");
     }

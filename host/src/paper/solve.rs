@@ -83,7 +83,7 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
 fn write(lines: mpsc::Receiver<Vec<u8>>, json: bool) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     if !json {
-        writeln!(out, "{}", record::HEADING)?;
+        writeln!(out, "{}", record::heading())?;
     }
     for block in lines {
         out.write_all(&block)?;

@@ -109,14 +109,26 @@ pub fn run(args: Args) -> Result<(), Failure> {
         "joint        value          rate 1/s   acceleration 1/s^2   against finite differences"
     )?;
     for row in rows {
-        let deviation = match (row.rate_deviation, row.acceleration_deviation) {
-            (Some(rate), Some(acceleration)) => format!("{rate:+.0e}, {acceleration:+.0e}"),
+        let agrees = |deviation: f64, value: f64| deviation.abs() < 1e-6 * (100.0 + value.abs());
+        let verdict = match (row.rate_deviation, row.acceleration_deviation) {
+            (Some(rate), Some(acceleration))
+                if agrees(rate, row.rate) && agrees(acceleration, row.acceleration) =>
+            {
+                "agree to 1e-6".to_string()
+            }
+            (Some(rate), Some(acceleration)) => format!("off by {rate:+.0e}, {acceleration:+.0e}"),
             _ => "no neighbours".to_string(),
         };
+        // To a ten-thousandth, without a negative zero.
+        let tidy = |value: f64| (value * 1e4).round() / 1e4 + 0.0;
         writeln!(
             out,
-            "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {deviation}",
-            row.joint, row.value, row.unit, row.rate, row.acceleration
+            "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}",
+            row.joint,
+            tidy(row.value),
+            row.unit,
+            tidy(row.rate),
+            tidy(row.acceleration)
         )?;
     }
     Ok(())

@@ -31,11 +31,14 @@ pub const COARSE: usize = 32;
 /// conditioning index (LCI) over it, dimensional factor D and link table. Without
 /// options these are the paper's.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:
+#[command(
+    allow_negative_numbers = true,
+    after_help = "Examples:
   lizard design
   lizard design --r1 0.35 --r2 0.4 --l0 24
   lizard design --chart > chart.csv
-  lizard design --search")]
+  lizard design --search"
+)]
 pub struct Args {
     /// Distance between the two servo shafts, mm [default: 20]
     #[arg(long, value_name = "MM", value_parser = finite)]

@@ -1,0 +1,246 @@
+//! `lizard speed`: how fast the closed form is, beside numpy and beside what its
+//! sines and arc tangents alone take.
+
+use std::hint::black_box;
+use std::io::{self, Write};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use lizard_kinematics::{Lizard, Pose, Vector, sin_cos};
+use serde::Serialize;
+
+use crate::{Failure, RobotFile};
+
+const SCRIPT: &str = include_str!("numpy_solve.py");
+
+/// What each pose yields, in this order in the script too.
+const RESULTS: usize = 22;
+
+/// Passes over all poses; the fastest counts.
+const PASSES: usize = 5;
+
+/// Measure poses solved per second on one core, beside numpy and the floor.
+///
+/// The same poses are solved here and by the same closed form in numpy (python3
+/// with numpy, if there is one), and the results are compared. The floor is the
+/// time of the four sine-cosine pairs and six arc tangents that no closed form
+/// can do without.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Number of poses
+    #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1..=20_000_000))]
+    poses: u32,
+    /// One JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(Serialize)]
+struct Report {
+    poses: usize,
+    poses_per_second: f64,
+    /// Time of the sines and arc tangents alone over the whole time.
+    floor_share: f64,
+    numpy: Option<Numpy>,
+}
+
+#[derive(Serialize)]
+struct Numpy {
+    version: String,
+    poses_per_second: f64,
+    /// Our poses per second over numpy's.
+    times_faster: f64,
+    /// Largest difference between the two, deg, mm or margin.
+    worst_difference: f64,
+}
+
+/// Measures and prints.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let poses = poses(args.poses as usize);
+    let mut results = vec![[0.0; RESULTS]; poses.len()];
+    let seconds = fastest(|| {
+        for (pose, result) in poses.iter().zip(&mut results) {
+            *result = solve(&robot.lizard, pose);
+        }
+        black_box(&results);
+    });
+    let floor = fastest(|| {
+        let mut sum = 0.0;
+        for pose in &poses {
+            for angle in *pose {
+                let (sin, cos) = sin_cos(angle);
+                // Six in all, and of arguments that are not the same again.
+                sum += Vector::new(cos, sin).angle();
+            }
+            sum += Vector::new(pose[0], pose[1]).angle() + Vector::new(pose[2], pose[3]).angle();
+        }
+        black_box(sum);
+    });
+    let rate = poses.len() as f64 / seconds;
+    let report = Report {
+        poses: poses.len(),
+        poses_per_second: rate,
+        floor_share: floor / seconds,
+        numpy: numpy(&robot.lizard, &poses, &results, rate)?,
+    };
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &report)?;
+        writeln!(out)?;
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "forward solution of the whole robot, one core, {} poses",
+        report.poses
+    )?;
+    writeln!(out, "  closed form   {:8.2} million poses/s", rate / 1e6)?;
+    match &report.numpy {
+        Some(numpy) => writeln!(
+            out,
+            "  numpy {:7} {:8.2} million poses/s, {:.1} times slower; results differ by {:.0e} at most",
+            numpy.version,
+            numpy.poses_per_second / 1e6,
+            numpy.times_faster,
+            numpy.worst_difference
+        )?,
+        None => writeln!(out, "  numpy         not found (apt install python3-numpy)")?,
+    }
+    writeln!(
+        out,
+        "  floor         {:8.0} % of the time is sines, cosines and arc tangents",
+        100.0 * report.floor_share
+    )?;
+    Ok(())
+}
+
+/// Poses all over the safe box, in servo order, by additive recurrence.
+fn poses(count: usize) -> Vec<[f64; 4]> {
+    let steps = [
+        0.856_674_883_854_502_9,
+        0.733_891_856_627_125_9,
+        0.628_706_720_880_788_5,
+        0.538_597_257_223_611_4,
+    ];
+    let starts = [94.0, 18.0, 274.0, 198.0];
+    (1..=count)
+        .map(|i| {
+            std::array::from_fn(|servo| starts[servo] + 68.0 * (i as f64 * steps[servo]).fract())
+        })
+        .collect()
+}
+
+/// Everything that `lizard solve` prints, but for the legs' angles, which are
+/// the servos'.
+fn solve(lizard: &Lizard, pose: &[f64; 4]) -> [f64; RESULTS] {
+    let Ok(s) = lizard.solve(&Pose::from(*pose)) else {
+        return [f64::NAN; RESULTS];
+    };
+    let (head, tail, m) = (s.head_point(), s.tail_point(), &s.margins);
+    [
+        s.theta2(),
+        s.theta3(),
+        s.theta6(),
+        s.theta7(),
+        head.x,
+        head.y,
+        tail.x,
+        tail.y,
+        s.left.phi(),
+        s.left.s,
+        s.right.phi(),
+        s.right.s,
+        m.apex_head,
+        m.apex_tail,
+        m.type1_a1,
+        m.type1_a2,
+        m.type1_a3,
+        m.type1_a4,
+        m.leg_fl,
+        m.leg_fr,
+        m.leg_br,
+        m.leg_bl,
+    ]
+}
+
+fn fastest(mut work: impl FnMut()) -> f64 {
+    (0..PASSES)
+        .map(|_| {
+            let start = Instant::now();
+            work();
+            start.elapsed().as_secs_f64()
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The same by numpy; none where there is no numpy.
+fn numpy(
+    lizard: &Lizard,
+    poses: &[[f64; 4]],
+    ours: &[[f64; RESULTS]],
+    rate: f64,
+) -> Result<Option<Numpy>, Failure> {
+    let Some(python) = ["python3", "/usr/bin/python3"].into_iter().find(|python| {
+        Command::new(python)
+            .args(["-c", "import numpy"])
+            .stderr(Stdio::null())
+            .status()
+            .is_ok_and(|status| status.success())
+    }) else {
+        return Ok(None);
+    };
+    let mut child = Command::new(python)
+        .args([
+            "-c",
+            SCRIPT,
+            &serde_json::to_string(&lizard.links.to_array())?,
+        ])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()?;
+    // The script reads everything before it writes, so this cannot block.
+    let bytes: Vec<u8> = poses
+        .as_flattened()
+        .iter()
+        .flat_map(|v| v.to_ne_bytes())
+        .collect();
+    if let Some(mut stdin) = child.stdin.take() {
+        stdin.write_all(&bytes)?;
+    }
+    let output = child.wait_with_output()?;
+    let broken = || Failure::Impossible("numpy's answer is cut short".to_string());
+    let end = output
+        .stdout
+        .iter()
+        .position(|&byte| byte == b'\n')
+        .ok_or_else(broken)?;
+    let head: serde_json::Value = serde_json::from_slice(&output.stdout[..end])?;
+    let seconds = head["seconds"].as_f64().ok_or_else(broken)?;
+    let (theirs, _) = output.stdout[end + 1..].as_chunks::<8>();
+    if theirs.len() != ours.len() * RESULTS {
+        return Err(broken());
+    }
+    let worst_difference = ours
+        .as_flattened()
+        .iter()
+        .zip(theirs)
+        .map(|(a, b)| (a - f64::from_ne_bytes(*b)).abs())
+        // NaN must not pass for agreement.
+        .fold(0.0, |worst: f64, difference| {
+            if difference <= worst {
+                worst
+            } else {
+                difference
+            }
+        });
+    let theirs = poses.len() as f64 / seconds;
+    Ok(Some(Numpy {
+        version: head["version"].as_str().unwrap_or_default().to_string(),
+        poses_per_second: theirs,
+        times_faster: rate / theirs,
+        worst_difference,
+    }))
+}

@@ -1,0 +1,91 @@
+//! The pages are what the program makes today.
+
+use std::path::{Path, PathBuf};
+
+use lizard_host::paper::charts::charts;
+use lizard_host::paper::errata::{SAMPLES, markdown, measure};
+use lizard_robot::Robot;
+
+use crate::program::lizard;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|fault| panic!("{path}: {fault}"))
+}
+
+#[test]
+fn the_errata_are_what_is_measured_and_every_correction_holds() {
+    let entries = measure(SAMPLES);
+    assert!(entries.iter().all(|entry| entry.is_settled()));
+    assert!(
+        read("docs/errata.md") == markdown(&entries, SAMPLES),
+        "docs/errata.md is out of date: lizard errata --markdown > docs/errata.md"
+    );
+}
+
+#[test]
+fn every_command_in_the_walk_through_prints_what_the_page_shows() {
+    let page = read("docs/paper.md");
+    let mut commands = 0;
+    for block in page.split("```console\n").skip(1) {
+        let block = block.split("```").next().expect("a closed block");
+        let (command, shown) = block.split_once('\n').expect("a command and its answer");
+        let args = command.strip_prefix("$ lizard ").expect("a lizard command");
+        let outcome = lizard(args, "");
+        assert_eq!(outcome.code, 0, "{args}: {}", outcome.err);
+        assert!(
+            outcome.out.trim_end() == shown.trim_end(),
+            "docs/paper.md is out of date: lizard {args}\n{}",
+            outcome.out
+        );
+        commands += 1;
+    }
+    assert!(commands >= 6, "{commands}");
+}
+
+#[test]
+fn the_charts_are_the_ones_that_the_program_draws() {
+    let robot = Robot::load(root().join("robot.toml")).expect("robot.toml");
+    for (name, svg) in charts(&robot) {
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
+        assert!(
+            read(&format!("docs/charts/{name}.svg")) == svg,
+            "docs/charts/{name}.svg is out of date: lizard charts docs/charts --svg-only"
+        );
+    }
+}
+
+#[test]
+fn charts_come_as_svg_and_png_and_leave_nothing_else() {
+    let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
+    let outcome = lizard(&format!("charts --json {}", folder.display()), "");
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let mut names: Vec<String> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let expected: Vec<String> = [
+        "conditioning",
+        "performance",
+        "singularity",
+        "stroke",
+        "top-view",
+        "workspace",
+    ]
+    .iter()
+    .flat_map(|name| [format!("{name}.png"), format!("{name}.svg")])
+    .collect();
+    assert_eq!(names, expected);
+    for name in names.iter().filter(|name| name.ends_with("png")) {
+        let bytes = std::fs::read(folder.join(name)).unwrap();
+        assert!(
+            bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000,
+            "{name}"
+        );
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}

@@ -1,0 +1,191 @@
+//! The paper's figures and those measured for this project, from the commands
+//! that print them.
+
+use serde_json::Value;
+
+use crate::program::lizard;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+#[test]
+fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
+    let design = lizard("design --json", "").json();
+    let expect = [
+        ("d", 100.0, 1e-9),
+        ("l0", 20.0, 1e-9),
+        ("l1", 30.0, 1e-9),
+        ("l2", 50.0, 1e-9),
+        ("area", 14_892.6, 0.05),
+        ("r_mic", 30.0, 1e-9),
+        ("y_mic", 48.990, 1e-3),
+    ];
+    for (key, value, tolerance) in expect {
+        assert!((number(&design[key]) - value).abs() < tolerance, "{key}");
+    }
+    let lci = &design["lci"];
+    assert!((number(&lci["mean"]) - 0.736).abs() < 5e-4);
+    assert!((number(&lci["share_above"]) - 0.668).abs() < 1e-3);
+    assert!((number(&lci["radius_above"]) - 15.45).abs() < 0.01);
+    assert!(number(&lci["least"]) < 1e-6);
+    assert!((number(&lci["most"]) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_design_of_another_size_keeps_its_shape() {
+    let small = lizard("design --json --r1 0.35 --r2 0.45", "").json();
+    let large = lizard("design --json --r1 0.35 --r2 0.45 --l0 60", "").json();
+    assert!((number(&large["d"]) / number(&small["d"]) - 3.0).abs() < 1e-12);
+    assert!((number(&large["area"]) / number(&small["area"]) - 9.0).abs() < 1e-9);
+    for key in ["mean", "share_above"] {
+        assert!((number(&large["lci"][key]) - number(&small["lci"][key])).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
+    let points = lizard("design --chart --json --step 0.05", "").json();
+    let points = points.as_array().unwrap();
+    // Every (i, j) with r3 = .9 - (i + j) .05 between 0 and .45.
+    let expected = (1..18)
+        .flat_map(|i| (1..18).map(move |j| i + j))
+        .filter(|sum| (10..18).contains(sum))
+        .count();
+    assert_eq!(points.len(), expected);
+    let paper = points
+        .iter()
+        .find(|p| (number(&p["r1"]) - 0.3).abs() < 1e-9 && (number(&p["r2"]) - 0.5).abs() < 1e-9)
+        .unwrap();
+    assert!((number(&paper["r_mic"]) - 0.3).abs() < 1e-9);
+    assert!((number(&paper["area"]) - 1.48926).abs() < 1e-5);
+    assert!((number(&paper["lci"]["mean"]) - 0.736).abs() < 5e-3);
+}
+
+#[test]
+fn the_search_keeps_its_promises() {
+    let designs = lizard("design --search --json --step 0.05 --top 50", "").json();
+    let designs = designs.as_array().unwrap();
+    assert!(!designs.is_empty());
+    let mut last = f64::INFINITY;
+    for design in designs {
+        let d = number(&design["d"]);
+        assert!(
+            number(&design["r1"]) * d >= 20.0 - 1e-9 && number(&design["r2"]) * d >= 20.0 - 1e-9
+        );
+        assert!(number(&design["margin"]) >= 0.3 && number(&design["sweep"]) >= 20.0);
+        assert!(number(&design["score"]) <= last);
+        last = number(&design["score"]);
+    }
+}
+
+#[test]
+fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
+    let all = lizard("mobility --json", "").json();
+    let freedoms: Vec<(i64, i64)> = all
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| {
+            (
+                m["gruebler"].as_i64().unwrap(),
+                m["freedoms"].as_i64().unwrap(),
+            )
+        })
+        .collect();
+    assert_eq!(freedoms, [(4, 4), (1, 1), (1, 1), (1, 1), (1, 1)]);
+    assert_eq!(all[0]["rank"], 32);
+    // A flat leg gains a freedom, which counting cannot see.
+    let flat = lizard(
+        "mobility --json --theta1 138 --theta4 0 --theta5 221 --theta8 318",
+        "",
+    )
+    .json();
+    assert_eq!(
+        (&flat[2]["gruebler"], &flat[2]["freedoms"]),
+        (&Value::from(1), &Value::from(2))
+    );
+}
+
+#[test]
+fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_one() {
+    let report = lizard(
+        "singularity --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
+        "",
+    )
+    .json();
+    let (eliminated, factored) = (number(&report["determinant"]), number(&report["factored"]));
+    assert!((eliminated / factored - 1.0).abs() < 1e-9);
+    let start = [120.0, 70.0, 310.0, 230.0];
+    let mut last = 0.0;
+    for near in report["nearest"].as_array().unwrap() {
+        let distance = number(&near["distance"]);
+        assert!(distance >= last);
+        last = distance;
+        let there: Vec<f64> = (0..4)
+            .map(|i| start[i] + number(&near["turn"][i]))
+            .collect();
+        let pose = format!(
+            "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
+            there[0], there[1], there[2], there[3]
+        );
+        let solved = lizard("solve --json", pose).json();
+        let margins: Vec<f64> = match solved["margins"].as_object() {
+            Some(margins) => margins.values().map(number).collect(),
+            None => vec![0.0],
+        };
+        let least = margins.iter().fold(1.0_f64, |least, m| least.min(m.abs()));
+        assert!(least < 1e-4, "{} {least}", near["what"]);
+    }
+}
+
+#[test]
+fn rates_agree_with_differences_of_positions() {
+    let rows = lizard("velocity --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700", "").json();
+    for row in rows.as_array().unwrap() {
+        assert!(number(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number(&row["rate"]).abs()));
+        assert!(
+            number(&row["acceleration_deviation"]).abs()
+                < 1e-6 * (100.0 + number(&row["acceleration"]).abs())
+        );
+    }
+}
+
+#[test]
+fn a_point_leads_to_angles_and_back_to_the_point() {
+    for point in ["5 120", "-22 110", "0 139", "20 105.5"] {
+        let report = lizard(&format!("inverse --json --head {point}"), "").json();
+        let ways = report["head"]["assemblies"].as_array().unwrap();
+        assert_eq!(ways.len(), 4);
+        for way in ways {
+            assert!(number(&way["error_mm"]) < 1e-9, "{point}");
+        }
+        assert_eq!(ways[0]["reachable"], true, "{point}");
+        assert_eq!(ways[3]["reachable"], false, "{point}");
+    }
+}
+
+#[test]
+fn the_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../robot.toml");
+    let robot = lizard_robot::Robot::load(root).expect("robot.toml");
+    let (_, look) = robot.gait("look").expect("look");
+    for i in 0..1000 {
+        let solution = robot
+            .lizard
+            .solve(&look.pose(f64::from(i) / 1000.0))
+            .unwrap();
+        assert!(solution.head.lci() >= 0.7, "{}", solution.head.lci());
+    }
+}
+
+#[test]
+fn numpy_and_the_program_find_the_same_joints() {
+    let outcome = lizard("speed --json --poses 20000", "");
+    let report = outcome.json();
+    assert!(number(&report["poses_per_second"]) > 0.0);
+    // Without numpy on the machine there is nothing to compare with.
+    if let Some(numpy) = report["numpy"].as_object() {
+        assert!(number(&numpy["worst_difference"]) < 1e-9);
+    }
+}
