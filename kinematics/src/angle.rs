@@ -1,15 +1,172 @@
-//! Degrees, the one angle unit of the interface.
+//! Degrees, the one angle unit of the interface, and their trigonometry.
+//!
+//! Reducing degrees by multiples of 90 is exact, reducing radians is not: so
+//! sin 180 is 0 here, and an angle and the same angle a turn later have the
+//! same sine, bit for bit. Nothing branches on the argument, which makes these
+//! several times faster than the general functions of a mathematics library.
+//! Only IEEE additions, multiplications, divisions and comparisons are used,
+//! never fused: the same bits on every host.
+//!
+//! The polynomials interpolate at Chebyshev nodes, computed with 60 digits;
+//! their own errors are below 2e-17, a tenth of an f64's rounding.
 
 use core::f64::consts::PI;
 
-/// Sine and cosine of an angle in degrees.
+/// (sin r - r) / r^3 in powers of r^2, for |r| up to 45 degrees.
+const SIN: [f64; 6] = [
+    -0.16666666666666666,
+    0.008333333333330948,
+    -0.00019841269836756774,
+    2.7557316101617874e-06,
+    -2.505113165023518e-08,
+    1.5918115263265974e-10,
+];
+
+/// (cos r - 1 + r^2 / 2) / r^4 in powers of r^2, for |r| up to 45 degrees.
+const COS: [f64; 6] = [
+    0.041666666666666664,
+    -0.0013888888888887398,
+    2.480158729876456e-05,
+    -2.7557317271145144e-07,
+    2.087614614655861e-09,
+    -1.1382623647474604e-11,
+];
+
+/// (atan u - u) / u^3 in powers of u^2, for |u| up to tan 22.5 degrees.
+const ATAN: [f64; 11] = [
+    -0.3333333333333333,
+    0.19999999999995516,
+    -0.14285714284665682,
+    0.11111111015187018,
+    -0.0909090457530649,
+    0.07692183125376892,
+    -0.06664510525508936,
+    0.05858140904866328,
+    -0.050854078345894844,
+    0.03923044778479309,
+    -0.019175404711104935,
+];
+
+/// tan 22.5 degrees.
+const HALF_EIGHTH: f64 = 0.41421356237309503;
+
+/// Added and taken off again, it rounds to a whole number, whose last bits are
+/// then the last bits of the sum: 1.5 * 2^52.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// Beyond this the exact reduction by [`ROUND`] ends.
+const FAR: f64 = 1e15;
+
+/// A polynomial by Horner's rule.
+#[inline(always)]
+fn horner<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
+    let mut sum = coefficients[N - 1];
+    let mut i = N - 1;
+    while i > 0 {
+        i -= 1;
+        sum = sum * x + coefficients[i];
+    }
+    sum
+}
+
+/// `yes` if the mask is all ones, `no` if it is zero. A comparison of random
+/// numbers that became a branch would be mispredicted half the time.
+#[inline(always)]
+fn choose(mask: u64, yes: f64, no: f64) -> f64 {
+    f64::from_bits(no.to_bits() ^ ((yes.to_bits() ^ no.to_bits()) & mask))
+}
+
+/// All ones if true.
+#[inline(always)]
+fn mask(condition: bool) -> u64 {
+    u64::from(condition).wrapping_neg()
+}
+
+/// The bit that makes a number negative.
+const SIGN: u64 = 1 << 63;
+
+/// Sine and cosine of an angle in degrees, each within 1.5 units in the last
+/// place of the exact value. Not a number if the angle is infinite.
 ///
 /// ```
 /// let (sin, cos) = lizard_kinematics::sin_cos(30.0);
 /// assert!((sin - 0.5).abs() < 1e-15 && (cos - 0.75f64.sqrt()).abs() < 1e-15);
+/// assert_eq!(lizard_kinematics::sin_cos(180.0), (0.0, -1.0));
 /// ```
+#[inline]
 pub fn sin_cos(degrees: f64) -> (f64, f64) {
-    libm::sincos(degrees * (PI / 180.0))
+    let ([sin], [cos]) = sin_cos_all([degrees]);
+    (sin, cos)
+}
+
+/// Sines and cosines of several angles in degrees, the same bits as one by one.
+/// Each step runs over all of them, which the compiler turns into vector
+/// instructions.
+#[inline]
+pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
+    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
+    // An exact remainder, needed for astronomical angles only.
+    let near = degrees.iter().all(|angle| angle.abs() < FAR);
+    let degrees = if near {
+        degrees
+    } else {
+        degrees.map(|angle| angle % 360.0)
+    };
+    for i in 0..N {
+        let rounded = degrees[i] * (1.0 / 90.0) + ROUND;
+        let quarter = rounded.to_bits();
+        let r = (degrees[i] - (rounded - ROUND) * 90.0) * (PI / 180.0);
+        let z = r * r;
+        let sin = r + r * (z * horner(&SIN, z));
+        // 1 - z/2 is rounded; what it lost goes back in with the small terms.
+        let half = 0.5 * z;
+        let near = 1.0 - half;
+        let cos = near + (((1.0 - near) - half) + z * (z * horner(&COS, z)));
+        // Quarters 1 and 3 change places; 2 and 3 negate the sine, 1 and 2 the
+        // cosine. + 0.0 makes a negative zero positive.
+        let odd = (quarter & 1).wrapping_neg();
+        let below = (quarter & 2) << 62;
+        let behind = below ^ (odd & SIGN);
+        sines[i] = f64::from_bits(choose(odd, cos, sin).to_bits() ^ below) + 0.0;
+        cosines[i] = f64::from_bits(choose(odd, sin, cos).to_bits() ^ behind) + 0.0;
+    }
+    (sines, cosines)
+}
+
+/// The angle of a vector in (-180, 180] degrees, within 2 units in the last
+/// place; 0 for the zero vector.
+///
+/// ```
+/// assert_eq!(lizard_kinematics::atan2(1.0, -1.0), 135.0);
+/// assert_eq!(lizard_kinematics::atan2(-0.0, -1.0), 180.0);
+/// ```
+#[inline]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    atan2_all([y], [x])[0]
+}
+
+/// The angles of several vectors, the same bits as one by one.
+#[inline]
+pub fn atan2_all<const N: usize>(y: [f64; N], x: [f64; N]) -> [f64; N] {
+    let mut degrees = [0.0; N];
+    for i in 0..N {
+        let (ax, ay) = (x[i].abs(), y[i].abs());
+        let steep = mask(ay > ax);
+        let (long, short) = (choose(steep, ay, ax), choose(steep, ax, ay));
+        // In the first 45 degrees: about 0 or about 45, whichever is nearer.
+        let diagonal = mask(short > HALF_EIGHTH * long);
+        let numerator = choose(diagonal, short - long, short);
+        let denominator = choose(diagonal, short + long, long);
+        let zero = mask(denominator == 0.0);
+        let u = numerator / choose(zero, 1.0, denominator);
+        let z = u * u;
+        let base = choose(diagonal, 45.0, 0.0);
+        let eighth = base + (u + u * (z * horner(&ATAN, z))) * (180.0 / PI);
+        let quarter = choose(steep, 90.0 - eighth, eighth);
+        let half = choose(mask(x[i] < 0.0), 180.0 - quarter, quarter);
+        degrees[i] = choose(mask(y[i] < 0.0), -half, half);
+    }
+    degrees
 }
 
 /// The same direction in (-180, 180] degrees.

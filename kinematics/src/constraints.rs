@@ -6,6 +6,7 @@
 //! tail x, y, left x, y, right x, y in mm, all in the chassis frame with
 //! counter-clockwise angles, which changes signs of several printed entries.
 
+use crate::angle::atan2_all;
 use crate::lizard::{Lizard, Solution};
 use crate::vector::Vector;
 
@@ -44,16 +45,29 @@ impl Blocks {
 }
 
 impl Solution {
-    /// The passive joints of this solution.
+    /// The passive joints of this solution; all six angles at once, which is
+    /// faster than one by one, and the same bits.
+    #[inline]
     pub fn passive(&self) -> Passive {
+        let (head, tail) = (&self.head, &self.tail);
+        let along = [
+            head.left_coupler,
+            head.right_coupler,
+            tail.left_coupler.mirrored(),
+            tail.right_coupler.mirrored(),
+            self.left.span,
+            self.right.span,
+        ];
+        let [theta2, theta3, theta6, theta7, phi_left, phi_right] =
+            atan2_all(along.map(|v| v.y), along.map(|v| v.x));
         Passive {
-            theta2: self.theta2(),
-            theta3: self.theta3(),
-            theta6: self.theta6(),
-            theta7: self.theta7(),
-            phi_left: self.left.phi(),
+            theta2,
+            theta3,
+            theta6,
+            theta7,
+            phi_left,
             s_left: self.left.s,
-            phi_right: self.right.phi(),
+            phi_right,
             s_right: self.right.s,
         }
     }

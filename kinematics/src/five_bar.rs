@@ -95,11 +95,13 @@ pub struct FiveBarPose {
 
 impl FiveBarPose {
     /// theta2 (theta6 mirrored): angle of the left coupler, degrees.
+    #[inline]
     pub fn theta_left_coupler(&self) -> f64 {
         self.left_coupler.angle()
     }
 
     /// theta3 (theta7 mirrored): angle of the right coupler, degrees.
+    #[inline]
     pub fn theta_right_coupler(&self) -> f64 {
         self.right_coupler.angle()
     }
@@ -107,11 +109,13 @@ impl FiveBarPose {
     /// Type-1 margin of the left arm, sin(theta1 - theta2): 0 where crank and
     /// coupler line up and the apex cannot move outward, positive for an
     /// outward elbow.
+    #[inline]
     pub fn type1_left(&self) -> f64 {
         self.left_coupler.cross(self.left)
     }
 
     /// Type-1 margin of the right arm, sin(theta3 - theta4), likewise.
+    #[inline]
     pub fn type1_right(&self) -> f64 {
         self.right.cross(self.right_coupler)
     }
@@ -124,11 +128,13 @@ impl FiveBarPose {
 
 impl FiveBar {
     /// Shaft of the left crank, mm.
+    #[inline]
     pub fn left_shaft(&self) -> Vector {
         Vector::new(-self.base / 2.0, 0.0)
     }
 
     /// Shaft of the right crank, mm.
+    #[inline]
     pub fn right_shaft(&self) -> Vector {
         Vector::new(self.base / 2.0, 0.0)
     }
@@ -163,6 +169,7 @@ impl FiveBar {
 
     /// The apex for two crank directions of length one: all of the solution
     /// except the sines and arc tangents.
+    #[inline]
     pub fn close(&self, branch: Branch, left: Vector, right: Vector) -> Result<FiveBarPose, Fault> {
         let left_tip = self.left_shaft() + left * self.crank_left;
         let right_tip = self.right_shaft() + right * self.crank_right;
@@ -300,6 +307,7 @@ impl Arms {
 }
 
 /// Twice the area of a triangle from its sides, by Heron in factored form.
+#[inline]
 fn double_area(a: f64, b: f64, c: f64) -> f64 {
     let product = (a + b + c) * (a + b - c) * (c + (a - b)) * (c - (a - b));
     libm::sqrt(product.max(0.0)) / 2.0

@@ -62,6 +62,7 @@ impl Leg {
     }
 
     /// The leg at a crank angle in degrees whose direction is known already.
+    #[inline]
     pub fn close(&self, theta: f64, crank: Vector) -> LegPose {
         LegPose {
             theta,

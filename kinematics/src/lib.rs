@@ -20,7 +20,7 @@
 //!   `lizard errata` measures by how much.
 //!
 //! # Determinism
-//! Only `libm` and IEEE basic operations are used, so the same input gives the
+//! Only IEEE basic operations and `libm` are used, so the same input gives the
 //! same bits on every host, and a build script, a test and a web page agree.
 #![no_std]
 #![forbid(unsafe_code)]
@@ -42,7 +42,7 @@ mod slider;
 mod vector;
 mod workspace;
 
-pub use angle::{sin_cos, wrap};
+pub use angle::{atan2, atan2_all, sin_cos, sin_cos_all, wrap};
 pub use conditioning::Jacobian;
 pub use constraints::{Blocks, Passive};
 pub use fault::{Fault, Infeasible, Part};

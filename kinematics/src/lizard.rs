@@ -1,6 +1,6 @@
 //! The whole robot: four servo angles in, every joint out (Algorithm 1).
 
-use crate::angle::wrap;
+use crate::angle::{sin_cos_all, wrap};
 use crate::fault::{Fault, Infeasible, Part};
 use crate::five_bar::{Branch, FiveBar, FiveBarPose};
 use crate::leg::{Leg, LegPose};
@@ -96,11 +96,13 @@ impl Solution {
     }
 
     /// The head point in mm, chassis frame.
+    #[inline]
     pub fn head_point(&self) -> Vector {
         self.head.apex + Vector::new(0.0, self.base_y)
     }
 
     /// The tail point in mm, chassis frame.
+    #[inline]
     pub fn tail_point(&self) -> Vector {
         self.tail.apex.mirrored() - Vector::new(0.0, self.base_y)
     }
@@ -108,6 +110,7 @@ impl Solution {
 
 impl Lizard {
     /// The head's five-bar.
+    #[inline]
     pub const fn head(&self) -> FiveBar {
         let l = &self.links;
         FiveBar {
@@ -121,6 +124,7 @@ impl Lizard {
 
     /// The tail's five-bar. In its own frame angles are the negatives of the
     /// chassis frame's; then the tail is solved as the head is.
+    #[inline]
     pub const fn tail(&self) -> FiveBar {
         let l = &self.links;
         FiveBar {
@@ -133,6 +137,7 @@ impl Lizard {
     }
 
     /// The left flank.
+    #[inline]
     pub const fn left(&self) -> Slider {
         let l = &self.links;
         Slider {
@@ -145,6 +150,7 @@ impl Lizard {
     }
 
     /// The right flank.
+    #[inline]
     pub const fn right(&self) -> Slider {
         let l = &self.links;
         Slider {
@@ -174,9 +180,11 @@ impl Lizard {
     /// theta12 = theta1 + 90, theta9 = theta5 - 90, theta16 = theta4 - 90,
     /// theta13 = theta8 + 90. (The paper prints the last two with the other
     /// sign, which would swing the right arms across the chassis.)
+    #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
         let angles = <[f64; 4]>::from(*pose);
-        let cranks = angles.map(Vector::direction);
+        let (sines, cosines) = sin_cos_all(angles);
+        let cranks: [Vector; 4] = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
         let [a1, a2, a3, a4] = cranks;
         let at = |part: Part| move |fault: Fault| Infeasible { part, fault };
         let head = self

@@ -68,6 +68,7 @@ impl Slider {
     }
 
     /// The slider between arms of two directions of length one.
+    #[inline]
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
         let rear_tip = rear * self.rear;
         let front_shaft = Vector::new(self.offset, self.base);

@@ -83,23 +83,24 @@ impl Record {
         };
         let why: Vec<String> = limits.violations(s).map(|v| v.to_string()).collect();
         let (head, tail) = (s.head_point(), s.tail_point());
+        let p = s.passive();
         let [fl, fr, br, bl] = s.legs.map(|leg| Leg {
             follower: leg.follower(),
             coupler: leg.coupler(),
         });
         Self {
-            theta2: Some(s.theta2()),
-            theta3: Some(s.theta3()),
-            theta6: Some(s.theta6()),
-            theta7: Some(s.theta7()),
+            theta2: Some(p.theta2),
+            theta3: Some(p.theta3),
+            theta6: Some(p.theta6),
+            theta7: Some(p.theta7),
             head: Some([head.x, head.y]),
             tail: Some([tail.x, tail.y]),
             left: Some(Side {
-                phi: s.left.phi(),
+                phi: p.phi_left,
                 s: s.left.s,
             }),
             right: Some(Side {
-                phi: s.right.phi(),
+                phi: p.phi_right,
                 s: s.right.s,
             }),
             legs: Some(Legs { fl, fr, br, bl }),

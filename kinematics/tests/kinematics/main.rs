@@ -1,5 +1,6 @@
 //! The closed forms against solvers that share nothing with them but lengths.
 
+mod angle;
 mod five_bar;
 mod lizard;
 mod motion;
