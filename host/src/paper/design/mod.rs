@@ -310,7 +310,7 @@ fn ranking(
         let Proportions { r1, r2, r3 } = d.proportions;
         writeln!(
             out,
-            "{rank:>4} {r1:6.3} {r2:6.3} {r3:6.3} {:7.1} {:11.1} {:8.0} {:10.1} {:5.3} {:7.3} {:10.1} {:6.3} {}",
+            "{rank:>4} {r1:6.3} {r2:6.3} {r3:6.3} {:7.1} {:11.1} {:8.0} {:10.1} {:5.3} {:7.3} {:10.1} {:6.3}{}",
             r1 * d.d,
             r2 * d.d,
             d.neutral,
@@ -319,7 +319,7 @@ fn ranking(
             d.margin,
             d.stride,
             d.score,
-            if d.pareto { "*" } else { "" }
+            if d.pareto { " *" } else { "" }
         )
     };
     for (i, design) in shown.iter().enumerate() {
