@@ -28,7 +28,7 @@ lint: ## rustfmt and clippy, warnings are errors
 	$(call prepared,.lint)
 cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)
-bench: ## measured budgets, beside the Arduino Servo library's
+bench: ## measured budgets, beside the Arduino Servo library's; speed beside numpy's
 	$(call prepared,.bench)
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
@@ -59,12 +59,16 @@ clean: ## remove everything that was built
 	@cd host && cargo test --workspace --quiet
 
 .bench: .firmware .cli
+	@scripts/setup-bench
 	@$(LIZARD) bench
+	@echo
+	@$(LIZARD) speed
 
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md
 	@$(LIZARD) draw --output docs/lizard.svg
 	@$(LIZARD) charts docs/charts
+	@scripts/walk-through $(LIZARD)
 
 .lint:
 	@cargo fmt --check
