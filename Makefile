@@ -11,7 +11,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash lint cli bench docs clean .firmware .flash .lint .cli .sim .test .bench .docs
+.PHONY: help sim test firmware flash lint cli bench docs clean .firmware .gaits .flash .lint .cli .sim .test .bench .docs
 
 help: ## this list
 	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -20,8 +20,8 @@ sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
 test: ## every test, on the host and on the simulated UNO
 	$(call prepared,.test)
-firmware: ## build the firmware for the UNO, .elf and .hex, and print flash and RAM
-	$(call prepared,.firmware)
+firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and every gait's margins
+	$(call prepared,.gaits)
 flash: ## build, write to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
 lint: ## rustfmt and clippy, warnings are errors
@@ -40,6 +40,10 @@ clean: ## remove everything that was built
 	@RUSTC_BOOTSTRAP=1 cargo build --release
 	@avr-objcopy -O ihex -R .eeprom $(ELF) $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
+
+.gaits: .firmware
+	@echo
+	@cat $(dir $(ELF))gaits.txt
 
 .flash: .firmware
 	@scripts/setup-flash
