@@ -48,12 +48,8 @@ pub fn angle_from_centideg(centideg: i32) -> u16 {
 /// `angle` in hundredths of a degree, 0..36000. Exact inverse of
 /// [`angle_from_centideg`], whose step is the finer one.
 pub fn centideg_from_angle(angle: u16) -> u16 {
-    let rounded = ((mul_unsigned(angle, TURN_CENTIDEG as u16) + 0x8000) >> 16) as u16;
-    if rounded == TURN_CENTIDEG as u16 {
-        0
-    } else {
-        rounded
-    }
+    // The last step of a turn is 359.9945 deg, which does not round to 360.
+    ((mul_unsigned(angle, TURN_CENTIDEG as u16) + 0x8000) >> 16) as u16
 }
 
 /// A length of 1/256 mm in hundredths of a millimetre, rounded to nearest.
