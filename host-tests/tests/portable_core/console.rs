@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use crate::person::{Person, is_final, is_information, pairs};
 
 /// Every command that the robot takes while it stands, as the issue spells it.
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "help",
     "?",
     "stand",
@@ -29,6 +29,7 @@ const COMMANDS: [&str; 20] = [
     "pose 138.59 41.41 318.59 221.41",
     "status",
     "watch 3",
+    "watch 10000",
     "watch 0",
     "rest",
 ];

@@ -9,7 +9,7 @@ use lizard_kinematics::Violation;
 
 use crate::frames::{Robot, Wish};
 use crate::person::Person;
-use crate::truth::{Numbers, Verdict, angles, sine};
+use crate::truth::{Numbers, TRIES, Verdict, angles, sine};
 
 /// Longer than the longest stroke.
 const LONG_ENOUGH: u32 = 60;
@@ -40,7 +40,7 @@ fn crossings(count: usize) -> Vec<[Pose; 2]> {
 
 /// A safe pose with an elbow almost stretched and the other two cranks at rest.
 fn stretched(numbers: &mut Numbers, cranks: [usize; 2]) -> Pose {
-    loop {
+    for _ in 0..TRIES {
         let mut pose = Pose::NEUTRAL;
         let any = numbers.pose();
         for servo in cranks {
@@ -54,6 +54,7 @@ fn stretched(numbers: &mut Numbers, cranks: [usize; 2]) -> Pose {
             return pose;
         }
     }
+    panic!("no elbow is ever almost stretched");
 }
 
 /// A robot at the first pose of a pair, if the way there is clear.

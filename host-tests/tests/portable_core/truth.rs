@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use lizard::clearance::Clearance;
 use lizard::pose::Pose;
 use lizard_host_tests::robot;
 use lizard_kinematics::Lizard;
@@ -171,6 +172,9 @@ impl fmt::Display for Spread {
     }
 }
 
+/// Poses to try before a search is given up.
+pub const TRIES: u32 = 1_000_000;
+
 /// Evenly spread numbers that are the same in every run (splitmix64).
 pub struct Numbers(u64);
 
@@ -203,11 +207,9 @@ impl Numbers {
 
     /// A pose that the guard lets pass.
     pub fn safe_pose(&mut self) -> Pose {
-        loop {
-            let pose = self.pose();
-            if lizard::clearance::Clearance::of(&pose).hazard().is_none() {
-                return pose;
-            }
-        }
+        (0..TRIES)
+            .map(|_| self.pose())
+            .find(|pose| Clearance::of(pose).hazard().is_none())
+            .expect("one pose in 24 is safe")
     }
 }
