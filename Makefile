@@ -59,7 +59,7 @@ clean: ## remove everything that was built
 .sim: .firmware .cli
 	@$(LIZARD) sim --elf $(ELF)
 
-.test: .firmware .cli
+.test: .firmware
 	@cd host && cargo test --workspace --quiet
 
 .bench: .firmware .cli
