@@ -2,7 +2,7 @@
 
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::robot;
-use lizard_kinematics::{Limits, Pose};
+use lizard_kinematics::{Limits, Pose, Solution};
 use simulated_uno::Fidelity;
 
 use crate::{Dice, SECOND, Status, awake, for_each};
@@ -86,6 +86,36 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
     });
 }
 
+/// What a refusal names, and its value: `err 4 leg margin of A1 is 0.259, ...`,
+/// `err 5 left slider is at 55.35 mm, ...`.
+fn told(answer: &str) -> (&str, f64) {
+    let (name, rest) = answer.split_once(" is ").expect("a name and a value");
+    let value = rest.trim_start_matches("at ").split([',', ' ']).next();
+    let value = value.and_then(|value| value.parse().ok());
+    (&name[4..], value.expect("a number"))
+}
+
+/// The same value in floating point; the name begins with its code.
+fn value(solution: &Solution, name: &str) -> Option<f64> {
+    let margins = &solution.margins;
+    let all = [
+        ("4 type-2 margin of the head", margins.apex_head),
+        ("4 type-2 margin of the tail", margins.apex_tail),
+        ("4 type-1 margin of A1", margins.type1_a1),
+        ("4 type-1 margin of A2", margins.type1_a2),
+        ("4 type-1 margin of A3", margins.type1_a3),
+        ("4 type-1 margin of A4", margins.type1_a4),
+        ("4 leg margin of A1", margins.leg_fl),
+        ("4 leg margin of A2", margins.leg_fr),
+        ("4 leg margin of A3", margins.leg_br),
+        ("4 leg margin of A4", margins.leg_bl),
+        ("5 left slider", solution.left.s),
+        ("5 right slider", solution.right.s),
+    ];
+    let found = all.iter().find(|(known, _)| *known == name);
+    found.map(|(_, value)| *value)
+}
+
 #[test]
 fn a_refusal_names_the_margin_and_its_value() {
     let mut bench = awake(Fidelity::DataSheet);
@@ -97,45 +127,11 @@ fn a_refusal_names_the_margin_and_its_value() {
         let Ok(solution) = robot().lizard.solve(&Pose::from(angles)) else {
             continue;
         };
-        let margins = &solution.margins;
-        let legs = [
-            margins.leg_fl,
-            margins.leg_fr,
-            margins.leg_br,
-            margins.leg_bl,
-        ];
-        let type1 = [
-            margins.type1_a1,
-            margins.type1_a2,
-            margins.type1_a3,
-            margins.type1_a4,
-        ];
-        let expected = |answer: &str| -> Option<(f64, f64)> {
-            let number = |text: &str| {
-                text.split([',', ' '])
-                    .next()
-                    .and_then(|text| text.parse().ok())
-            };
-            let servo = |text: &str| text[1..2].parse::<usize>().map(|n| n - 1).ok();
-            if let Some(rest) = answer.strip_prefix("err 4 type-2 margin of the head is ") {
-                Some((number(rest)?, margins.apex_head))
-            } else if let Some(rest) = answer.strip_prefix("err 4 type-2 margin of the tail is ") {
-                Some((number(rest)?, margins.apex_tail))
-            } else if let Some(rest) = answer.strip_prefix("err 4 type-1 margin of ") {
-                Some((number(&rest[6..])?, type1[servo(rest)?]))
-            } else if let Some(rest) = answer.strip_prefix("err 4 leg margin of ") {
-                Some((number(&rest[6..])?, legs[servo(rest)?]))
-            } else if let Some(rest) = answer.strip_prefix("err 5 left slider is at ") {
-                Some((number(rest)?, solution.left.s))
-            } else {
-                let rest = answer.strip_prefix("err 5 right slider is at ")?;
-                Some((number(rest)?, solution.right.s))
-            }
-        };
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
         }
-        let (said, float) = expected(&answer).unwrap_or_else(|| panic!("{answer}"));
+        let (name, said) = told(&answer);
+        let float = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
         // The margin of a leg beyond its change point is told with its sign, and a
         // pose that is all but singular as singular.
         let off = (said - float).abs().min((said.abs() - float.abs()).abs());

@@ -98,7 +98,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         let mut poses = std::collections::HashSet::new();
         for (n, (frame, asked)) in sent.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
-            assert_eq!(widths, asked.map(u64::from), "frame {n}");
+            assert_eq!(widths, asked.map(u64::from), "frame {n}, or the ELF is old");
             poses.insert(widths);
         }
         println!(
