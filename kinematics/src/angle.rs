@@ -102,16 +102,17 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
 /// Sines and cosines of several angles in degrees, the same bits as one by one.
 /// Each step runs over all of them, which the compiler turns into vector
 /// instructions.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
-    // An exact remainder, needed for astronomical angles only.
-    let near = degrees.iter().all(|angle| angle.abs() < FAR);
-    let degrees = if near {
-        degrees
-    } else {
-        degrees.map(|angle| angle % 360.0)
-    };
+    let mut degrees = degrees;
+    let mut far = false;
+    for angle in &degrees {
+        far |= angle.abs() >= FAR;
+    }
+    if far {
+        reduce(&mut degrees);
+    }
     for i in 0..N {
         let rounded = degrees[i] * (1.0 / 90.0) + ROUND;
         let quarter = rounded.to_bits();
@@ -133,6 +134,14 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
+/// Exact remainders, for astronomical angles.
+#[cold]
+fn reduce(degrees: &mut [f64]) {
+    for angle in degrees {
+        *angle %= 360.0;
+    }
+}
+
 /// The angle of a vector in (-180, 180] degrees, within 2 units in the last
 /// place; 0 for the zero vector.
 ///
@@ -146,7 +155,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
 }
 
 /// The angles of several vectors, the same bits as one by one.
-#[inline]
+#[inline(always)]
 pub fn atan2_all<const N: usize>(y: [f64; N], x: [f64; N]) -> [f64; N] {
     let mut degrees = [0.0; N];
     for i in 0..N {

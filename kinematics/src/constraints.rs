@@ -6,22 +6,22 @@
 //! tail x, y, left x, y, right x, y in mm, all in the chassis frame with
 //! counter-clockwise angles, which changes signs of several printed entries.
 
-use crate::angle::atan2_all;
 use crate::lizard::{Lizard, Solution};
+use crate::real::Real;
 use crate::vector::Vector;
 
 /// The joints that follow: angles in degrees, travel in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)] // The paper's symbols; phi and s replace theta10, theta11.
-pub struct Passive {
-    pub theta2: f64,
-    pub theta3: f64,
-    pub theta6: f64,
-    pub theta7: f64,
-    pub phi_left: f64,
-    pub s_left: f64,
-    pub phi_right: f64,
-    pub s_right: f64,
+pub struct Passive<T = f64> {
+    pub theta2: T,
+    pub theta3: T,
+    pub theta6: T,
+    pub theta7: T,
+    pub phi_left: T,
+    pub s_left: T,
+    pub phi_right: T,
+    pub s_right: T,
 }
 
 /// Determinants of the four diagonal blocks of K*.
@@ -44,11 +44,11 @@ impl Blocks {
     }
 }
 
-impl Solution {
+impl<T: Real> Solution<T> {
     /// The passive joints of this solution; all six angles at once, which is
     /// faster than one by one, and the same bits.
-    #[inline]
-    pub fn passive(&self) -> Passive {
+    #[inline(always)]
+    pub fn passive(&self) -> Passive<T> {
         let (head, tail) = (&self.head, &self.tail);
         let along = [
             head.left_coupler,
@@ -58,8 +58,11 @@ impl Solution {
             self.left.span,
             self.right.span,
         ];
-        let [theta2, theta3, theta6, theta7, phi_left, phi_right] =
-            atan2_all(along.map(|v| v.y), along.map(|v| v.x));
+        let (mut x, mut y) = ([along[0].x; 6], [along[0].y; 6]);
+        for i in 1..6 {
+            (x[i], y[i]) = (along[i].x, along[i].y);
+        }
+        let [theta2, theta3, theta6, theta7, phi_left, phi_right] = T::atan2_each(y, x);
         Passive {
             theta2,
             theta3,
@@ -71,7 +74,9 @@ impl Solution {
             s_right: self.right.s,
         }
     }
+}
 
+impl Solution {
     /// K: derivatives of the loop equations by theta1, theta4, theta8, theta5,
     /// mm per radian. 8x4.
     pub fn active_matrix(&self) -> [[f64; 4]; 8] {

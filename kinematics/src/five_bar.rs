@@ -10,6 +10,7 @@
 //! its theta2 (D, E, F, K4) has three sign slips.
 
 use crate::fault::Fault;
+use crate::real::Real;
 use crate::vector::Vector;
 
 /// Below this gap (mm) between the crank tips the apex has no direction left:
@@ -69,28 +70,28 @@ pub struct Assembly {
 
 /// A closed five-bar, in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FiveBarPose {
+pub struct FiveBarPose<T = f64> {
     /// Links that this pose belongs to.
     pub bars: FiveBar,
     /// Direction of the left crank, length one.
-    pub left: Vector,
+    pub left: Vector<T>,
     /// Direction of the right crank, length one.
-    pub right: Vector,
+    pub right: Vector<T>,
     /// Tip of the left crank, mm.
-    pub left_tip: Vector,
+    pub left_tip: Vector<T>,
     /// Tip of the right crank, mm.
-    pub right_tip: Vector,
+    pub right_tip: Vector<T>,
     /// Direction of the left coupler (theta2), length one.
-    pub left_coupler: Vector,
+    pub left_coupler: Vector<T>,
     /// Direction of the right coupler (theta3), length one.
-    pub right_coupler: Vector,
+    pub right_coupler: Vector<T>,
     /// The apex, mm.
-    pub apex: Vector,
+    pub apex: Vector<T>,
     /// From the left crank tip to the right one, mm: (K2, K1) in the paper.
-    pub gap: Vector,
+    pub gap: Vector<T>,
     /// Type-2 margin sin(theta3 - theta2): 0 where the couplers line up and the
     /// apex can move with both servos still. Positive on [`Branch::Ahead`].
-    pub type2: f64,
+    pub type2: T,
 }
 
 impl FiveBarPose {
@@ -106,23 +107,25 @@ impl FiveBarPose {
         self.right_coupler.angle()
     }
 
+    /// Smallest of the three margins.
+    pub fn margin(&self) -> f64 {
+        self.type2.min(self.type1_left()).min(self.type1_right())
+    }
+}
+
+impl<T: Real> FiveBarPose<T> {
     /// Type-1 margin of the left arm, sin(theta1 - theta2): 0 where crank and
     /// coupler line up and the apex cannot move outward, positive for an
     /// outward elbow.
-    #[inline]
-    pub fn type1_left(&self) -> f64 {
+    #[inline(always)]
+    pub fn type1_left(&self) -> T {
         self.left_coupler.cross(self.left)
     }
 
     /// Type-1 margin of the right arm, sin(theta3 - theta4), likewise.
-    #[inline]
-    pub fn type1_right(&self) -> f64 {
+    #[inline(always)]
+    pub fn type1_right(&self) -> T {
         self.right.cross(self.right_coupler)
-    }
-
-    /// Smallest of the three margins.
-    pub fn margin(&self) -> f64 {
-        self.type2.min(self.type1_left()).min(self.type1_right())
     }
 }
 
@@ -171,39 +174,53 @@ impl FiveBar {
     /// except the sines and arc tangents.
     #[inline]
     pub fn close(&self, branch: Branch, left: Vector, right: Vector) -> Result<FiveBarPose, Fault> {
-        let left_tip = self.left_shaft() + left * self.crank_left;
-        let right_tip = self.right_shaft() + right * self.crank_right;
+        let pose = self.shape(branch, left, right);
+        self.check(pose.gap.length())?;
+        Ok(pose)
+    }
+
+    /// Whether the couplers can span a gap of `d` mm between the crank tips.
+    #[inline]
+    pub(crate) fn check(&self, d: f64) -> Result<(), Fault> {
+        let (l2, l3) = (self.coupler_left, self.coupler_right);
+        let (least, reach) = ((l2 - l3).abs(), l2 + l3);
+        if !d.is_finite() {
+            Err(Fault::NotFinite)
+        } else if d > reach {
+            Err(Fault::Apart { gap: d, reach })
+        } else if d < least {
+            Err(Fault::Nested { gap: d, least })
+        } else if d < LEAST_GAP {
+            Err(Fault::Coincident)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The pose, if [`FiveBar::check`] agrees; else it has no meaning.
+    #[inline(always)]
+    pub(crate) fn shape<T: Real>(
+        &self,
+        branch: Branch,
+        left: Vector<T>,
+        right: Vector<T>,
+    ) -> FiveBarPose<T> {
+        let left_tip = Vector::of(self.left_shaft()) + left * self.crank_left;
+        let right_tip = Vector::of(self.right_shaft()) + right * self.crank_right;
         let gap = right_tip - left_tip;
         let square = gap.square();
-        let d = libm::sqrt(square);
-        if !d.is_finite() {
-            return Err(Fault::NotFinite);
-        }
         let (l2, l3) = (self.coupler_left, self.coupler_right);
-        if d > l2 + l3 {
-            return Err(Fault::Apart {
-                gap: d,
-                reach: l2 + l3,
-            });
-        }
-        let least = (l2 - l3).abs();
-        if d < least {
-            return Err(Fault::Nested { gap: d, least });
-        }
-        if d < LEAST_GAP {
-            return Err(Fault::Coincident);
-        }
         let area = match branch {
-            Branch::Ahead => double_area(l2, l3, d),
-            Branch::Behind => -double_area(l2, l3, d),
+            Branch::Ahead => double_area(l2, l3, square.root()),
+            Branch::Behind => -double_area(l2, l3, square.root()),
         };
         // Foot of the apex on the line between the tips, and its height over it,
         // both in units of the gap.
-        let along = (square + (l2 - l3) * (l2 + l3)) / (2.0 * square);
-        let rise = gap.left() * (area / square);
-        let from_left = gap * along + rise;
-        let from_right = gap * (along - 1.0) + rise;
-        Ok(FiveBarPose {
+        let along = (square + T::of((l2 - l3) * (l2 + l3))) / (square * 2.0);
+        let rise = gap.left().scaled(area / square);
+        let from_left = gap.scaled(along) + rise;
+        let from_right = gap.scaled(along - T::of(1.0)) + rise;
+        FiveBarPose {
             bars: *self,
             left,
             right,
@@ -213,8 +230,8 @@ impl FiveBar {
             right_coupler: from_right * (1.0 / l3),
             apex: left_tip + from_left,
             gap,
-            type2: area / (l2 * l3),
-        })
+            type2: area * (1.0 / (l2 * l3)),
+        }
     }
 
     /// Crank angles that put the apex at a point (mm, the five-bar's own frame),
@@ -307,10 +324,11 @@ impl Arms {
 }
 
 /// Twice the area of a triangle from its sides, by Heron in factored form.
-#[inline]
-fn double_area(a: f64, b: f64, c: f64) -> f64 {
-    let product = (a + b + c) * (a + b - c) * (c + (a - b)) * (c - (a - b));
-    libm::sqrt(product.max(0.0)) / 2.0
+#[inline(always)]
+fn double_area<T: Real>(a: f64, b: f64, c: T) -> T {
+    let (sum, difference) = (T::of(a + b), T::of(a - b));
+    let product = (sum + c) * (sum - c) * (c + difference) * (c - difference);
+    product.root() * 0.5
 }
 
 /// The crank's direction relative to the line from its shaft to the point, bent

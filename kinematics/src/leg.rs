@@ -11,6 +11,7 @@
 //! read theta1 in H for all four legs.
 
 use crate::angle::wrap;
+use crate::real::Real;
 use crate::vector::Vector;
 
 /// Link lengths of one leg in mm.
@@ -28,13 +29,13 @@ pub struct Leg {
 
 /// A leg at some crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LegPose {
+pub struct LegPose<T = f64> {
     /// theta_lg, the crank's angle, degrees as given.
-    pub theta: f64,
+    pub theta: T,
     /// Direction of the crank, and of the follower, length one.
-    pub direction: Vector,
+    pub direction: Vector<T>,
     /// |sin theta_lg|: 0 at the change points.
-    pub margin: f64,
+    pub margin: T,
 }
 
 impl LegPose {
@@ -62,12 +63,12 @@ impl Leg {
     }
 
     /// The leg at a crank angle in degrees whose direction is known already.
-    #[inline]
-    pub fn close(&self, theta: f64, crank: Vector) -> LegPose {
+    #[inline(always)]
+    pub fn close<T: Real>(&self, theta: T, crank: Vector<T>) -> LegPose<T> {
         LegPose {
             theta,
             direction: crank,
-            margin: crank.y.abs(),
+            margin: crank.y.magnitude(),
         }
     }
 }

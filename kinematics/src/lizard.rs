@@ -1,30 +1,31 @@
 //! The whole robot: four servo angles in, every joint out (Algorithm 1).
 
-use crate::angle::{sin_cos_all, wrap};
+use crate::angle::wrap;
 use crate::fault::{Fault, Infeasible, Part};
 use crate::five_bar::{Branch, FiveBar, FiveBarPose};
 use crate::leg::{Leg, LegPose};
 use crate::links::Links;
 use crate::margins::Margins;
+use crate::real::{Lanes, Real};
 use crate::slider::{Slider, SliderPose};
 use crate::vector::Vector;
 
 /// Four servo angles in degrees, chassis frame. Declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct Pose<T = f64> {
     /// A1, front left.
-    pub theta1: f64,
+    pub theta1: T,
     /// A2, front right.
-    pub theta4: f64,
+    pub theta4: T,
     /// A3, back right.
-    pub theta8: f64,
+    pub theta8: T,
     /// A4, back left.
-    pub theta5: f64,
+    pub theta5: T,
 }
 
-impl From<[f64; 4]> for Pose {
+impl<T> From<[T; 4]> for Pose<T> {
     /// From A1, A2, A3, A4.
-    fn from([theta1, theta4, theta8, theta5]: [f64; 4]) -> Self {
+    fn from([theta1, theta4, theta8, theta5]: [T; 4]) -> Self {
         Self {
             theta1,
             theta4,
@@ -34,9 +35,9 @@ impl From<[f64; 4]> for Pose {
     }
 }
 
-impl From<Pose> for [f64; 4] {
+impl<T> From<Pose<T>> for [T; 4] {
     /// To A1, A2, A3, A4.
-    fn from(pose: Pose) -> Self {
+    fn from(pose: Pose<T>) -> Self {
         [pose.theta1, pose.theta4, pose.theta8, pose.theta5]
     }
 }
@@ -53,23 +54,23 @@ pub struct Lizard {
 
 /// Everything that follows from a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution {
+pub struct Solution<T = f64> {
     /// The servo angles it belongs to.
-    pub pose: Pose,
+    pub pose: Pose<T>,
     /// The head in its own frame, whose axes are the chassis frame's and whose
     /// origin is the middle of l0.
-    pub head: FiveBarPose,
+    pub head: FiveBarPose<T>,
     /// The tail in its own frame: origin in the middle of l5, y backwards. Its
     /// left crank is A4's. See [`Solution::tail_point`] for the chassis frame.
-    pub tail: FiveBarPose,
+    pub tail: FiveBarPose<T>,
     /// The slider between A1 and A4; axes are the chassis frame's.
-    pub left: SliderPose,
+    pub left: SliderPose<T>,
     /// The slider between A2 and A3; axes are the chassis frame's.
-    pub right: SliderPose,
+    pub right: SliderPose<T>,
     /// Legs in servo order: front left, front right, back right, back left.
-    pub legs: [LegPose; 4],
+    pub legs: [LegPose<T>; 4],
     /// Distance from each singularity.
-    pub margins: Margins,
+    pub margins: Margins<T>,
     /// y of the head's base, mm, chassis frame; the tail's is its negative.
     base_y: f64,
 }
@@ -94,17 +95,19 @@ impl Solution {
     pub fn theta7(&self) -> f64 {
         self.tail.right_coupler.mirrored().angle()
     }
+}
 
+impl<T: Real> Solution<T> {
     /// The head point in mm, chassis frame.
-    #[inline]
-    pub fn head_point(&self) -> Vector {
-        self.head.apex + Vector::new(0.0, self.base_y)
+    #[inline(always)]
+    pub fn head_point(&self) -> Vector<T> {
+        self.head.apex + Vector::of(Vector::new(0.0, self.base_y))
     }
 
     /// The tail point in mm, chassis frame.
-    #[inline]
-    pub fn tail_point(&self) -> Vector {
-        self.tail.apex.mirrored() - Vector::new(0.0, self.base_y)
+    #[inline(always)]
+    pub fn tail_point(&self) -> Vector<T> {
+        self.tail.apex.mirrored() - Vector::of(Vector::new(0.0, self.base_y))
     }
 }
 
@@ -182,29 +185,70 @@ impl Lizard {
     /// sign, which would swing the right arms across the chassis.)
     #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
-        let angles = <[f64; 4]>::from(*pose);
-        let (sines, cosines) = sin_cos_all(angles);
-        let cranks: [Vector; 4] = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
-        let [a1, a2, a3, a4] = cranks;
+        let solution = self.shape(pose);
+        self.check(&solution)?;
+        Ok(solution)
+    }
+
+    /// Several poses at once, one in each lane, several times faster than one by
+    /// one. What a lane holds has a meaning only if [`Lizard::closes`] says so.
+    #[inline(always)]
+    pub fn solve_lanes<const N: usize>(&self, poses: &Pose<Lanes<N>>) -> Solution<Lanes<N>> {
+        self.shape(poses)
+    }
+
+    /// In which lanes every loop closes; [`Lizard::solve`] says why one does not.
+    #[inline(always)]
+    pub fn closes<const N: usize>(&self, solution: &Solution<Lanes<N>>) -> [bool; N] {
+        let Lanes(head) = solution.head.gap.length();
+        let Lanes(tail) = solution.tail.gap.length();
+        let (Lanes(left), Lanes(right)) = (solution.left.d, solution.right.d);
+        let mut closes = [false; N];
+        for i in 0..N {
+            closes[i] = self.head().check(head[i]).is_ok()
+                && self.tail().check(tail[i]).is_ok()
+                && self.left().check(left[i]).is_ok()
+                && self.right().check(right[i]).is_ok();
+        }
+        closes
+    }
+
+    /// Why a solution has no meaning, if it has none.
+    #[inline]
+    fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
         let at = |part: Part| move |fault: Fault| Infeasible { part, fault };
-        let head = self
-            .head()
-            .close(Branch::Ahead, a1, a2)
-            .map_err(at(Part::Head))?;
+        let (head, tail) = (solution.head.gap.length(), solution.tail.gap.length());
+        self.head().check(head).map_err(at(Part::Head))?;
+        self.tail().check(tail).map_err(at(Part::Tail))?;
+        self.left().check(solution.left.d).map_err(at(Part::Left))?;
+        self.right()
+            .check(solution.right.d)
+            .map_err(at(Part::Right))
+    }
+
+    /// Every closed form, without a question asked.
+    #[inline(always)]
+    fn shape<T: Real>(&self, pose: &Pose<T>) -> Solution<T> {
+        // Loops rather than `map`, which is not always inlined into the
+        // functions with vector instructions that call this.
+        let angles = [pose.theta1, pose.theta4, pose.theta8, pose.theta5];
+        let (sines, cosines) = T::sin_cos_each(angles);
+        let mut cranks = [Vector::new(sines[0], sines[0]); 4];
+        for i in 0..4 {
+            cranks[i] = Vector::new(cosines[i], sines[i]);
+        }
+        let [a1, a2, a3, a4] = cranks;
+        let head = self.head().shape(Branch::Ahead, a1, a2);
         let tail = self
             .tail()
-            .close(Branch::Ahead, a4.mirrored(), a3.mirrored())
-            .map_err(at(Part::Tail))?;
-        let left = self
-            .left()
-            .close(a4.right(), a1.left())
-            .map_err(at(Part::Left))?;
-        let right = self
-            .right()
-            .close(a3.left(), a2.right())
-            .map_err(at(Part::Right))?;
-        let legs: [LegPose; 4] = core::array::from_fn(|i| self.leg.close(angles[i], cranks[i]));
-        Ok(Solution {
+            .shape(Branch::Ahead, a4.mirrored(), a3.mirrored());
+        let left = self.left().shape(a4.right(), a1.left());
+        let right = self.right().shape(a3.left(), a2.right());
+        let mut legs = [self.leg.close(angles[0], a1); 4];
+        for i in 1..4 {
+            legs[i] = self.leg.close(angles[i], cranks[i]);
+        }
+        Solution {
             pose: *pose,
             head,
             tail,
@@ -224,7 +268,7 @@ impl Lizard {
                 leg_bl: legs[3].margin,
             },
             base_y: self.links.l10 / 2.0,
-        })
+        }
     }
 
     /// The margins at a pose; no arc tangents are taken.

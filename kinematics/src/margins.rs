@@ -70,17 +70,17 @@ impl fmt::Display for Check {
 /// elbows that the robot is built with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)] // `Check` documents each.
-pub struct Margins {
-    pub apex_head: f64,
-    pub apex_tail: f64,
-    pub type1_a1: f64,
-    pub type1_a2: f64,
-    pub type1_a3: f64,
-    pub type1_a4: f64,
-    pub leg_fl: f64,
-    pub leg_fr: f64,
-    pub leg_br: f64,
-    pub leg_bl: f64,
+pub struct Margins<T = f64> {
+    pub apex_head: T,
+    pub apex_tail: T,
+    pub type1_a1: T,
+    pub type1_a2: T,
+    pub type1_a3: T,
+    pub type1_a4: T,
+    pub leg_fl: T,
+    pub leg_fr: T,
+    pub leg_br: T,
+    pub leg_bl: T,
 }
 
 impl Margins {

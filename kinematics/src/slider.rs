@@ -9,6 +9,7 @@
 //! unknowns are phi = theta10 and s.
 
 use crate::fault::Fault;
+use crate::real::Real;
 use crate::vector::Vector;
 
 /// Link lengths of a flank in mm. The origin is the rear shaft.
@@ -29,19 +30,19 @@ pub struct Slider {
 
 /// A closed flank. Points in mm from the rear shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SliderPose {
+pub struct SliderPose<T = f64> {
     /// Tip of the rear arm.
-    pub rear_tip: Vector,
+    pub rear_tip: Vector<T>,
     /// Tip of the front arm.
-    pub front_tip: Vector,
+    pub front_tip: Vector<T>,
     /// The front shaft.
-    pub front_shaft: Vector,
+    pub front_shaft: Vector<T>,
     /// From the rear tip to the front one.
-    pub span: Vector,
+    pub span: Vector<T>,
     /// Length of the span, d.
-    pub d: f64,
+    pub d: T,
     /// Slider travel s from nominal.
-    pub s: f64,
+    pub s: T,
 }
 
 impl SliderPose {
@@ -70,24 +71,38 @@ impl Slider {
     /// The slider between arms of two directions of length one.
     #[inline]
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
+        let pose = self.shape(rear, front);
+        self.check(pose.d)?;
+        Ok(pose)
+    }
+
+    /// Whether a slider of length `d` mm has a direction.
+    #[inline]
+    pub(crate) fn check(&self, d: f64) -> Result<(), Fault> {
+        if !d.is_finite() {
+            Err(Fault::NotFinite)
+        } else if d == 0.0 {
+            Err(Fault::Collapsed)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The pose, if [`Slider::check`] agrees; else it has no meaning.
+    #[inline(always)]
+    pub(crate) fn shape<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
         let rear_tip = rear * self.rear;
-        let front_shaft = Vector::new(self.offset, self.base);
+        let front_shaft = Vector::of(Vector::new(self.offset, self.base));
         let front_tip = front_shaft + front * self.front;
         let span = front_tip - rear_tip;
         let d = span.length();
-        if !d.is_finite() {
-            return Err(Fault::NotFinite);
-        }
-        if d == 0.0 {
-            return Err(Fault::Collapsed);
-        }
-        Ok(SliderPose {
+        SliderPose {
             rear_tip,
             front_tip,
             front_shaft,
             span,
             d,
-            s: d - self.nominal,
-        })
+            s: d - T::of(self.nominal),
+        }
     }
 }

@@ -3,23 +3,26 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use crate::angle::{atan2, sin_cos};
+use crate::real::Real;
 
 /// A point or a displacement in mm, or a direction of length one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Vector {
+pub struct Vector<T = f64> {
     /// To the right.
-    pub x: f64,
+    pub x: T,
     /// Forward.
-    pub y: f64,
+    pub y: T,
+}
+
+impl<T> Vector<T> {
+    /// The vector with these two components.
+    #[inline(always)]
+    pub const fn new(x: T, y: T) -> Self {
+        Self { x, y }
+    }
 }
 
 impl Vector {
-    /// The vector with these two components.
-    #[inline]
-    pub const fn new(x: f64, y: f64) -> Self {
-        Self { x, y }
-    }
-
     /// The direction (length one) at an angle in degrees.
     #[inline]
     pub fn direction(degrees: f64) -> Self {
@@ -33,48 +36,6 @@ impl Vector {
         atan2(self.y, self.x)
     }
 
-    /// Length in the unit of the components.
-    #[inline]
-    pub fn length(self) -> f64 {
-        libm::sqrt(self.square())
-    }
-
-    /// Length squared.
-    #[inline]
-    pub fn square(self) -> f64 {
-        self.dot(self)
-    }
-
-    /// Scalar product.
-    #[inline]
-    pub fn dot(self, other: Self) -> f64 {
-        self.x * other.x + self.y * other.y
-    }
-
-    /// Cross product: |self| |other| sin of the angle from self to other.
-    #[inline]
-    pub fn cross(self, other: Self) -> f64 {
-        self.x * other.y - self.y * other.x
-    }
-
-    /// Turned by +90 degrees, exactly.
-    #[inline]
-    pub const fn left(self) -> Self {
-        Self::new(-self.y, self.x)
-    }
-
-    /// Turned by -90 degrees, exactly.
-    #[inline]
-    pub const fn right(self) -> Self {
-        Self::new(self.y, -self.x)
-    }
-
-    /// The mirror image in the x axis: angles change sign.
-    #[inline]
-    pub const fn mirrored(self) -> Self {
-        Self::new(self.x, -self.y)
-    }
-
     /// True if neither component is infinite or NaN.
     #[inline]
     pub const fn is_finite(self) -> bool {
@@ -82,33 +43,89 @@ impl Vector {
     }
 }
 
-impl Add for Vector {
+impl<T: Real> Vector<T> {
+    /// Length in the unit of the components.
+    #[inline(always)]
+    pub fn length(self) -> T {
+        self.square().root()
+    }
+
+    /// Length squared.
+    #[inline(always)]
+    pub fn square(self) -> T {
+        self.dot(self)
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> T {
+        self.x * other.x + self.y * other.y
+    }
+
+    /// Cross product: |self| |other| sin of the angle from self to other.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> T {
+        self.x * other.y - self.y * other.x
+    }
+
+    /// Turned by +90 degrees, exactly.
+    #[inline(always)]
+    pub fn left(self) -> Self {
+        Self::new(-self.y, self.x)
+    }
+
+    /// Turned by -90 degrees, exactly.
+    #[inline(always)]
+    pub fn right(self) -> Self {
+        Self::new(self.y, -self.x)
+    }
+
+    /// The mirror image in the x axis: angles change sign.
+    #[inline(always)]
+    pub fn mirrored(self) -> Self {
+        Self::new(self.x, -self.y)
+    }
+
+    /// As many times as long.
+    #[inline(always)]
+    pub fn scaled(self, factor: T) -> Self {
+        Self::new(self.x * factor, self.y * factor)
+    }
+
+    /// A constant vector.
+    #[inline(always)]
+    pub(crate) fn of(vector: Vector) -> Self {
+        Self::new(T::of(vector.x), T::of(vector.y))
+    }
+}
+
+impl<T: Real> Add for Vector<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::new(self.x + other.x, self.y + other.y)
     }
 }
 
-impl Sub for Vector {
+impl<T: Real> Sub for Vector<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self::new(self.x - other.x, self.y - other.y)
     }
 }
 
-impl Mul<f64> for Vector {
+impl<T: Real> Mul<f64> for Vector<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
         Self::new(self.x * factor, self.y * factor)
     }
 }
 
-impl Neg for Vector {
+impl<T: Real> Neg for Vector<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self::new(-self.x, -self.y)
     }

@@ -1,7 +1,7 @@
 //! The whole robot: loops, conventions, neutral pose, limits.
 
-use crate::reference::{lizard, loop_gap};
-use lizard_kinematics::{Check, Limits, Pose, Vector, wrap};
+use crate::reference::{any_lizard, lizard, loop_gap};
+use lizard_kinematics::{Check, Lanes, Limits, Pose, Vector, wrap};
 use proptest::prelude::*;
 
 const NEUTRAL: [f64; 4] = [138.590378, 41.409622, 318.590378, 221.409622];
@@ -154,4 +154,41 @@ fn margins_have_ten_names_and_a_least() {
         Check::LegFl | Check::LegFr | Check::LegBr | Check::LegBl
     ));
     assert!((value - 41.409622f64.to_radians().sin()).abs() < 1e-12);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1024, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_pose_in_a_lane_has_the_bits_of_the_pose_alone(
+        robot in any_lizard(), poses in proptest::collection::vec([0.0..360.0, 0.0..360.0, 0.0..360.0, 0.0..360.0f64], 8),
+    ) {
+        let lanes = Pose::from(std::array::from_fn(|servo| {
+            Lanes::<8>(std::array::from_fn(|i| poses[i][servo]))
+        }));
+        let all = robot.solve_lanes(&lanes);
+        let closes = robot.closes(&all);
+        let (passive, head, tail) = (all.passive(), all.head_point(), all.tail_point());
+        for (i, pose) in poses.iter().enumerate() {
+            let alone = robot.solve(&Pose::from(*pose));
+            prop_assert_eq!(closes[i], alone.is_ok());
+            let Ok(alone) = alone else { continue };
+            let p = alone.passive();
+            for (lane, one) in [
+                (passive.theta2, p.theta2), (passive.theta3, p.theta3),
+                (passive.theta6, p.theta6), (passive.theta7, p.theta7),
+                (passive.phi_left, p.phi_left), (passive.phi_right, p.phi_right),
+                (passive.s_left, p.s_left), (passive.s_right, p.s_right),
+                (head.x, alone.head_point().x), (head.y, alone.head_point().y),
+                (tail.x, alone.tail_point().x), (tail.y, alone.tail_point().y),
+                (all.margins.apex_head, alone.margins.apex_head),
+                (all.margins.type1_a3, alone.margins.type1_a3),
+                (all.margins.leg_bl, alone.margins.leg_bl),
+            ] {
+                prop_assert_eq!(lane.0[i].to_bits(), one.to_bits());
+            }
+            prop_assert_eq!(p.theta2, alone.theta2());
+            prop_assert_eq!(p.theta7, alone.theta7());
+        }
+    }
 }

@@ -6,7 +6,8 @@ use std::io::{self, Write};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use lizard_kinematics::{Lizard, Pose, atan2_all, sin_cos_all};
+use lizard_kinematics::{Lanes, Lizard, Pose, Real, Solution};
+use pulp::{Arch, Simd, WithSimd};
 use serde::Serialize;
 
 use crate::{Failure, RobotFile};
@@ -23,8 +24,8 @@ const PASSES: usize = 5;
 ///
 /// The same poses are solved here and by the same closed form in numpy (python3
 /// with numpy, if there is one), and the results are compared. The floor is the
-/// time of the four sine-cosine pairs and six arc tangents that no closed form
-/// can do without.
+/// time of the four sine-cosine pairs and six arc tangents of each pose, computed
+/// in the same way.
 #[derive(clap::Args)]
 pub struct Args {
     /// Number of poses
@@ -40,7 +41,10 @@ pub struct Args {
 #[derive(Serialize)]
 struct Report {
     poses: usize,
+    /// In lanes of [`LANES`], with whatever vectors the machine has.
     poses_per_second: f64,
+    /// As `lizard solve` and the firmware's build do it.
+    one_by_one_poses_per_second: f64,
     /// Time of the sines and arc tangents alone over the whole time.
     floor_share: f64,
     numpy: Option<Numpy>,
@@ -66,28 +70,29 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let poses = poses(args.poses as usize);
     let mut results = vec![[0.0; RESULTS]; poses.len()];
+    let vectors = Arch::new();
     let seconds = fastest(|| {
+        vectors.dispatch(SolveAll {
+            lizard: &robot.lizard,
+            poses: &poses,
+            results: &mut results,
+        });
+        black_box(&results);
+    });
+    let one_by_one = fastest(|| {
         for (pose, result) in poses.iter().zip(&mut results) {
             *result = solve(&robot.lizard, pose);
         }
         black_box(&results);
     });
     let floor = fastest(|| {
-        let mut sum = 0.0;
-        for pose in &poses {
-            let (sines, cosines) = sin_cos_all(*pose);
-            // Six vectors that depend on those, as the joints do.
-            let [a, b, c, d] = sines;
-            let [e, f, g, h] = cosines;
-            let angles = atan2_all([a, b, c, d, a, b], [e, f, g, h, g, h]);
-            sum += angles.iter().sum::<f64>();
-        }
-        black_box(sum);
+        black_box(vectors.dispatch(Transcendentals(&poses)));
     });
     let rate = poses.len() as f64 / seconds;
     let report = Report {
         poses: poses.len(),
         poses_per_second: rate,
+        one_by_one_poses_per_second: poses.len() as f64 / one_by_one,
         floor_share: floor / seconds,
         numpy: numpy(&robot.lizard, &poses, &results, rate)?,
     };
@@ -102,7 +107,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
         "forward solution of the whole robot, one core, {} poses",
         report.poses
     )?;
-    writeln!(out, "  closed form   {:8.2} million poses/s", rate / 1e6)?;
+    writeln!(
+        out,
+        "  closed form   {:8.2} million poses/s, {LANES} at once",
+        rate / 1e6
+    )?;
+    writeln!(
+        out,
+        "                {:8.2} million poses/s, one by one",
+        report.one_by_one_poses_per_second / 1e6
+    )?;
     match &report.numpy {
         Some(numpy) => writeln!(
             out,
@@ -142,12 +156,69 @@ fn poses(count: usize) -> Vec<[f64; 4]> {
         .collect()
 }
 
+/// Poses that are solved in step.
+const LANES: usize = 8;
+
+type Block = Lanes<LANES>;
+
+/// Poses of one block, lane by lane.
+#[inline(always)]
+fn block(poses: &[[f64; 4]]) -> [Block; 4] {
+    let mut block = [Lanes([0.0; LANES]); 4];
+    for (i, pose) in poses.iter().enumerate() {
+        for (lanes, angle) in block.iter_mut().zip(pose) {
+            lanes.0[i] = *angle;
+        }
+    }
+    block
+}
+
 /// Everything that `lizard solve` prints, but for the legs' angles, which are
-/// the servos'.
+/// the servos'. Poses without a solution, and a last block that is not full, go
+/// one by one.
+struct SolveAll<'a> {
+    lizard: &'a Lizard,
+    poses: &'a [[f64; 4]],
+    results: &'a mut [[f64; RESULTS]],
+}
+
+impl WithSimd for SolveAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let blocks = self.poses.chunks(LANES).zip(self.results.chunks_mut(LANES));
+        for (poses, results) in blocks {
+            if poses.len() == LANES {
+                let solution = self.lizard.solve_lanes(&Pose::from(block(poses)));
+                if self.lizard.closes(&solution).iter().all(|closes| *closes) {
+                    let columns = columns(&solution);
+                    for (i, result) in results.iter_mut().enumerate() {
+                        for (value, column) in result.iter_mut().zip(&columns) {
+                            *value = column.0[i];
+                        }
+                    }
+                    continue;
+                }
+            }
+            for (pose, result) in poses.iter().zip(results) {
+                *result = solve(self.lizard, pose);
+            }
+        }
+    }
+}
+
+/// One pose.
 fn solve(lizard: &Lizard, pose: &[f64; 4]) -> [f64; RESULTS] {
-    let Ok(s) = lizard.solve(&Pose::from(*pose)) else {
-        return [f64::NAN; RESULTS];
-    };
+    match lizard.solve(&Pose::from(*pose)) {
+        Ok(solution) => columns(&solution),
+        Err(_) => [f64::NAN; RESULTS],
+    }
+}
+
+/// The results in the script's order.
+#[inline(always)]
+fn columns<T: Real>(s: &Solution<T>) -> [T; RESULTS] {
     let (head, tail, m, p) = (s.head_point(), s.tail_point(), &s.margins, s.passive());
     [
         p.theta2,
@@ -173,6 +244,28 @@ fn solve(lizard: &Lizard, pose: &[f64; 4]) -> [f64; RESULTS] {
         m.leg_br,
         m.leg_bl,
     ]
+}
+
+/// The floor: four sine-cosine pairs and six arc tangents for each pose.
+struct Transcendentals<'a>(&'a [[f64; 4]]);
+
+impl WithSimd for Transcendentals<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let mut sum = Block::of(0.0);
+        for poses in self.0.chunks_exact(LANES) {
+            let (sines, cosines) = Block::sin_cos_each(block(poses));
+            // Six vectors that depend on those, as the joints do.
+            let [a, b, c, d] = sines;
+            let [e, f, g, h] = cosines;
+            for angle in Block::atan2_each([a, b, c, d, a, b], [e, f, g, h, g, h]) {
+                sum = sum + angle;
+            }
+        }
+        sum.0.iter().sum()
+    }
 }
 
 fn fastest(mut work: impl FnMut()) -> f64 {
