@@ -20,9 +20,10 @@ proptest! {
 
     #[test]
     fn quarter_turns_change_nothing_but_places_and_signs(
-        degrees in -45.0..45.0f64, turns in -1_000_000..1_000_000i32,
+        degrees in -44.99..44.99f64, turns in -1_000_000..1_000_000i32,
     ) {
-        // On a grid on which adding the turns is exact.
+        // On a grid on which adding the turns is exact, and short of 45 degrees,
+        // which belong to two quarters.
         let grid = (degrees * 4096.0).round() / 4096.0;
         let (sin, cos) = sin_cos(grid);
         let quarter = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
