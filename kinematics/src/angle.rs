@@ -2,7 +2,8 @@
 //!
 //! Reducing degrees by multiples of 90 is exact, reducing radians is not: so
 //! sin 180 is 0 here, and an angle and the same angle a turn later have the
-//! same sine, bit for bit. Nothing branches on the argument, which makes these
+//! same sine, bit for bit (but for the last bit exactly on a diagonal, where
+//! either octant may answer). Nothing branches on the argument, which makes these
 //! several times faster than the general functions of a mathematics library.
 //! Only IEEE additions, multiplications, divisions and comparisons are used,
 //! never fused: the same bits on every host.

@@ -25,6 +25,8 @@ proptest! {
         // On a grid on which adding the turns is exact, and short of 45 degrees,
         // which belong to two quarters.
         let grid = (degrees * 4096.0).round() / 4096.0;
+        // On a diagonal either octant may answer.
+        prop_assume!(grid.abs() < 45.0);
         let (sin, cos) = sin_cos(grid);
         let quarter = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
         let expected = quarter[turns.rem_euclid(4) as usize];
