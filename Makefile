@@ -72,7 +72,7 @@ clean: ## remove everything that was built
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md
 	@$(LIZARD) draw --output docs/lizard.svg
-	@$(LIZARD) charts docs/charts
+	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
 
 .lint:
