@@ -106,9 +106,9 @@ fn no_path_of_good_margins_leads_to_crossed_cranks() {
         if grid[start].is_none() || seen[start] {
             continue;
         }
-        let mut todo = vec![start];
+        let mut open = vec![start];
         seen[start] = true;
-        while let Some(i) = todo.pop() {
+        while let Some(i) = open.pop() {
             let (left, right) = (i / N, i % N);
             assert_eq!(grid[i], grid[start], "a way across at {left} {right}");
             match grid[i] {
@@ -119,7 +119,7 @@ fn no_path_of_good_margins_leads_to_crossed_cranks() {
                 let next = (left + dl) % N * N + (right + dr) % N;
                 if grid[next].is_some() && !seen[next] {
                     seen[next] = true;
-                    todo.push(next);
+                    open.push(next);
                 }
             }
         }
