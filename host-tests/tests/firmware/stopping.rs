@@ -131,10 +131,10 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
 fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        let target = [118.59, 45.5, 330.25, 230.0];
+        let target = [99.25, 41.5, 280.75, 230.0];
         assert!(
             bench
-                .say("pose 118.59 45.5 330.25 230")
+                .say("pose 99.25 41.5 280.75 230")
                 .starts_with("ok pose")
         );
         let sent = widths(&bench.run_for_frames(60));
