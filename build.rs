@@ -10,8 +10,10 @@ use lizard_robot::Robot;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=robot.toml");
-    let robot = Robot::load("robot.toml").unwrap_or_else(|error| stop(&error.to_string()));
+    println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
+    let file = env::var("LIZARD_ROBOT").unwrap_or_else(|_| "robot.toml".to_string());
+    println!("cargo::rerun-if-changed={file}");
+    let robot = Robot::load(&file).unwrap_or_else(|error| stop(&error.to_string()));
     // Cargo sets OUT_DIR for every build script.
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out = PathBuf::from(out);

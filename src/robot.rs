@@ -1,14 +1,81 @@
-//! The robot's numbers: everything that the build script computes from
-//! `robot.toml`. Constants are folded into the code, tables stay in flash.
+//! The robot of this firmware: the numbers that the build script has computed from
+//! robot.toml. Constants are folded into the code, tables stay in flash.
 //!
-//! The build refuses a `robot.toml` with a length that these types cannot
+//! The build refuses a robot.toml with a length that these types cannot
 //! hold or a gait that breaks a margin, so nothing is checked again here.
 
-use crate::clearance::Limits;
-use crate::fivebar::FiveBar;
-use crate::gait::{Channel, Gait};
-use crate::pose::Servo;
-use crate::slider::Slider;
-use crate::slope::Slope;
+use lizard_avr::Flash;
+use lizard_core::calibration::Calibration;
+use lizard_core::couplers::{self, Couplers};
+use lizard_core::curve::Table;
+use lizard_core::five_bar::FiveBar;
+use lizard_core::gait::{Channel, Gait, Wave};
+use lizard_core::guard::Limits;
+use lizard_core::part::{End, Side};
+use lizard_core::point_to_point::Slew;
+use lizard_core::robot::Robot;
+use lizard_core::slider::Slider;
+use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
 
 include!(concat!(env!("OUT_DIR"), "/robot.rs"));
+
+/// The robot of robot.toml.
+pub struct Lizard;
+
+impl Robot for Lizard {
+    #[inline(always)]
+    fn end(&self, end: End) -> FiveBar<'static> {
+        match end {
+            End::Head => HEAD,
+            End::Tail => TAIL,
+        }
+    }
+
+    #[inline(always)]
+    fn side(&self, side: Side) -> Slider {
+        match side {
+            Side::Left => LEFT,
+            Side::Right => RIGHT,
+        }
+    }
+
+    #[inline(always)]
+    fn limits(&self) -> Limits {
+        LIMITS
+    }
+
+    #[inline(always)]
+    fn slew(&self) -> Slew {
+        SLEW
+    }
+
+    #[inline(always)]
+    fn neutral(&self) -> [Angle; 4] {
+        NEUTRAL
+    }
+
+    #[inline(always)]
+    fn calibration(&self) -> [Calibration; 4] {
+        CALIBRATION
+    }
+
+    #[inline(always)]
+    fn gaits(&self) -> Flash<'static, [Gait]> {
+        GAITS.as_slice()
+    }
+
+    #[inline(always)]
+    fn names(&self) -> Flash<'static, [u8]> {
+        NAMES.as_slice()
+    }
+
+    #[inline(always)]
+    fn waves(&self) -> Flash<'static, [Wave]> {
+        WAVES.as_slice()
+    }
+
+    #[inline(always)]
+    fn hash(&self) -> u32 {
+        HASH
+    }
+}

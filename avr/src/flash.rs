@@ -4,38 +4,62 @@
 //! it is copied to RAM at start, and this chip has 2 KiB of that. Tables and
 //! sentences belong in the other, which only the `lpm` instruction reads.
 //! [`flash!`](crate::flash!) puts a constant there; a [`Flash`] is its address, and the only
-//! way to it. On any other machine it is an ordinary constant, so the same
-//! code runs in tests.
+//! way to it. On any other machine it is an ordinary reference, so the same
+//! code runs there, also with tables that are made at run time.
 //!
 //! Reads are total: an index past the end reads the last element, so that no
 //! panic path is compiled in. (The crate avr-progmem does the same job but
 //! wants a nightly compiler on the host, too, and panics on a bad index.)
 
+use core::marker::PhantomData;
 use core::mem::{MaybeUninit, transmute_copy};
 
-/// Where a constant lies in flash.
-#[derive(Clone, Copy)]
-pub struct Flash<T> {
+/// Where a constant lies in flash; on any other machine, an ordinary reference.
+pub struct Flash<'a, T: ?Sized> {
     at: *const T,
+    lifetime: PhantomData<&'a T>,
 }
 
-// SAFETY: what `at` points to is never written, so any number of readers on
-// any number of threads see the same value.
-unsafe impl<T: Sync> Sync for Flash<T> {}
-
-impl<T> Flash<T> {
-    /// Made by [`flash!`](crate::flash!) alone.
-    ///
-    /// # Safety
-    /// `at` must be valid for reads for ever, in the flash of an AVR and in
-    /// ordinary memory elsewhere.
-    #[doc(hidden)]
-    pub const unsafe fn new(at: *const T) -> Self {
-        Self { at }
+impl<T: ?Sized> Clone for Flash<'_, T> {
+    fn clone(&self) -> Self {
+        *self
     }
 }
 
-impl<T: Copy> Flash<T> {
+impl<T: ?Sized> Copy for Flash<'_, T> {}
+
+// SAFETY: what `at` points to is never written while a `Flash` of it exists, so
+// any number of readers on any number of threads see the same value.
+unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
+// SAFETY: as above.
+unsafe impl<T: ?Sized + Sync> Send for Flash<'_, T> {}
+
+impl<T: ?Sized> Flash<'_, T> {
+    /// Made by [`flash!`](crate::flash!) alone.
+    ///
+    /// # Safety
+    /// `at` must be valid for reads for the lifetime, in the flash of an AVR and
+    /// in ordinary memory elsewhere.
+    #[doc(hidden)]
+    pub const unsafe fn new(at: *const T) -> Self {
+        Self {
+            at,
+            lifetime: PhantomData,
+        }
+    }
+}
+
+/// Tables that are made at run time, which only a host does.
+#[cfg(not(target_arch = "avr"))]
+impl<'a, T: ?Sized> From<&'a T> for Flash<'a, T> {
+    fn from(value: &'a T) -> Self {
+        // SAFETY: a reference is valid for reads as long as it lives, and
+        // nothing is written behind it.
+        unsafe { Self::new(value) }
+    }
+}
+
+impl<T: Copy> Flash<'_, T> {
     /// Fetches the constant.
     #[inline]
     pub fn load(self) -> T {
@@ -59,21 +83,48 @@ impl<T: Copy> Flash<T> {
     }
 }
 
-#[expect(clippy::len_without_is_empty, reason = "an array here is never empty")]
-impl<T, const N: usize> Flash<[T; N]> {
-    /// The number of elements.
+impl<'a, T, const N: usize> Flash<'a, [T; N]> {
+    /// The array as a slice, still in flash.
     #[inline]
-    pub const fn len(self) -> usize {
-        N
+    pub const fn as_slice(self) -> Flash<'a, [T]> {
+        // SAFETY: the same elements, of the same lifetime.
+        unsafe { Flash::new(self.at as *const [T]) }
     }
 
     /// The element at `index`, still in flash; past the end, the last one.
     #[inline]
-    pub const fn at(self, index: usize) -> Flash<T> {
+    pub const fn at(self, index: usize) -> Flash<'a, T> {
         const { assert!(N > 0) };
         let index = if index < N { index } else { N - 1 };
         // SAFETY: `index` is below the length of the array at `self.at`.
         unsafe { Flash::new(self.at.cast::<T>().add(index)) }
+    }
+}
+
+impl<'a, T> Flash<'a, [T]> {
+    /// The number of elements.
+    #[inline]
+    pub const fn len(self) -> usize {
+        self.at.len()
+    }
+
+    /// Whether there is no element.
+    #[inline]
+    pub const fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
+    /// The element at `index`, still in flash; past the end, the last one; of an
+    /// empty slice, none.
+    #[inline]
+    pub const fn get(self, index: usize) -> Option<Flash<'a, T>> {
+        if self.is_empty() {
+            return None;
+        }
+        let last = self.len() - 1;
+        let index = if index < last { index } else { last };
+        // SAFETY: `index` is below the length of the slice at `self.at`.
+        Some(unsafe { Flash::new(self.at.cast::<T>().add(index)) })
     }
 }
 
@@ -158,7 +209,7 @@ unsafe fn fetch(from: *const u8, to: *mut u8, count: usize) {
 macro_rules! flash {
     ($($(#[$meta:meta])* $vis:vis const $name:ident: $type:ty = $value:expr;)*) => {$(
         $(#[$meta])*
-        $vis const $name: $crate::Flash<$type> = {
+        $vis const $name: $crate::Flash<'static, $type> = {
             // SAFETY: the section is the linker script's for constants in flash.
             #[cfg_attr(target_arch = "avr", unsafe(link_section = ".progmem.data"))]
             static VALUE: $type = $value;

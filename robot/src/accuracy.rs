@@ -32,7 +32,7 @@ pub fn worst(robot: &Robot, index: usize, count: usize) -> TableError {
     for i in 0..count {
         let step = (i * (ALL_PHASES / count)) as u16;
         let phase = f64::from(step) / ALL_PHASES as f64;
-        let table = robot.tables.angles(gait, index, step);
+        let table = robot.tables().angles(gait, index, step);
         let float = gait.angles(phase);
         for servo in 0..4 {
             let off = (table[servo] - float[servo]).abs();

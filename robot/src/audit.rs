@@ -6,7 +6,9 @@ use lizard_kinematics::{Check, Solution, Violation};
 use crate::error::Problem;
 use crate::gait::Gait;
 use crate::servo::NAMES;
-use crate::table::{FRAMES_PER_SECOND, SAMPLES};
+use lizard_core::gait::SAMPLES;
+
+use crate::table::FRAMES_PER_SECOND;
 use crate::{Robot, accuracy};
 
 /// Evenly spaced phases that are checked besides the tables' own samples.
@@ -60,7 +62,7 @@ pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
     let mut found: Option<Audit> = None;
     let mut worst: Option<(f64, Violation)> = None;
     for phase in phases(robot, index) {
-        let angles = robot.tables.angles(gait, index, phase);
+        let angles = robot.tables().angles(gait, index, phase);
         let phase = f64::from(phase) / 65536.0;
         travels(robot, angles, phase)?;
         let solution = robot
@@ -123,7 +125,7 @@ fn exceeds(violation: Violation, earlier: Violation) -> bool {
 fn phases(robot: &Robot, index: usize) -> Vec<u16> {
     let every = |count: usize| (0..count).map(move |i| (i * (65536 / count)) as u16);
     let mut phases: Vec<u16> = every(PHASES).collect();
-    for channel in &robot.tables.gaits[index].channels {
+    for channel in &robot.tables().gaits[index].channels {
         phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
     }
     phases.sort_unstable();

@@ -3,6 +3,8 @@
 
 use std::collections::HashMap;
 
+use lizard_core::command::WORDS;
+use lizard_core::gait::{LONGEST_NAME, MOST_GAITS};
 use lizard_kinematics::Lizard;
 
 use crate::error::{Checked, Hint, Problem};
@@ -28,13 +30,6 @@ const KEYS: [&str; 12] = [
 ];
 const WAVEFORMS: [&str; 3] = ["still", "wave", "held"];
 const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
-/// What the console does itself; no gait may take these names.
-const COMMANDS: [&str; 7] = ["help", "stop", "rest", "speed", "pose", "status", "watch"];
-/// The firmware keeps names in this many bytes.
-const NAME_LENGTH: usize = 12;
-/// The console lists their names in one line of at most 192 bytes.
-const MOST: usize = 13;
-
 /// The robot that the gaits are for.
 pub(crate) struct Body {
     pub lizard: Lizard,
@@ -49,10 +44,10 @@ pub(crate) fn gaits(root: &Section, body: &Body) -> Checked<Vec<Gait>> {
     for name in &names {
         check_name(name).map_err(|problem| problem.at(section.path(name)))?;
     }
-    if names.len() > MOST {
+    if names.len() > MOST_GAITS {
         return Err(Problem::Many {
             found: names.len(),
-            most: MOST,
+            most: MOST_GAITS,
         }
         .at("gait"));
     }
@@ -87,14 +82,14 @@ fn check_name(name: &str) -> Result<(), Problem> {
             "it must be lower-case letters, digits and dashes, a letter first",
         ));
     }
-    if name.len() > NAME_LENGTH {
-        return Err(Problem::Name("it must have at most 12 characters"));
+    if name.len() > LONGEST_NAME {
+        return Err(Problem::LongName { most: LONGEST_NAME });
     }
     if name.ends_with('-') || name.contains("--") {
         return Err(Problem::Name("a dash stands for a blank between two words"));
     }
     let word = name.split('-').next().unwrap_or(name);
-    if COMMANDS.contains(&word) {
+    if WORDS.iter().any(|command| command.is(word.as_bytes())) {
         return Err(Problem::Command(word.to_string()));
     }
     Ok(())

@@ -51,8 +51,8 @@ impl Problem {
     fn is_clause(&self) -> bool {
         matches!(
             self,
-            Self::TooLong { .. }
-                | Self::Neutral(_)
+            Self::Neutral(_)
+                | Self::TooLarge
                 | Self::Stand
                 | Self::Circle(_)
                 | Self::OutOfReach { .. }
@@ -131,15 +131,24 @@ pub enum Problem {
         /// That key's value.
         other_value: f64,
     },
-    /// Lengths whose sum leaves the fixed-point range of the firmware.
-    #[error("{what} is {value} mm; the firmware's fixed point holds less than {max} mm")]
-    TooLong {
-        /// Which sum.
-        what: &'static str,
+    /// Lengths beyond all that the firmware's integers hold.
+    #[error("a length is too large for the firmware")]
+    TooLarge,
+    /// A coupler that is short beside the rest of its loop.
+    #[error(
+        "is {value} mm; beside the rest of its loop it must be at least {least:.1} mm, else 16-bit integers do not hold its angle"
+    )]
+    ShortCoupler {
         /// Its value, mm.
         value: f64,
-        /// The bound, mm.
-        max: f64,
+        /// The least, mm.
+        least: f64,
+    },
+    /// More waveforms than a byte numbers.
+    #[error("is the gait that needs one waveform too many; gaits may share {most} in all")]
+    ManyWaves {
+        /// How many there may be.
+        most: usize,
     },
     /// A pin that is not one of the board's free digital pins.
     #[error(
@@ -165,6 +174,12 @@ pub enum Problem {
     /// A gait name the console cannot take.
     #[error("is no gait name: {0}")]
     Name(&'static str),
+    /// A gait name that is too long for a line of the console.
+    #[error("is no gait name: it must have at most {most} characters")]
+    LongName {
+        /// How many it may have.
+        most: usize,
+    },
     /// A gait name that is a console command.
     #[error("is no gait name: \"{0}\" is a command of the console")]
     Command(String),
@@ -246,7 +261,7 @@ pub enum Problem {
         /// A1 to A4.
         servo: &'static str,
     },
-    /// More gaits than the firmware's flash is meant for.
+    /// More gaits than a byte numbers.
     #[error("holds {found} gaits; the firmware takes at most {most}")]
     Many {
         /// How many there are.

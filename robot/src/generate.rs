@@ -3,139 +3,135 @@
 
 use std::fmt::{self, Display, Write};
 
-use lizard_kinematics::{FiveBar, Lizard, Slider};
+use lizard_core::gait::SAMPLES;
 
-use crate::Robot;
-use crate::servo::Servo;
-use crate::table::{FRAMES_PER_SECOND, SAMPLES, STEPS_PER_DEGREE};
-
-/// Steps of a length in one mm.
-const STEPS_PER_MM: f64 = 256.0;
-/// CPU cycles in one us.
-const CYCLES_PER_US: f64 = 16.0;
-/// 1.0 in Q15 and Q14.
-const ONE_Q15: f64 = 32768.0;
-const ONE_Q14: f64 = 16384.0;
-/// What rounding may add to a number that robot.toml gives exactly.
-const SLACK: f64 = 1e-6;
+use crate::firmware::{Bars, Firmware, Loop};
 
 /// The source of a robot's numbers, headed by their hash.
-pub(crate) fn source(robot: &Robot) -> String {
-    let body = body(robot);
-    let hash = crc32fast::hash(body.as_bytes());
+pub(crate) fn source(firmware: &Firmware) -> String {
     format!(
-        "// Written by build.rs from robot.toml.\n\n/// CRC-32 of everything below.\npub const TABLES_HASH: u32 = {hash:#010x};\n{body}"
+        "// Written by build.rs from robot.toml.\n\n/// CRC-32 of everything below.\npub const HASH: u32 = {:#010x};\n{}",
+        firmware.hash,
+        Body(firmware)
     )
 }
 
 /// The hash that the source carries.
-pub(crate) fn hash(robot: &Robot) -> u32 {
-    crc32fast::hash(body(robot).as_bytes())
+pub(crate) fn hash(firmware: &Firmware) -> u32 {
+    crc32fast::hash(Body(firmware).to_string().as_bytes())
 }
 
-fn body(robot: &Robot) -> String {
-    Body(robot).to_string()
-}
-
-struct Body<'a>(&'a Robot);
+struct Body<'a>(&'a Firmware);
 
 impl Display for Body<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Robot {
-            lizard,
-            servos,
-            limits,
-            pace,
-            tables,
-            ..
-        } = self.0;
-        f.write_str("\n/// The servos A1, A2, A3, A4.\npub const SERVOS: [Servo; 4] = [\n")?;
-        for servo in servos {
-            writeln!(f, "    {},", servo_literal(servo))?;
-        }
-        f.write_str("];\n")?;
+        self.constants(f)?;
+        f.write_str("\nlizard_avr::flash! {\n")?;
+        self.coupler_tables(f)?;
+        self.gaits(f)?;
+        self.waves(f)?;
+        f.write_str("}\n")
+    }
+}
+
+impl Body<'_> {
+    fn constants(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let robot = self.0;
+        let [head, tail] = &robot.ends;
+        let [left, right] = &robot.sides;
+        let tail_tables = if tail.couplers == head.couplers {
+            "HEAD"
+        } else {
+            "TAIL"
+        };
+        let neutral = robot.neutral.map(|angle| format!("{angle:?}")).join(", ");
         let constants = [
             (
-                "The head's loop, A1 on its left.",
-                "HEAD: FiveBar",
-                five_bar(&lizard.head(), "HEAD_SLOPE"),
+                "Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.",
+                "PINS: [u8; 4]",
+                format!("{:?}", robot.pins),
             ),
             (
-                "The tail's loop in tail-local angles, A4 on its left.",
-                "TAIL: FiveBar",
-                five_bar(
-                    &lizard.tail(),
-                    slopes(lizard).last().map_or("HEAD_SLOPE", |(name, _)| name),
-                ),
+                "The servos' angles in the neutral pose.",
+                "NEUTRAL: [Angle; 4]",
+                format!("[{neutral}]"),
+            ),
+            (
+                "The servos' pulses and travel.",
+                "CALIBRATION: [Calibration; 4]",
+                format!("{:?}", robot.calibration),
+            ),
+            (
+                "The head's loop, A1 on its left.",
+                "HEAD: FiveBar<'static>",
+                five_bar(head, "HEAD"),
+            ),
+            (
+                "The tail's loop in its own frame, A4 on its left.",
+                "TAIL: FiveBar<'static>",
+                five_bar(tail, tail_tables),
             ),
             (
                 "The slider between A1 and A4.",
                 "LEFT: Slider",
-                slider(robot_stroke(self.0), &lizard.left()),
+                format!("{left:?}"),
             ),
             (
                 "The slider between A2 and A3.",
                 "RIGHT: Slider",
-                slider(robot_stroke(self.0), &lizard.right()),
+                format!("{right:?}"),
             ),
             (
-                "Smallest margins, Q15, rounded up.",
+                "Smallest margins, rounded up.",
                 "LIMITS: Limits",
-                format!(
-                    "Limits {{ type2: {}, type1: {}, leg: {} }}",
-                    q15(limits.type2),
-                    q15(limits.type1),
-                    q15(limits.leg)
-                ),
+                format!("{:?}", robot.limits),
             ),
             (
-                "Fastest turn of a blend or a pose, 1/65536 turn in a frame, rounded down.",
-                "SLEW: u16",
-                floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND).to_string(),
-            ),
-            (
-                "How many gaits there are; the first is `stand`.",
-                "GAIT_COUNT: usize",
-                tables.gaits.len().to_string(),
-            ),
-            (
-                "How many waveforms there are.",
-                "WAVE_COUNT: usize",
-                tables.waves.len().to_string(),
+                "Fastest turn in a point-to-point move, 1/65536 turn in a frame, rounded down.",
+                "SLEW: Slew",
+                format!("Slew::new({})", robot.slew.per_frame),
             ),
         ];
         for (doc, name, value) in constants {
             writeln!(f, "\n/// {doc}\npub const {name} = {value};")?;
         }
-        let slopes = slopes(lizard);
-        f.write_str("\nlizard_avr::flash! {\n")?;
-        for (name, coupler) in &slopes {
-            writeln!(
-                f,
-                "    const {name}: [u16; crate::slope::ENTRIES] = crate::slope::table({coupler});\n"
-            )?;
+        Ok(())
+    }
+
+    fn coupler_tables(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [head, tail] = &self.0.ends;
+        coupler_tables(f, "HEAD", &head.couplers)?;
+        if tail.couplers == head.couplers {
+            return Ok(());
         }
-        f.write_str("    /// The gaits in the order of robot.toml.\n")?;
-        f.write_str("    pub const GAITS: [Gait; GAIT_COUNT] = [\n")?;
+        coupler_tables(f, "TAIL", &tail.couplers)
+    }
+
+    fn gaits(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let tables = &self.0.tables;
+        writeln!(f, "    /// The gaits in the order of robot.toml.")?;
+        writeln!(f, "    pub const GAITS: [Gait; {}] = [", tables.gaits.len())?;
         for gait in &tables.gaits {
-            write!(
-                f,
-                "        Gait {{ name: *b\"{:<12}\", increment: {}, channels: [",
-                gait.name.replace('-', " "),
-                gait.increment
-            )?;
-            for c in gait.channels {
-                write!(
-                    f,
-                    "Channel {{ wave: {}, offset: {:#06x}, gain: {} }}, ",
-                    c.wave, c.offset, c.gain
-                )?;
-            }
-            f.write_str("] },\n")?;
+            writeln!(f, "        {gait:?},")?;
         }
-        f.write_str("    ];\n\n    /// Waveforms, 1/65536 turn at gain 1.\n")?;
-        writeln!(f, "    pub const WAVES: [[i16; {SAMPLES}]; WAVE_COUNT] = [")?;
-        for wave in &tables.waves {
+        writeln!(f, "    ];\n\n    /// Their names.")?;
+        let names = String::from_utf8_lossy(&tables.names);
+        writeln!(
+            f,
+            "    pub const NAMES: [u8; {}] = *b{names:?};",
+            tables.names.len()
+        )
+    }
+
+    fn waves(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let waves = &self.0.tables.waves;
+        writeln!(f, "\n    /// Waveforms, 1/65536 turn at gain 1.")?;
+        writeln!(
+            f,
+            "    pub const WAVES: [[i16; {SAMPLES}]; {}] = [",
+            waves.len()
+        )?;
+        for wave in waves {
             f.write_str("        [\n")?;
             for row in wave.chunks(16) {
                 f.write_str("           ")?;
@@ -146,71 +142,47 @@ impl Display for Body<'_> {
             }
             f.write_str("        ],\n")?;
         }
-        f.write_str("    ];\n}\n")
+        f.write_str("    ];\n")
     }
 }
 
-fn servo_literal(servo: &Servo) -> String {
-    let (min, max) = servo.travel();
+fn five_bar(bars: &Loop, tables: &str) -> String {
+    let Bars { left, right, .. } = bars.couplers;
+    let some = |there: bool, name: &str| {
+        if there {
+            format!("Some({tables}_{name})")
+        } else {
+            "None".to_string()
+        }
+    };
+    let unequal = left != right;
     format!(
-        "Servo {{ pin: {}, neutral: {}, neutral_cycles: {}, gain: {}, min_sweep: {}, max_sweep: {} }}",
-        servo.pin,
-        (servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16,
-        (servo.neutral_us * CYCLES_PER_US).round(),
-        (servo.us_per_degree * CYCLES_PER_US / STEPS_PER_DEGREE * ONE_Q14).round(),
-        ceil(min * STEPS_PER_DEGREE),
-        floor(max * STEPS_PER_DEGREE),
+        "FiveBar::new({}, {}, {}, Couplers::new({left}, {right}, couplers::Tables {{ rise: {tables}_RISE, stretched: {}, folded: {}, skew: {} }}))",
+        bars.base,
+        bars.left,
+        bars.right,
+        some(bars.couplers.near_stretched, "STRETCHED"),
+        some(unequal, "FOLDED"),
+        some(unequal, "SKEW"),
     )
 }
 
-fn five_bar(bars: &FiveBar, slope: &str) -> String {
-    let coupler = length(bars.coupler_left);
-    format!(
-        "FiveBar::new({}, {}, {}, Slope::new({coupler}, {slope}))",
-        length(bars.base),
-        length(bars.crank_left),
-        length(bars.crank_right),
-    )
-}
-
-/// The tables of coupler slopes: one serves both loops where the couplers of
-/// head and tail are alike.
-fn slopes(lizard: &Lizard) -> Vec<(&'static str, i64)> {
-    let [head, tail] = [lizard.head(), lizard.tail()].map(|bars| length(bars.coupler_left));
-    let mut slopes = vec![("HEAD_SLOPE", head), ("TAIL_SLOPE", tail)];
-    slopes.dedup_by_key(|(_, coupler)| *coupler);
-    slopes
-}
-
-fn robot_stroke(robot: &Robot) -> (f64, f64) {
-    (robot.limits.stroke_min, robot.limits.stroke_max)
-}
-
-fn slider((min, max): (f64, f64), slider: &Slider) -> String {
-    format!(
-        "Slider {{ offset: {}, base: {}, front: {}, rear: {}, nominal: {}, min: {}, max: {} }}",
-        length(slider.offset),
-        length(slider.base),
-        length(slider.front),
-        length(slider.rear),
-        length(slider.nominal),
-        ceil((slider.nominal + min) * STEPS_PER_MM),
-        floor((slider.nominal + max) * STEPS_PER_MM),
-    )
-}
-
-fn length(mm: f64) -> i64 {
-    (mm * STEPS_PER_MM).round() as i64
-}
-
-fn q15(margin: f64) -> i64 {
-    ceil(margin * ONE_Q15)
-}
-
-fn ceil(value: f64) -> i64 {
-    (value - SLACK).ceil() as i64
-}
-
-fn floor(value: f64) -> i64 {
-    (value + SLACK).floor() as i64
+/// The tables of a pair of couplers; the compiler computes them.
+fn coupler_tables(f: &mut fmt::Formatter, end: &str, bars: &Bars) -> fmt::Result {
+    let unequal = bars.left != bars.right;
+    for (name, function, there) in [
+        ("RISE", "rise", true),
+        ("STRETCHED", "stretched", bars.near_stretched),
+        ("FOLDED", "folded", unequal),
+        ("SKEW", "skew", unequal),
+    ] {
+        if there {
+            writeln!(
+                f,
+                "    const {end}_{name}: Table = couplers::{function}({}, {});",
+                bars.left, bars.right
+            )?;
+        }
+    }
+    f.write_char('\n')
 }

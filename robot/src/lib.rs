@@ -13,6 +13,7 @@ pub mod accuracy;
 mod audit;
 mod define;
 mod error;
+mod firmware;
 mod friction;
 mod gait;
 mod generate;
@@ -33,18 +34,19 @@ use toml::de::DeTable;
 
 pub use audit::{Audit, Least, Peak};
 pub use error::{Error, Hint, Problem};
+pub use firmware::Firmware;
 pub use gait::{Gait, Stride};
 pub use ground::{Feet, Ground, Travel};
 pub use path::{Loop, Path, PathLeg};
 pub use report::{Report, Row};
 pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
 pub use servo::Servo;
-pub use table::{
-    Channel, FRAMES_PER_SECOND, SAMPLES, STEPS_PER_DEGREE, TableGait, Tables, interpolate,
-};
+pub use table::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, Tables};
 pub use waveform::{Harmonic, Waveform};
 
 use error::{Checked, Fault};
+use lizard_core::gait::MOST_WAVES;
+use table::Unfit;
 use reader::Section;
 
 /// How fast servos may turn.
@@ -71,8 +73,8 @@ pub struct Robot {
     pub ground: Ground,
     /// Its gaits in the order of the file; the first is `stand`.
     pub gaits: Vec<Gait>,
-    /// The gaits as the firmware holds them.
-    pub tables: Tables,
+    /// The robot as the firmware holds it.
+    pub firmware: Firmware,
     /// What the check of each gait found.
     pub audits: Vec<Audit>,
 }
@@ -136,18 +138,23 @@ impl Robot {
         let lizard = Lizard { links, leg };
         let servos = measure::servos(&root)?;
         let (limits, pace) = measure::limits(&root)?;
-        measure::strokes(&lizard, &limits)?;
+        measure::fits(&lizard, &limits)?;
         let ground = measure::ground(&root, feet)?;
         let neutral = servos.map(|servo| servo.neutral);
         stands(&lizard, &limits, neutral)?;
         let gaits = define::gaits(&root, &define::Body { lizard, neutral })?;
         let key = |index: usize, gaits: &[Gait]| format!("gait.{}", gaits[index].name);
-        let tables = Tables::new(&gaits).map_err(|(gait, servo)| {
-            Problem::HalfTurn {
-                servo: servo::NAMES[servo],
+        let tables = Tables::new(&gaits).map_err(|(gait, unfit)| {
+            match unfit {
+                Unfit::HalfTurn(servo) => Problem::HalfTurn {
+                    servo: servo::NAMES[servo],
+                },
+                Unfit::Waves => Problem::ManyWaves { most: MOST_WAVES },
             }
             .at(key(gait, &gaits))
         })?;
+        let firmware = Firmware::new(&lizard, &servos, &limits, &pace, tables)
+            .ok_or_else(|| Problem::TooLarge.at("links"))?;
         let mut robot = Self {
             lizard,
             servos,
@@ -155,7 +162,7 @@ impl Robot {
             pace,
             ground,
             gaits,
-            tables,
+            firmware,
             audits: Vec::new(),
         };
         robot.audits = (0..robot.gaits.len())
@@ -202,6 +209,11 @@ impl Robot {
         self.ground.travel((0..=STEPS).map(at))
     }
 
+    /// The gaits as the firmware holds them.
+    pub fn tables(&self) -> &Tables {
+        self.firmware.tables()
+    }
+
     /// Every gait's figures, as a table.
     pub fn report(&self) -> Report {
         Report::of(self)
@@ -209,12 +221,12 @@ impl Robot {
 
     /// The Rust source that the firmware includes.
     pub fn source(&self) -> String {
-        generate::source(self)
+        generate::source(&self.firmware)
     }
 
     /// CRC-32 of the firmware's numbers, as its banner shows it.
     pub fn tables_hash(&self) -> u32 {
-        generate::hash(self)
+        self.firmware.hash()
     }
 }
 

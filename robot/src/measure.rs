@@ -2,26 +2,23 @@
 
 use lizard_kinematics::{Leg, Limits, Links, Lizard};
 
+use lizard_core::five_bar::SHORTEST_COUPLER;
+
 use crate::error::{Checked, Problem};
+use crate::firmware::loop_scale;
 use crate::ground::Ground;
 use crate::reader::Section;
 use crate::servo::{NAMES, Servo};
 use crate::{Feet, Pace};
 
-/// The firmware holds lengths of a loop in i16 steps of 1/256 mm.
-const LOOP_REACH: f64 = 127.0;
-/// It holds lengths of a side in u16 steps of 1/256 mm.
-const SIDE_REACH: f64 = 255.0;
-/// Shorter bars than this are no robot, and coarse in steps of 1/256 mm.
-const SHORTEST: f64 = 5.0;
+/// Lengths of a robot that hobby servos move, mm.
+const LENGTHS: (f64, f64) = (1.0, 1000.0);
 /// Widths that a hobby servo can bear, us; within a 4 ms slot.
 const WIDTHS: (f64, f64) = (500.0, 2500.0);
 /// 22 us per degree is the most that the firmware's i16 gain holds.
 const GAINS: (f64, f64) = (1.0, 22.0);
 
-/// The firmware divides by a coupler in an i16 of 2^19 mm.
-const SHORTEST_COUPLER: f64 = 17.0;
-/// Slower than this and a stroke outlasts the firmware's count of its frames.
+/// Slower than this and a move outlasts the firmware's count of its frames.
 const SLOWEST: f64 = 10.0;
 
 const LINKS: [&str; 20] = [
@@ -34,50 +31,15 @@ pub(crate) fn links(root: &Section) -> Checked<Links> {
     let section = root.section("links", &LINKS)?;
     let mut lengths = [0.0; 20];
     for (length, name) in lengths.iter_mut().zip(LINKS) {
-        let shortest = match name {
-            "l2" | "l3" | "l7" | "l8" => SHORTEST_COUPLER,
-            _ => SHORTEST,
-        };
-        *length = section.number(name, shortest, SIDE_REACH, "mm")?;
+        *length = section.number(name, LENGTHS.0, LENGTHS.1, "mm")?;
     }
     let l = Links::from(lengths);
-    let couplers = "the two couplers of a loop are equally long";
-    equal("links.l3", l.l3, "links.l2", l.l2, couplers)?;
-    equal("links.l8", l.l8, "links.l7", l.l7, couplers)?;
     equal(
         "links.l15",
         l.l15,
         "links.l10",
         l.l10,
         "the chassis is a rectangle",
-    )?;
-    short(
-        "links.l0",
-        "the head's l0 + l1 + l4",
-        l.l0 + l.l1 + l.l4,
-        LOOP_REACH,
-    )?;
-    short(
-        "links.l5",
-        "the tail's l5 + l6 + l9",
-        l.l5 + l.l6 + l.l9,
-        LOOP_REACH,
-    )?;
-    short("links.l2", "the head's coupler", l.l2, LOOP_REACH)?;
-    short("links.l7", "the tail's coupler", l.l7, LOOP_REACH)?;
-    // A shaft that stands aside of the other is farther from it.
-    let aside = (l.l5 - l.l0).abs() / 2.0;
-    short(
-        "links.l10",
-        "the left side's l10 + l11 + l14 + |l5 - l0|/2",
-        l.l10 + l.l11 + l.l14 + aside,
-        SIDE_REACH,
-    )?;
-    short(
-        "links.l15",
-        "the right side's l15 + l16 + l19 + |l5 - l0|/2",
-        l.l15 + l.l16 + l.l19 + aside,
-        SIDE_REACH,
     )?;
     Ok(l)
 }
@@ -94,7 +56,7 @@ pub(crate) fn leg(root: &Section) -> Checked<(Leg, Feet)> {
         "mount",
     ];
     let section = root.section("leg", &keys)?;
-    let bar = |name| section.number(name, SHORTEST, SIDE_REACH, "mm");
+    let bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
     let leg = Leg {
         ground: bar("ground")?,
         crank: bar("crank")?,
@@ -225,8 +187,8 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
-        stroke_min: section.number("stroke_min", -SIDE_REACH, SIDE_REACH, "mm")?,
-        stroke_max: section.number("stroke_max", -SIDE_REACH, SIDE_REACH, "mm")?,
+        stroke_min: section.number("stroke_min", -LENGTHS.1, LENGTHS.1, "mm")?,
+        stroke_max: section.number("stroke_max", -LENGTHS.1, LENGTHS.1, "mm")?,
     };
     less(
         &section,
@@ -245,21 +207,34 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
     ))
 }
 
-/// The ends of the stroke must be lengths that a slider can have and that the
-/// firmware holds.
-pub(crate) fn strokes(lizard: &Lizard, limits: &Limits) -> Checked<()> {
-    let (left, right) = (lizard.left().nominal, lizard.right().nominal);
-    let (min, max) = (-left.min(right), SIDE_REACH - left.max(right));
+/// What the firmware's 16-bit integers ask of the lengths: couplers that are not
+/// short beside the rest of their loop, and a stroke that leaves the slider a
+/// length.
+pub(crate) fn fits(lizard: &Lizard, limits: &Limits) -> Checked<()> {
+    for (bars, names) in [
+        (lizard.head(), ["links.l2", "links.l3"]),
+        (lizard.tail(), ["links.l7", "links.l8"]),
+    ] {
+        let scale = loop_scale(&bars).ok_or_else(|| Problem::TooLarge.at(names[0]))?;
+        let least = f64::from(SHORTEST_COUPLER) / f64::from(1u32 << scale.bits);
+        for (key, value) in names.into_iter().zip([bars.coupler_left, bars.coupler_right]) {
+            if value < least {
+                return Err(Problem::ShortCoupler { value, least }.at(key));
+            }
+        }
+    }
+    let shortest = lizard.left().nominal.min(lizard.right().nominal);
     for (key, value) in [
         ("limits.stroke_min", limits.stroke_min),
         ("limits.stroke_max", limits.stroke_max),
     ] {
+        let (min, max) = (-shortest, LENGTHS.1);
         if !(min..=max).contains(&value) {
             return Err(Problem::Range {
                 value,
                 min,
                 max,
-                unit: "mm, so that the slider stays within 0 to 255 mm",
+                unit: "mm, so that the slider keeps a length",
             }
             .at(key));
         }
@@ -292,14 +267,6 @@ fn equal(
             why,
         }
         .at(key))
-    }
-}
-
-fn short(key: &str, what: &'static str, value: f64, max: f64) -> Checked<()> {
-    if value < max {
-        Ok(())
-    } else {
-        Err(Problem::TooLong { what, value, max }.at(key))
     }
 }
 

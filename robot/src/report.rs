@@ -7,7 +7,7 @@ use crate::accuracy::{self, TableError};
 use crate::audit::Audit;
 use crate::ground::Travel;
 use crate::servo::NAMES;
-use crate::table::SAMPLES;
+use lizard_core::gait::SAMPLES;
 use crate::{Gait, Robot, accuracy::ALL_PHASES};
 
 /// One gait's figures.
@@ -38,10 +38,10 @@ pub struct Report {
     pub flash: usize,
 }
 
-/// Bytes of a waveform and of a gait in flash: 128 samples of two; a name of
-/// 12, a step of 4, and four channels of 5 (padded to 6 on the host, not there).
+/// Bytes of a waveform and of a gait in flash: 128 samples of two; the place of its
+/// name 3, a step of 4, and four channels of 5 (padded to 6 on the host, not there).
 const WAVE_BYTES: usize = 2 * SAMPLES;
-const GAIT_BYTES: usize = 12 + 4 + 4 * 5;
+const GAIT_BYTES: usize = 3 + 4 + 4 * 5;
 
 impl Report {
     /// Measures the tables and predicts the gaits of a robot; takes a moment.
@@ -53,12 +53,12 @@ impl Report {
             error: accuracy::worst(robot, index, ALL_PHASES),
             travel: robot.predict(gait),
         };
-        let (waves, gaits) = (robot.tables.waves.len(), robot.gaits.len());
+        let (waves, gaits) = (robot.tables().waves.len(), robot.gaits.len());
         Self {
             rows: robot.gaits.iter().enumerate().map(row).collect(),
             hash: robot.tables_hash(),
             waves,
-            flash: waves * WAVE_BYTES + gaits * GAIT_BYTES,
+            flash: waves * WAVE_BYTES + gaits * GAIT_BYTES + robot.tables().names.len(),
         }
     }
 }

@@ -1,88 +1,55 @@
 //! The gaits as the firmware holds them: waveforms of 128 samples that several
 //! servos share, each servo with an offset and a gain.
 //!
-//! Integers only, in the firmware's own arithmetic: an angle is an i16 of
-//! 1/65536 turn, a gain an i16 of 1/16384, a phase a u16 of 1/65536 cycle. The
-//! firmware must give the same bits; a test compares all phases of all gaits.
+//! What a table means, and how it is read between its samples, is the core's:
+//! [`lizard_core::gait`].
+
+use lizard_avr::Flash;
+use lizard_core::gait::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
+use lizard_core::units::{CYCLE, FRAMES_PER_SECOND as FRAMES};
 
 use crate::gait::{Gait, Stride};
 use crate::servo::FORWARD;
 use crate::waveform::{Waveform, canonical};
 
-/// Samples of a waveform.
-pub const SAMPLES: usize = 128;
 /// Steps of an angle in one degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 /// Frames of 20 ms in a second.
-pub const FRAMES_PER_SECOND: f64 = 50.0;
+pub const FRAMES_PER_SECOND: f64 = FRAMES as f64;
 /// 1.0 as a gain.
 const ONE_Q14: f64 = 16384.0;
-/// Steps of the firmware's phase in a cycle.
-const CYCLE: f64 = 16_777_216.0;
 /// Two waveforms that differ by less than this (deg) share a table: a third of
 /// an angle step.
 const SAME: f64 = 0.002;
-
-/// One servo's part in a gait.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Channel {
-    /// Index of its waveform.
-    pub wave: u8,
-    /// How far it reads ahead of the gait's phase, 1/65536 cycle.
-    pub offset: u16,
-    /// Factor, Q14, counter-clockwise positive.
-    pub gain: i16,
-}
-
-/// A gait in fixed point.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct TableGait {
-    /// Its name.
-    pub name: String,
-    /// Advance of the phase in one frame, 1/2^24 cycle; negative backwards.
-    pub increment: i32,
-    /// The servos' parts.
-    pub channels: [Channel; 4],
-}
 
 /// Everything the firmware needs to walk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Tables {
     /// Waveforms, angle steps at gain 1.
-    pub waves: Vec<[i16; SAMPLES]>,
+    pub waves: Vec<Wave>,
     /// Gaits in the order of the file.
     pub gaits: Vec<TableGait>,
+    /// Their names one after the other, words with a blank in between.
+    pub names: Vec<u8>,
 }
 
-/// A waveform's value between its samples: a straight line, rounded to nearest,
-/// halves up.
-pub fn interpolate(wave: &[i16; SAMPLES], phase: u16) -> i16 {
-    let index = usize::from(phase >> 9);
-    let fraction = i32::from((phase >> 1) & 0xff);
-    let here = i32::from(wave[index]);
-    let next = i32::from(wave[(index + 1) % SAMPLES]);
-    let rise = (next - here) * fraction;
-    (here + ((rise + 128) >> 8)) as i16
-}
-
-impl Channel {
-    /// The servo's sweep at a phase, angle steps: the rule the firmware keeps.
-    pub fn sweep(&self, waves: &[[i16; SAMPLES]], phase: u16) -> i16 {
-        let value = interpolate(
-            &waves[usize::from(self.wave)],
-            phase.wrapping_add(self.offset),
-        );
-        ((i32::from(value) * i32::from(self.gain) + (1 << 13)) >> 14) as i16
-    }
+/// Why a gait has no table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unfit {
+    /// The sweep of a servo (by its index) is half a turn or more.
+    HalfTurn(usize),
+    /// The gaits so far share as many waveforms as there may be.
+    Waves,
 }
 
 impl Tables {
     /// The four sweeps of a gait (by its index) at a phase, angle steps,
     /// counter-clockwise positive.
     pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
-        self.gaits[gait]
-            .channels
-            .map(|channel| channel.sweep(&self.waves, phase))
+        self.gaits[gait].channels.map(|channel| {
+            let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
+            channel.sweep(wave, phase).0
+        })
     }
 
     /// The four servo angles of a gait at a phase, deg, chassis frame.
@@ -102,23 +69,27 @@ impl Tables {
         })
     }
 
-    /// Builds the tables, or names the first gait (by index) and servo whose
-    /// sweep is half a turn or more, which the fixed point does not hold.
-    pub(crate) fn new(gaits: &[Gait]) -> Result<Self, (usize, usize)> {
-        let mut shelf = Shelf::default();
+    /// Builds the tables, or names the first gait (by index) that the fixed point
+    /// does not hold.
+    pub(crate) fn new(gaits: &[Gait]) -> Result<Self, (usize, Unfit)> {
+        let mut bank = Bank::default();
         let mut parts = Vec::new();
         for (g, gait) in gaits.iter().enumerate() {
             for (s, stride) in gait.strides.iter().enumerate() {
-                parts.push(shelf.place(stride, FORWARD[s]).ok_or((g, s))?);
+                let part = bank.find(stride, FORWARD[s]);
+                parts.push(part.ok_or((g, Unfit::HalfTurn(s)))?);
+            }
+            if bank.samples.len() > MOST_WAVES {
+                return Err((g, Unfit::Waves));
             }
         }
-        let largest = shelf.largest(&parts);
-        if shelf.samples.is_empty() {
+        let largest = bank.largest(&parts);
+        if bank.samples.is_empty() {
             // A robot that only stands still reads one table, of zeros.
-            shelf.samples.push([0.0; SAMPLES]);
+            bank.samples.push([0.0; SAMPLES]);
         }
         let waves =
-            shelf
+            bank
                 .samples
                 .iter()
                 .zip(largest.iter().chain([&1.0]))
@@ -134,28 +105,32 @@ impl Tables {
                 gain: (gain * ONE_Q14).round() as i16,
             }
         };
-        let gaits = gaits
-            .iter()
-            .zip(parts.chunks(4))
-            .map(|(gait, parts)| TableGait {
-                name: gait.name.clone(),
+        let mut names = Vec::new();
+        let mut table = Vec::new();
+        for (gait, parts) in gaits.iter().zip(parts.chunks(4)) {
+            table.push(TableGait {
+                name_start: names.len() as u16,
+                name_length: gait.name.len() as u8,
                 increment: increment(gait),
                 channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel),
             });
+            names.extend(gait.name.replace('-', " ").bytes());
+        }
         Ok(Self {
             waves: waves.collect(),
-            gaits: gaits.collect(),
+            gaits: table,
+            names,
         })
     }
 }
 
 /// Advance of the phase in one frame, 1/2^24 cycle.
 fn increment(gait: &Gait) -> i32 {
-    let step = (CYCLE / (FRAMES_PER_SECOND * gait.period)).round() as i32;
+    let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
     if gait.reversed { -step } else { step }
 }
 
-/// A stride as amplitude times a waveform of the shelf.
+/// A stride as amplitude times a waveform of the bank.
 struct Part {
     wave: usize,
     /// Cycles by which it reads ahead.
@@ -166,14 +141,14 @@ struct Part {
 
 /// The waveforms so far, each scaled to a largest value of 1.
 #[derive(Default)]
-struct Shelf {
+struct Bank {
     samples: Vec<[f64; SAMPLES]>,
 }
 
-impl Shelf {
+impl Bank {
     /// Finds or adds the waveform of a stride; `forward` is the sense in which
     /// the servo moves its foot forward. None if it sweeps half a turn.
-    fn place(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
+    fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
         let (waveform, shift, sign) = canonical(&stride.waveform);
         let samples: [f64; SAMPLES] =
             std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));

@@ -23,21 +23,76 @@ mod shared;
 pub mod sleep;
 
 use avr_device::atmega328p::Peripherals;
+use lizard_core::console::Counters;
+use lizard_core::pose::Pulses;
+use lizard_core::step::Board;
 
-/// Starts the serial port, the LED, the clock and, once widths are submitted,
-/// the pulses; then lets interrupts in. To be called once, first thing in main.
-///
-/// The first tick comes 4 ms later. All servo pins are low until the first
-/// [`pulses::submit`].
-pub fn start() {
-    // SAFETY: nothing has run before this but the boot loader; each peripheral
-    // goes to the one module that owns it.
-    let board = unsafe { Peripherals::steal() };
-    led::start();
-    sleep::start(board.CPU);
-    serial::start(board.USART0);
-    pulses::start(board.TC1);
-    // SAFETY: every interrupt that is enabled above has its handler, and there
-    // is no critical section around this call to be broken.
-    unsafe { avr_device::interrupt::enable() };
+/// The board, started.
+pub struct Uno {
+    writer: serial::Writer,
+}
+
+impl Uno {
+    /// Starts the serial port, the LED, the clock and, once widths are submitted,
+    /// the pulses; then lets interrupts in. To be called once, first thing in main.
+    ///
+    /// The first tick comes 4 ms later. All servo pins are low until the first
+    /// [`Board::submit`].
+    pub fn start() -> Self {
+        // SAFETY: nothing has run before this but the boot loader; each peripheral
+        // goes to the one module that owns it.
+        let board = unsafe { Peripherals::steal() };
+        led::start();
+        sleep::start(board.CPU);
+        serial::start(board.USART0);
+        pulses::start(board.TC1);
+        // SAFETY: every interrupt that is enabled above has its handler, and there
+        // is no critical section around this call to be broken.
+        unsafe { avr_device::interrupt::enable() };
+        Self {
+            writer: serial::Writer,
+        }
+    }
+}
+
+impl Board for Uno {
+    type Writer = serial::Writer;
+
+    #[inline(always)]
+    fn ticks(&self) -> u8 {
+        pulses::ticks()
+    }
+
+    #[inline(always)]
+    fn submit(&mut self, pulses: Pulses) {
+        pulses::submit(pulses);
+    }
+
+    #[inline(always)]
+    fn set_led(&mut self, on: bool) {
+        led::set(on);
+    }
+
+    #[inline(always)]
+    fn room(&self) -> u8 {
+        serial::room()
+    }
+
+    #[inline(always)]
+    fn writer(&mut self) -> &mut serial::Writer {
+        &mut self.writer
+    }
+
+    #[inline(always)]
+    fn receive(&mut self) -> Option<u8> {
+        serial::read()
+    }
+
+    #[inline(always)]
+    fn counters(&self) -> Counters {
+        Counters {
+            late: pulses::late(),
+            rx_lost: serial::lost(),
+        }
+    }
 }

@@ -40,9 +40,10 @@ use core::ops::RangeInclusive;
 use core::ptr::with_exposed_provenance_mut;
 
 use avr_device::atmega328p::TC1;
-use lizard::robot::SERVOS;
+use lizard_core::pose::Pulses;
 
 use super::shared::{Byte, Counter, Word};
+use crate::robot::PINS as NUMBERS;
 
 /// Cycles from a compare match to the moment from which its edge follows at a
 /// fixed distance. At most 255, because the wait is counted in a byte.
@@ -108,10 +109,10 @@ fn port(address: u8) -> *mut u8 {
 
 /// The pins of A1 to A4, by slot.
 static PINS: [Pin; 4] = [
-    Pin::arduino(SERVOS[0].pin),
-    Pin::arduino(SERVOS[1].pin),
-    Pin::arduino(SERVOS[2].pin),
-    Pin::arduino(SERVOS[3].pin),
+    Pin::arduino(NUMBERS[0]),
+    Pin::arduino(NUMBERS[1]),
+    Pin::arduino(NUMBERS[2]),
+    Pin::arduino(NUMBERS[3]),
 ];
 
 /// Two sets of widths: the one that plays and the one that main fills.
@@ -168,12 +169,13 @@ pub fn start(timer: TC1) {
 /// They are taken over together before slot 0 opens; a second call before that
 /// replaces the first. If none comes, the last ones repeat. A width of 0, and
 /// any that a slot has no room for, gives no pulse.
-pub fn submit(widths: [u16; 4]) {
+pub fn submit(pulses: Pulses) {
     // Take back what has not been played. From here to the end the handler
     // leaves PLAYING alone, so the frame that is filled cannot start to play.
     FRESH.set(0);
     let frame = &FRAMES[usize::from(PLAYING.get() & 1 ^ 1)];
-    for (slot, width) in frame.iter().zip(widths) {
+    for (slot, width) in frame.iter().zip(pulses.0) {
+        let width = width.0;
         slot.set(if WIDTHS.contains(&width) { width } else { 0 });
     }
     FRESH.set(1);

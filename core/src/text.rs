@@ -1,4 +1,4 @@
-//! Every sentence that the robot says, kept in flash.
+//! Every sentence that the robot prints, kept in flash.
 //!
 //! A string literal of an AVR program is copied to its 2 KiB of RAM at start.
 //! The sentences here stay in flash as one run of bytes and are fetched byte
@@ -102,6 +102,11 @@ impl Text {
             out.write_char(char::from(BYTES.at(at).load() & 0x7f))?;
         }
         Ok(())
+    }
+
+    /// Its length in bytes.
+    pub fn len(self) -> u8 {
+        self.place().len() as u8
     }
 
     /// True if the sentence is just this word.

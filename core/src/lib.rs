@@ -1,9 +1,9 @@
-//! The portable core of the robotic lizard's firmware.
+//! The core of a robotic lizard's firmware, for any such robot and any board.
 //!
 //! Four hobby servos drive two five-bar linkages; four dragging feet follow
 //! them. A line of text asks for a gait or a pose; fifty times a second the
-//! core turns that wish into four pulse widths that a servo can follow and
-//! that no linkage of the robot can be broken by.
+//! core turns what was asked for into four pulse widths that a servo can follow
+//! and that no linkage of the robot can be broken by.
 //!
 //! Values move one way, each stage a plain value or struct that knows nothing
 //! of the next:
@@ -14,28 +14,36 @@
 //!
 //! Everything here is integer arithmetic and runs unchanged on the
 //! microcontroller and on the host, where the tests compare it with floating
-//! point. Registers, interrupts and the timer live in the binary (`board`);
-//! this library cannot name them.
+//! point. The numbers of a robot come through the trait [`robot::Robot`], the
+//! board through the trait [`step::Board`]; this crate can name neither a
+//! register nor a file.
 
 #![no_std]
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 
+#[cfg(test)]
+extern crate std;
+
 pub mod answer;
-pub mod clearance;
+pub mod calibration;
 pub mod command;
 pub mod console;
-pub mod fivebar;
+pub mod couplers;
+pub mod curve;
+pub mod five_bar;
 pub mod gait;
+pub mod guard;
 pub mod hazard;
 pub mod line;
 pub mod motion;
+pub mod part;
+pub mod point_to_point;
 pub mod pose;
 pub mod robot;
 pub mod root;
 pub mod slider;
-pub mod slope;
-pub mod stroke;
+pub mod step;
 pub mod text;
 pub mod trig;
 pub mod units;

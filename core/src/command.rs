@@ -5,11 +5,10 @@
 //! error and changes nothing.
 
 use crate::gait::GaitId;
-use crate::pose::Pose;
+use crate::robot::Robot;
 use crate::text::Text;
-use crate::units::TURN_CENTIDEG;
 
-/// A wish, with its arguments checked as far as syntax and range go.
+/// A command, with its arguments checked as far as syntax and range go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
     /// List the commands.
@@ -22,9 +21,9 @@ pub enum Command {
     Rest,
     /// Pace of gaits in percent, 10..=100.
     Speed(u8),
-    /// Go to a pose.
-    Pose(Pose),
-    /// Say how things are.
+    /// Go to chassis angles, A1 to A4, hundredths of a degree.
+    Pose([i32; 4]),
+    /// Print the state.
     Status,
     /// Report the pose every so many frames; 0 ends it.
     Watch(u16),
@@ -33,7 +32,7 @@ pub enum Command {
 /// Why a line is no command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misread {
-    /// The first word is none of ours.
+    /// The first word is no command.
     Unknown,
     /// A command that takes no argument has one.
     Surplus,
@@ -49,43 +48,54 @@ pub enum Misread {
     WatchRange,
     /// `pose` wants four angles of at most two decimals.
     PoseWants,
-    /// The travel of servo `.0` (0..=3) does not reach its angle.
-    PoseRange(u8),
 }
 
 /// The rarest report: every 200 s.
 pub const WATCH_MOST: u16 = 10_000;
 
-/// Larger angles are taken for slips; a turn either way is enough.
-const ANGLE_MOST: i32 = TURN_CENTIDEG;
+/// The words that the console takes for its own; no gait's name may begin with
+/// one.
+pub const WORDS: [Text; 8] = [
+    Text::Help,
+    Text::QuestionMark,
+    Text::Stop,
+    Text::Rest,
+    Text::Status,
+    Text::Pose,
+    Text::Speed,
+    Text::Watch,
+];
 
 /// Reads a line that is trimmed, not empty and in lower case.
-pub fn parse(line: &[u8]) -> Result<Command, Misread> {
+///
+/// # Errors
+/// What keeps the line from being a command.
+pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut words = Words(line);
     let first = words.next();
-    let said = |text: Text| text.is(first);
-    let alone = if said(Text::Help) || said(Text::QuestionMark) {
+    let is = |text: Text| text.is(first);
+    let alone = if is(Text::Help) || is(Text::QuestionMark) {
         Command::Help
-    } else if said(Text::Stop) {
+    } else if is(Text::Stop) {
         Command::Stop
-    } else if said(Text::Rest) {
+    } else if is(Text::Rest) {
         Command::Rest
-    } else if said(Text::Status) {
+    } else if is(Text::Status) {
         Command::Status
-    } else if said(Text::Pose) {
+    } else if is(Text::Pose) {
         return pose(words);
-    } else if said(Text::Speed) {
+    } else if is(Text::Speed) {
         return match whole(words).ok_or(Misread::SpeedWants)? {
             percent @ 10..=100 => Ok(Command::Speed(percent as u8)),
             _ => Err(Misread::SpeedRange),
         };
-    } else if said(Text::Watch) {
+    } else if is(Text::Watch) {
         return match whole(words).ok_or(Misread::WatchWants)? {
             frames @ 0..=WATCH_MOST => Ok(Command::Watch(frames)),
             _ => Err(Misread::WatchRange),
         };
     } else {
-        return gait(line);
+        return gait(line, robot);
     };
     if words.is_done() {
         Ok(alone)
@@ -124,24 +134,17 @@ fn pose(mut words: Words) -> Result<Command, Misread> {
     if !words.is_done() {
         return Err(Misread::PoseWants);
     }
-    for (servo, angle) in (0..).zip(&angles) {
-        if angle.abs() > ANGLE_MOST {
-            return Err(Misread::PoseRange(servo));
-        }
-    }
-    Pose::at_centideg(&angles)
-        .map(Command::Pose)
-        .map_err(Misread::PoseRange)
+    Ok(Command::Pose(angles))
 }
 
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
-fn gait(line: &[u8]) -> Result<Command, Misread> {
+fn gait<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut misread = Misread::Unknown;
-    for id in GaitId::all() {
-        let name = id.load().name;
-        let (mut said, mut meant) = (Words(line), Words(&name));
+    for id in GaitId::all(robot) {
+        let name = robot.name(id);
+        let (mut given, mut known) = (Words(line), Words(&name));
         loop {
-            match (said.next(), meant.next()) {
+            match (given.next(), known.next()) {
                 ([], []) => return Ok(Command::Gait(id)),
                 (_, []) => misread = Misread::Surplus,
                 ([], _) => misread = Misread::Incomplete,

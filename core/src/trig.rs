@@ -6,6 +6,8 @@
 
 use lizard_avr::flash;
 
+use crate::units::Angle;
+
 /// A direction as sine and cosine, Q15, 1.0 stored as 32767.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Direction {
@@ -16,8 +18,9 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The direction of an angle in 1/65536 turn.
-    pub fn of(angle: u16) -> Self {
+    /// The direction of an angle.
+    pub fn of(angle: Angle) -> Self {
+        let angle = angle.0;
         let across = angle & 0x3fff;
         let rising = quarter(across);
         let falling = quarter(0x4000 - across);
@@ -30,7 +33,8 @@ impl Direction {
         Self { sin, cos }
     }
 
-    /// The direction mirrored in the y axis of the chassis.
+    /// The direction mirrored in the y axis of the chassis: a crank of the right
+    /// side as one of the left.
     pub const fn mirrored(self) -> Self {
         Self {
             sin: self.sin,
@@ -38,8 +42,9 @@ impl Direction {
         }
     }
 
-    /// The direction mirrored in the x axis: a tail angle as a head angle.
-    pub const fn tail_local(self) -> Self {
+    /// The direction mirrored in the x axis of the chassis: what a crank of the
+    /// tail is in the tail's own frame, in which the tail is built as the head.
+    pub const fn in_tail_frame(self) -> Self {
         Self {
             sin: -self.sin,
             cos: self.cos,

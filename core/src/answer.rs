@@ -1,0 +1,236 @@
+//! Answers: what the robot replies to a line, and how it is written.
+//!
+//! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`.
+//! The codes are part of the protocol and never change their meaning.
+
+use lizard_avr::flash;
+use ufmt::uWrite;
+
+use crate::command::Misread;
+use crate::gait::GaitId;
+use crate::hazard::{Hazard, Margin};
+use crate::motion::Motion;
+use crate::part::{End, Servo, Side};
+use crate::robot::Robot;
+use crate::text::Text;
+use crate::units::{Angle, Sine};
+
+/// Why a command is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// Codes 1, 2, 3: not a command.
+    Misread(Misread),
+    /// Code 3: the travel of this servo does not reach its angle.
+    Travel(Servo),
+    /// Codes 4 and 5: the pose is not safe.
+    Unsafe(Hazard),
+    /// Code 6: the line is too long.
+    TooLong,
+    /// Code 7: the servos have no pulses.
+    Resting,
+}
+
+/// The next line of an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// `ok` and the line as it was understood.
+    Done,
+    /// The gaits from this one on, as many as a line takes.
+    Gaits(GaitId),
+    /// A line of the list of commands, by its number; after the last one `ok help`.
+    Help(u8),
+    /// `ok` and the state.
+    Status,
+    /// `err`; nothing was changed.
+    Refused(Refusal),
+}
+
+/// Prints bytes of seven bits as they are.
+pub fn ascii<W: uWrite + ?Sized>(out: &mut W, bytes: &[u8]) -> Result<(), W::Error> {
+    for byte in bytes {
+        out.write_char(char::from(byte & 0x7f))?;
+    }
+    Ok(())
+}
+
+/// Prints four chassis angles in degrees, with commas between them.
+pub fn angles<W: uWrite + ?Sized>(out: &mut W, angles: &[Angle; 4]) -> Result<(), W::Error> {
+    for (place, angle) in angles.iter().enumerate() {
+        if place > 0 {
+            out.write_char(',')?;
+        }
+        number(out, angle.centideg().into(), 2)?;
+    }
+    Ok(())
+}
+
+/// Prints a number, the last `decimals` of its digits behind a point.
+pub fn number<W>(out: &mut W, value: u32, decimals: usize) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    let mut rest = value;
+    let mut begun = false;
+    let mut place = DECADES.as_slice().len();
+    while place > 0 {
+        place -= 1;
+        let unit = DECADES.at(place).load();
+        let mut digit = b'0';
+        while rest >= unit {
+            rest -= unit;
+            digit += 1;
+        }
+        begun |= digit != b'0' || place <= decimals;
+        if begun {
+            out.write_char(char::from(digit & 0x7f))?;
+            if place == decimals && place > 0 {
+                out.write_char('.')?;
+            }
+        }
+    }
+    Ok(())
+}
+
+flash! {
+    const DECADES: [u32; 10] = [
+        1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
+    ];
+}
+
+/// Prints a number that may be negative, `decimals` behind the point.
+pub fn signed<W: uWrite + ?Sized>(
+    out: &mut W,
+    value: i32,
+    decimals: usize,
+) -> Result<(), W::Error> {
+    if value < 0 {
+        out.write_char('-')?;
+    }
+    number(out, value.unsigned_abs(), decimals)
+}
+
+/// Prints a margin with three decimals.
+pub fn sine<W: uWrite + ?Sized>(out: &mut W, sine: Sine) -> Result<(), W::Error> {
+    signed(out, sine.thousandths().into(), 3)
+}
+
+impl Refusal {
+    /// The protocol's number for this refusal.
+    pub const fn code(&self) -> u8 {
+        match self {
+            Self::Misread(Misread::Unknown) => 1,
+            Self::Misread(Misread::SpeedRange | Misread::WatchRange) | Self::Travel(_) => 3,
+            Self::Misread(_) => 2,
+            Self::Unsafe(Hazard::Margin { .. }) => 4,
+            Self::Unsafe(Hazard::Stroke { .. }) => 5,
+            Self::TooLong => 6,
+            Self::Resting => 7,
+        }
+    }
+
+    /// Prints the reason.
+    pub fn print<R, W>(&self, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
+    where
+        R: Robot,
+        W: uWrite + ?Sized,
+    {
+        match self {
+            Self::Misread(misread) => print_misread(*misread, out),
+            Self::Travel(servo) => print_travel(*servo, motion, out),
+            Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
+            Self::TooLong => Text::TooLong.print(out),
+            Self::Resting => Text::Resting.print(out),
+        }
+    }
+}
+
+fn print_misread<W: uWrite + ?Sized>(misread: Misread, out: &mut W) -> Result<(), W::Error> {
+    let text = match misread {
+        Misread::Unknown => Text::Unknown,
+        Misread::Surplus => Text::Surplus,
+        Misread::Incomplete => Text::Incomplete,
+        Misread::SpeedWants => Text::SpeedWants,
+        Misread::SpeedRange => Text::SpeedRange,
+        Misread::WatchWants => Text::WatchWants,
+        Misread::WatchRange => Text::WatchRange,
+        Misread::PoseWants => Text::PoseWants,
+    };
+    text.print(out)
+}
+
+/// `A2 reaches 311.41..131.41`.
+fn print_travel<R, W>(servo: Servo, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
+    print_servo(servo, out)?;
+    Text::Beyond.print(out)?;
+    let index = servo.index();
+    let calibration = &motion.calibration()[index];
+    let neutral = motion.robot().neutral()[index];
+    number(out, neutral.swept(calibration.min).centideg().into(), 2)?;
+    dots(out)?;
+    number(out, neutral.swept(calibration.max).centideg().into(), 2)
+}
+
+/// Prints what is wrong with a pose: the margin or the travel, and its limit.
+pub fn print_hazard<R, W>(hazard: Hazard, robot: &R, out: &mut W) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
+    match hazard {
+        Hazard::Margin { margin, value } => {
+            let limits = robot.limits();
+            let least = match margin {
+                Margin::Type2(End::Head) => {
+                    Text::Type2Head.print(out)?;
+                    limits.type2
+                }
+                Margin::Type2(End::Tail) => {
+                    Text::Type2Tail.print(out)?;
+                    limits.type2
+                }
+                Margin::Type1(servo) => {
+                    Text::Type1.print(out)?;
+                    print_servo(servo, out)?;
+                    limits.type1
+                }
+                Margin::Leg(servo) => {
+                    Text::Leg.print(out)?;
+                    print_servo(servo, out)?;
+                    limits.leg
+                }
+            };
+            Text::Is.print(out)?;
+            sine(out, value)?;
+            Text::Least.print(out)?;
+            sine(out, least)
+        }
+        Hazard::Stroke { side, travel } => {
+            match side {
+                Side::Left => Text::Left,
+                Side::Right => Text::Right,
+            }
+            .print(out)?;
+            Text::Slider.print(out)?;
+            signed(out, travel, 2)?;
+            Text::Within.print(out)?;
+            let [least, most] = robot.side(side).stroke();
+            signed(out, least, 2)?;
+            dots(out)?;
+            signed(out, most, 2)
+        }
+    }
+}
+
+fn dots<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
+    out.write_char('.')?;
+    out.write_char('.')
+}
+
+fn print_servo<W: uWrite + ?Sized>(servo: Servo, out: &mut W) -> Result<(), W::Error> {
+    out.write_char('A')?;
+    out.write_char(char::from(b'1' + servo.index() as u8))
+}

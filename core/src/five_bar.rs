@@ -1,0 +1,161 @@
+//! How far a five-bar linkage is from its singularities, without a float.
+//!
+//! Two cranks hold the ends of two couplers whose common joint is the end point,
+//! the head or the tail. Where the couplers line up, the end point is free to
+//! move although both servos hold: a type-2 singularity. Where a crank lines up
+//! with its coupler, the elbow can change to its other working mode: type 1. The
+//! margins are the sines of the angles between the bars, so 0 is singular and 1 is
+//! a right angle.
+//!
+//! With `k` the vector from the left crank tip to the right one, couplers `a`
+//! (left) and `b` (right), the rise and the skew of [`crate::couplers`] at
+//! `s = |k|^2`, and for a crank of direction `u` `cross = k_x u_y - k_y u_x` and
+//! `dot = k . u`:
+//!
+//! ```text
+//! type-2       2 a b sin(theta3 - theta2) = rise s
+//! type-1, left   2 a sin(theta1 - theta2) = (1 + skew) cross - rise dot
+//! type-1, right  2 b sin(theta3 - theta4) = (1 - skew) cross + rise dot
+//! ```
+//!
+//! The paper's printed conditions, sin(theta2 + theta3) = 0 and
+//! sin(2 theta11) = 0, are not used: both hold in the neutral pose, where the
+//! robot stands safely, and miss the real singularity.
+
+use lizard_avr::{mul, mul_unsigned};
+
+use crate::couplers::{Couplers, Lean};
+use crate::trig::Direction;
+use crate::units::Sine;
+
+/// The longest that a loop's bars may be, in steps: l0 + l1 + l4, and each coupler.
+pub const LONGEST: f64 = 127.0 * 256.0;
+
+/// The shortest coupler, in steps.
+pub const SHORTEST_COUPLER: i16 = 4097;
+
+/// One loop: its bars, and what the compiler can compute from them. A length is
+/// counted in steps of which the loop's [`crate::units::Scale`] says how many are a
+/// millimetre; margins do not depend on it.
+#[derive(Clone, Copy)]
+pub struct FiveBar<'a> {
+    base: i16,
+    left: i16,
+    right: i16,
+    couplers: Couplers<'a>,
+    /// Takes a squared distance of the crank tips to fifteen bits.
+    square_shift: u8,
+    /// Takes rise times that to sixteen bits.
+    area_shift: u8,
+    /// One over `4 a b`, in the scale that the shifts leave.
+    per_area: u16,
+    /// `2^27` over each coupler.
+    per_left: i16,
+    per_right: i16,
+}
+
+/// The margins of one end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EndMargins {
+    /// sin(theta3 - theta2). Negative where the crank tips have crossed, beyond the
+    /// singularity, where a robot cannot be.
+    pub type2: Sine,
+    /// sin(theta1 - theta2), negative for an elbow bent inwards.
+    pub type1_left: Sine,
+    /// sin(theta3 - theta4), likewise.
+    pub type1_right: Sine,
+}
+
+impl<'a> FiveBar<'a> {
+    /// A loop with these bars, in steps: the distance between the shafts, the left
+    /// and the right crank, which are at most [`LONGEST`] together; and two
+    /// couplers.
+    ///
+    /// # Panics
+    /// In the compiler, where a coupler is shorter than [`SHORTEST_COUPLER`].
+    pub const fn new(base: i16, left: i16, right: i16, couplers: Couplers<'a>) -> Self {
+        let (a, b) = (couplers.left(), couplers.right());
+        assert!(a >= SHORTEST_COUPLER && b >= SHORTEST_COUPLER);
+        let half_sum = (a as u32 + b as u32) / 2;
+        let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u8;
+        let mut area = (a as u64 * b as u64) >> square_shift;
+        let mut area_shift = 9;
+        while area < 1 << 14 {
+            area <<= 1;
+            area_shift -= 1;
+        }
+        Self {
+            base,
+            left,
+            right,
+            couplers,
+            square_shift,
+            area_shift,
+            per_area: if area > 1 << 14 {
+                ((1u64 << 30) / area) as u16
+            } else {
+                u16::MAX
+            },
+            per_left: ((1 << 27) / a as i32) as i16,
+            per_right: ((1 << 27) / b as i32) as i16,
+        }
+    }
+
+    /// The margins with the cranks in these directions of the end's own frame. All
+    /// zero where the loop cannot close or is too near to that.
+    pub fn margins(&self, left: Direction, right: Direction) -> EndMargins {
+        // Half the step of the bars, so that the distance of the crank tips fits
+        // and the shift is one of whole bytes.
+        let tips = Tips {
+            along: (self.base >> 1) + upper(mul(self.right, right.cos) - mul(self.left, left.cos)),
+            across: upper(mul(self.right, right.sin) - mul(self.left, left.sin)),
+        };
+        let tips_sq = (mul(tips.along, tips.along) + mul(tips.across, tips.across)) as u32;
+        let Some(Lean { rise, skew }) = self.couplers.at(tips_sq) else {
+            return EndMargins::default();
+        };
+        // To nearest: where the margin is small, so are the bits that are left.
+        let square = (tips_sq + (1 << (self.square_shift - 1))) >> self.square_shift;
+        let square = square.min(0x7fff) as i16;
+        let area = (mul(rise, square) >> self.area_shift) as u16;
+        let size = saturate((mul_unsigned(area, self.per_area) >> 15) as i32);
+        EndMargins {
+            type2: Sine(if tips.along > 0 { size } else { -size }),
+            type1_left: tips.elbow(left, -rise, skew, self.per_left),
+            type1_right: tips.elbow(right, rise, -skew, self.per_right),
+        }
+    }
+}
+
+/// The vector from the left crank tip to the right one, in half steps.
+#[derive(Clone, Copy)]
+struct Tips {
+    along: i16,
+    across: i16,
+}
+
+impl Tips {
+    /// The type-1 margin of a crank: `(1 + skew) cross + rise dot` over twice its
+    /// coupler.
+    fn elbow(self, crank: Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
+        let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);
+        let dot = upper((mul(self.along, crank.cos) + mul(self.across, crank.sin)) << 1);
+        // The sum is at most twice the coupler; what its parts exceed 16 bits by
+        // cancels.
+        let mut opened = cross.wrapping_add((mul(rise, dot) >> 10) as i16);
+        if skew != 0 {
+            opened = opened.wrapping_add((mul(skew, cross) >> 10) as i16);
+        }
+        Sine(saturate(mul(opened, per_coupler) >> 12))
+    }
+}
+
+/// A sine that rounding has pushed past 1 is 1.
+fn saturate(margin: i32) -> i16 {
+    margin.clamp(-0x7fff, 0x7fff) as i16
+}
+
+/// The upper half, rounded to nearest.
+pub(crate) fn upper(product: i32) -> i16 {
+    (product.wrapping_add(0x8000) >> 16) as i16
+}

@@ -1,0 +1,35 @@
+//! What is wrong with a pose, and by how much: the guard's reason.
+
+use crate::part::{End, Servo, Side};
+use crate::units::Sine;
+
+/// A margin of a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Margin {
+    /// Between the two couplers of an end.
+    Type2(End),
+    /// Between the crank on a servo and its coupler, negative where the elbow is
+    /// bent inwards.
+    Type1(Servo),
+    /// Of the parallelogram leg of a servo, negative beyond a change point.
+    Leg(Servo),
+}
+
+/// The first condition that a pose breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hazard {
+    /// A margin is below its limit.
+    Margin {
+        /// Which one.
+        margin: Margin,
+        /// Its value.
+        value: Sine,
+    },
+    /// A slider is outside its stroke.
+    Stroke {
+        /// Which one.
+        side: Side,
+        /// Its travel from nominal, hundredths of a millimetre.
+        travel: i32,
+    },
+}

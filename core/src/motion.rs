@@ -1,0 +1,347 @@
+//! From commands to frames: one pose every 20 ms, whatever happens.
+//!
+//! A servo that is told to be elsewhere goes there as fast as it can, all of
+//! them at once, and the supply sags. So nothing here ever jumps. A change
+//! from any motion to any other has three parts, each continuous in speed:
+//!
+//! 1. the old motion brakes along its own path (a gait within its cycle, a
+//!    move within its line), so that it cannot leave ground it has checked;
+//! 2. one point-to-point move, at most at the slew limit, leads to where the new
+//!    motion begins, all servos arriving together;
+//! 3. the new gait gathers pace.
+//!
+//! `stop` alone skips the braking: it freezes the pose in the next frame.
+//!
+//! # States
+//! What the robot does and what it is to do next, and what a frame makes of that.
+//! "Standing still" is a pace of 0.
+//!
+//! | state | command | frame |
+//! |---|---|---|
+//! | `Resting`: no pulses | a gait or a pose: `Holding`, that next, and servos wake; `rest`, `stop`: - | stays |
+//! | `Holding` a pose | a gait or a pose: that next | with a next: `Moving` towards it |
+//! | `Moving` to a pose | a gait or a pose: that next; the gait it leads to: - | brakes if there is a next, and once it stands still is `Moving` towards that; arrived, it is `Holding`, or `Cycling` from phase 0 |
+//! | `Cycling` through a gait | another gait or a pose: that next; the same gait: - | brakes if there is a next, and once it stands still is `Moving` towards that |
+//! | any but `Resting` | `stop`: `Holding`; `rest`: `Resting`; nothing next | an unsafe pose: `Holding` the last one, nothing next, with the reason |
+//!
+//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard;
+//! a pose that has not is never sent, the last safe one is held instead, and
+//! the reason is kept for the console. Time is a call: the 50 Hz tick is the
+//! only clock, so pace cannot depend on how busy the processor is.
+
+use lizard_avr::mul_unsigned;
+
+use crate::calibration::Calibration;
+use crate::gait::{Gait, GaitId};
+use crate::guard::Clearance;
+use crate::hazard::Hazard;
+use crate::point_to_point::PointToPoint;
+use crate::pose::{Pose, Pulses};
+use crate::robot::Robot;
+use crate::units::Width;
+
+/// Full pace; also the most that a pace may be.
+const FULL: u16 = 1024;
+
+/// A motion gathers or loses all its pace in seven frames, 0.14 s. In an odd
+/// number of steps a gait goes a whole number of its frames meanwhile, so that
+/// at full pace the frames meet the corners between its moves: half a frame
+/// beside them, two legs would move at once there, and cost crawl 1.2 %.
+const PACE_STEP: u16 = FULL.div_ceil(7);
+
+/// Servos wake one after the other, 0.1 s apart, to spare the supply.
+const WAKE_APART: u8 = 5;
+
+/// All four are awake, and motion may begin.
+const AWAKE: u8 = 4 * WAKE_APART;
+
+/// What the robot does, or is on its way to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// A gait (`stand` is one).
+    Gait(GaitId),
+    /// Going to a pose and staying there.
+    Pose,
+    /// Staying where it was stopped, by `stop` or by the guard.
+    Stop,
+    /// No pulses: the servos are limp.
+    Rest,
+}
+
+/// Where a motion leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Target {
+    /// To a pose, to be held.
+    Pose(Pose),
+    /// To the first pose of a gait, and through its cycles.
+    Gait(GaitId),
+}
+
+/// What the servos follow at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Nothing: there are no pulses.
+    Resting,
+    /// The last pose.
+    Holding {
+        /// Whether it was asked for, or the robot was stopped in it.
+        asked: bool,
+    },
+    /// A point-to-point move.
+    Moving {
+        path: PointToPoint,
+        pace: u16,
+        /// The gait that begins at its end; without one, the pose is held.
+        gait: Option<GaitId>,
+    },
+    /// A gait.
+    Cycling {
+        id: GaitId,
+        gait: Gait,
+        /// 1/2^24 cycle.
+        phase: u32,
+        pace: u16,
+    },
+}
+
+/// The robot's motion.
+#[derive(Debug)]
+pub struct Motion<R> {
+    robot: R,
+    calibration: [Calibration; 4],
+    state: State,
+    /// What follows once the present motion stands still. None while it rests.
+    next: Option<Target>,
+    /// Percent of the gaits' own pace.
+    speed: u8,
+    /// Frames since pulses began, up to [`AWAKE`].
+    awake: u8,
+    pose: Pose,
+    hazard: Option<Hazard>,
+    frames: u32,
+}
+
+impl<R: Robot> Motion<R> {
+    /// The robot at power-on: waking, then standing.
+    pub fn new(robot: R) -> Self {
+        Self {
+            calibration: robot.calibration(),
+            state: State::cycling(&robot, GaitId::STAND),
+            robot,
+            next: None,
+            speed: 100,
+            awake: 0,
+            pose: Pose::NEUTRAL,
+            hazard: None,
+            frames: 0,
+        }
+    }
+
+    /// The robot that moves.
+    pub const fn robot(&self) -> &R {
+        &self.robot
+    }
+
+    /// Its servos' pulses and travel.
+    pub const fn calibration(&self) -> &[Calibration; 4] {
+        &self.calibration
+    }
+
+    /// Begins a gait, by way of its first pose. The gait that is already under
+    /// way just goes on.
+    pub fn start_gait(&mut self, id: GaitId) {
+        if self.activity() != Activity::Gait(id) {
+            self.head_for(Target::Gait(id));
+        }
+    }
+
+    /// Goes to a pose within the servos' travel.
+    ///
+    /// # Errors
+    /// What is wrong with the pose; then nothing has changed.
+    pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
+        match Clearance::of(&self.robot, pose).hazard(&self.robot) {
+            Some(hazard) => Err(hazard),
+            None => {
+                self.head_for(Target::Pose(*pose));
+                Ok(())
+            }
+        }
+    }
+
+    /// Freezes the pose in the next frame.
+    pub fn stop(&mut self) {
+        if !matches!(self.state, State::Resting) {
+            self.freeze(State::Holding { asked: false });
+        }
+    }
+
+    /// Ends the pulses with the next frame.
+    pub fn rest(&mut self) {
+        self.freeze(State::Resting);
+    }
+
+    /// Sets the pace of gaits, in percent of their own, 10..=100.
+    pub fn set_speed(&mut self, percent: u8) {
+        self.speed = percent;
+    }
+
+    /// One frame on: the pulses to send in it.
+    pub fn tick(&mut self) -> Pulses {
+        self.frames = self.frames.wrapping_add(1);
+        if matches!(self.state, State::Resting) {
+            return Pulses::default();
+        }
+        if self.awake < AWAKE {
+            self.awake += 1;
+        } else {
+            self.proceed();
+        }
+        let mut pulses = self.pose.pulses(&self.calibration);
+        let mut wakes_at = WAKE_APART;
+        for width in &mut pulses.0 {
+            if self.awake < wakes_at {
+                *width = Width(0);
+            }
+            wakes_at += WAKE_APART;
+        }
+        pulses
+    }
+
+    /// What the robot is doing, or on its way to do.
+    pub const fn activity(&self) -> Activity {
+        match (self.next, self.state) {
+            (Some(Target::Gait(id)), _) => Activity::Gait(id),
+            (Some(Target::Pose(_)), _) => Activity::Pose,
+            (None, State::Resting) => Activity::Rest,
+            (None, State::Holding { asked: true }) => Activity::Pose,
+            (None, State::Holding { asked: false }) => Activity::Stop,
+            (None, State::Moving { gait: None, .. }) => Activity::Pose,
+            (None, State::Moving { gait: Some(id), .. } | State::Cycling { id, .. }) => {
+                Activity::Gait(id)
+            }
+        }
+    }
+
+    /// Phase of the gait, 1/2^24 cycle; 0 outside of one.
+    pub const fn phase(&self) -> u32 {
+        match self.state {
+            State::Cycling { phase, .. } => phase,
+            _ => 0,
+        }
+    }
+
+    /// The pose of the last frame.
+    pub const fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// Speed of gaits in percent.
+    pub const fn speed(&self) -> u8 {
+        self.speed
+    }
+
+    /// Frames since power-on.
+    pub const fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// Why the guard stopped the robot, until the next motion begins.
+    pub const fn hazard(&self) -> Option<Hazard> {
+        self.hazard
+    }
+
+    fn head_for(&mut self, target: Target) {
+        if matches!(self.state, State::Resting) {
+            self.state = State::Holding { asked: false };
+            self.awake = 0;
+        }
+        self.next = Some(target);
+    }
+
+    fn freeze(&mut self, state: State) {
+        self.state = state;
+        self.next = None;
+    }
+
+    // Out of line: in `tick` it costs more registers than it saves calls.
+    #[inline(never)]
+    fn proceed(&mut self) {
+        self.turn_to_next();
+        let braking = self.next.is_some();
+        let pose = match &mut self.state {
+            State::Resting | State::Holding { .. } => return,
+            State::Moving { path, pace, .. } => {
+                *pace = toward(*pace, if braking { 0 } else { FULL });
+                path.advance(*pace);
+                path.pose()
+            }
+            State::Cycling {
+                gait, phase, pace, ..
+            } => {
+                *pace = toward(*pace, if braking { 0 } else { pace_of(self.speed) });
+                *phase = gait.advance(*phase, *pace);
+                gait.pose(&self.robot, *phase)
+            }
+        };
+        if let Some(hazard) = Clearance::of(&self.robot, &pose).hazard(&self.robot) {
+            self.freeze(State::Holding { asked: false });
+            self.hazard = Some(hazard);
+            return;
+        }
+        self.pose = pose;
+        if let State::Moving { path, gait, .. } = &self.state
+            && path.arrived()
+        {
+            self.state = match gait {
+                None => State::Holding { asked: true },
+                Some(id) => State::cycling(&self.robot, *id),
+            };
+        }
+    }
+
+    /// Begins the move towards what comes next, once the old motion has no pace.
+    fn turn_to_next(&mut self) {
+        if let State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. } = self.state {
+            return;
+        }
+        let Some(target) = self.next.take() else {
+            return;
+        };
+        let (to, gait) = match target {
+            Target::Pose(pose) => (pose, None),
+            Target::Gait(id) => (self.robot.gait(id).pose(&self.robot, 0), Some(id)),
+        };
+        self.state = State::Moving {
+            path: PointToPoint::new(&self.pose, &to, self.robot.slew()),
+            pace: FULL,
+            gait,
+        };
+        self.hazard = None;
+    }
+}
+
+impl State {
+    /// A gait from phase 0, still without pace.
+    fn cycling<R: Robot>(robot: &R, id: GaitId) -> Self {
+        Self::Cycling {
+            id,
+            gait: robot.gait(id),
+            phase: 0,
+            pace: 0,
+        }
+    }
+}
+
+/// A pace one frame later, on its way to the one that is wanted.
+fn toward(pace: u16, wanted: u16) -> u16 {
+    wanted
+        .max(pace.saturating_sub(PACE_STEP))
+        .min(pace + PACE_STEP)
+}
+
+/// Percent as a pace, to nearest, so that the slowest is within half a percent
+/// of itself: 2622/256 is 1024/100 to four digits.
+fn pace_of(percent: u8) -> u16 {
+    ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
+}

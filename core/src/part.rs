@@ -1,0 +1,53 @@
+//! Which one: servos, ends and sides by name.
+
+/// A servo; the order of every array of four.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Servo {
+    /// Front left, theta1; its leg is LF.
+    A1,
+    /// Front right, theta4; its leg is RF.
+    A2,
+    /// Back right, theta8; its leg is RH.
+    A3,
+    /// Back left, theta5; its leg is LH.
+    A4,
+}
+
+/// An end of the body: a five-bar whose end point is the head or the tail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// In front, between A1 and A2.
+    Head,
+    /// Behind, between A4 and A3.
+    Tail,
+}
+
+/// A side of the body: a five-bar with a slider.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Between A1 and A4.
+    Left,
+    /// Between A2 and A3.
+    Right,
+}
+
+impl Servo {
+    /// All four, in order.
+    pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
+
+    /// Its place in an array of four.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+impl End {
+    /// Both, the head first.
+    pub const BOTH: [Self; 2] = [Self::Head, Self::Tail];
+}
+
+impl Side {
+    /// Both, the left one first.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+}

@@ -1,0 +1,113 @@
+//! What the core has to know of a robot.
+//!
+//! Everything in this crate is generic over a [`Robot`]. The firmware's is a type
+//! without size whose numbers are constants: the compiler folds them into the code,
+//! and tables stay in flash. A host's is made at run time from a robot.toml, so
+//! that the same code can be proved for a robot that no firmware was built for yet.
+
+use lizard_avr::Flash;
+
+use crate::calibration::Calibration;
+use crate::five_bar::FiveBar;
+use crate::gait::{Gait, GaitId, Name, Wave};
+use crate::guard::Limits;
+use crate::part::{End, Side};
+use crate::point_to_point::Slew;
+use crate::slider::Slider;
+use crate::units::Angle;
+
+/// A four-servo lizard: its geometry, limits and gaits. Whoever makes one has
+/// checked that its numbers fit and that every gait keeps the limits.
+pub trait Robot {
+    /// The five-bar of an end, in that end's own frame.
+    fn end(&self, end: End) -> FiveBar<'_>;
+
+    /// The five-bar with a slider of a side, as it is in the chassis frame.
+    fn side(&self, side: Side) -> Slider;
+
+    /// The smallest margins allowed.
+    fn limits(&self) -> Limits;
+
+    /// How fast servos may turn in a point-to-point move.
+    fn slew(&self) -> Slew;
+
+    /// The servos' angles in the neutral pose.
+    fn neutral(&self) -> [Angle; 4];
+
+    /// The servos' pulses and travel, as robot.toml has them.
+    fn calibration(&self) -> [Calibration; 4];
+
+    /// The gaits; the first is `stand`, which holds the neutral pose.
+    fn gaits(&self) -> Flash<'_, [Gait]>;
+
+    /// The gaits' names, one after the other.
+    fn names(&self) -> Flash<'_, [u8]>;
+
+    /// The waveforms that gaits share.
+    fn waves(&self) -> Flash<'_, [Wave]>;
+
+    /// A number by which two sets of numbers are told apart.
+    fn hash(&self) -> u32;
+
+    /// A gait, fetched from flash.
+    fn gait(&self, id: GaitId) -> Gait {
+        let gait = self.gaits().get(id.index());
+        gait.map_or(Gait::STILL, Flash::load)
+    }
+
+    /// A gait's name, its words with a blank in between.
+    fn name(&self, id: GaitId) -> Name {
+        let gait = self.gait(id);
+        let start = usize::from(gait.name_start);
+        let mut name = Name::new();
+        for at in start..start + usize::from(gait.name_length) {
+            if let Some(byte) = self.names().get(at) {
+                // A name is never longer than the type holds.
+                _ = name.push(byte.load());
+            }
+        }
+        name
+    }
+}
+
+impl<R: Robot + ?Sized> Robot for &R {
+    fn end(&self, end: End) -> FiveBar<'_> {
+        (**self).end(end)
+    }
+
+    fn side(&self, side: Side) -> Slider {
+        (**self).side(side)
+    }
+
+    fn limits(&self) -> Limits {
+        (**self).limits()
+    }
+
+    fn slew(&self) -> Slew {
+        (**self).slew()
+    }
+
+    fn neutral(&self) -> [Angle; 4] {
+        (**self).neutral()
+    }
+
+    fn calibration(&self) -> [Calibration; 4] {
+        (**self).calibration()
+    }
+
+    fn gaits(&self) -> Flash<'_, [Gait]> {
+        (**self).gaits()
+    }
+
+    fn names(&self) -> Flash<'_, [u8]> {
+        (**self).names()
+    }
+
+    fn waves(&self) -> Flash<'_, [Wave]> {
+        (**self).waves()
+    }
+
+    fn hash(&self) -> u32 {
+        (**self).hash()
+    }
+}

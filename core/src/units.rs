@@ -1,0 +1,127 @@
+//! The units of the core, and every conversion between them.
+//!
+//! An 8-bit processor has no use for floating point, so each quantity gets an
+//! integer whose step is finer than the robot can show. A number that crosses
+//! the border of a module has a type of its own; inside a formula it is a plain
+//! integer.
+//!
+//! | quantity | type | step |
+//! |---|---|---|
+//! | angle, chassis frame | [`Angle`], wraps with the turn | 1/65536 turn = 0.0055 deg |
+//! | sweep, an angle from a servo's neutral | [`Sweep`] | the same |
+//! | angle at the console | `i32`, `u16` | 0.01 deg |
+//! | length | `i16`, `u16` | [`Scale`]: 1/256 mm for a robot of the paper's size |
+//! | margin, a sine | [`Sine`], Q15 | 1/32768 |
+//! | pulse width | [`Width`] | one CPU cycle, 62.5 ns |
+//! | phase of a gait | `u32` | 1/2^24 cycle |
+//! | share of a move's time | `u16`, Q15 | 1/32768 |
+//! | pace | `u16`, Q10 | 1/1024 |
+
+use lizard_avr::{mul, mul_unsigned};
+
+/// Hundredths of a degree in a turn.
+pub const TURN_CENTIDEG: i32 = 36_000;
+
+/// Frames a second; every servo gets one pulse in each.
+pub const FRAMES_PER_SECOND: u16 = 50;
+
+/// CPU cycles in a microsecond: the UNO runs at 16 MHz.
+pub const CYCLES_PER_US: u16 = 16;
+
+/// 1.0 in Q15, one past the largest sine.
+pub const ONE_Q15: i32 = 1 << 15;
+
+/// One gait cycle, as a phase.
+pub const CYCLE: u32 = 1 << 24;
+
+/// An angle in the chassis frame, 1/65536 turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Angle(pub u16);
+
+/// An angle that a servo has turned from its neutral angle, counter-clockwise
+/// positive, 1/65536 turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
+pub struct Sweep(pub i16);
+
+/// A margin: the sine of the angle between two bars, Q15.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
+pub struct Sine(pub i16);
+
+/// The width of a pulse in CPU cycles of 62.5 ns; 0 is no pulse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
+pub struct Width(pub u16);
+
+/// The step of a mechanism's lengths: `2^bits` of them are a millimetre.
+///
+/// Sixteen bits hold the bars of any robot if the step follows its size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    /// Binary logarithm of the steps in a millimetre, at most 14.
+    pub bits: u8,
+}
+
+impl Angle {
+    /// The angle at `centideg`, less than two turns either way, within 0.004 deg.
+    pub fn from_centideg(centideg: i32) -> Self {
+        // No remainder, no quotient and no loop that the compiler takes for one:
+        // each of them is a kilobyte of library.
+        let mut within = centideg;
+        if within < 0 {
+            within += 2 * TURN_CENTIDEG;
+        }
+        if within >= TURN_CENTIDEG {
+            within -= TURN_CENTIDEG;
+        }
+        // 65536/36000 is 1 + 53769/65536 to within a fifth of a step over the turn.
+        let within = within as u16;
+        Self(within.wrapping_add(((mul_unsigned(within, 53_769) + 0x8000) >> 16) as u16))
+    }
+
+    /// In hundredths of a degree, 0..36000. Exact inverse of
+    /// [`Angle::from_centideg`], whose step is the finer one.
+    pub fn centideg(self) -> u16 {
+        // The last step of a turn is 359.9945 deg, which does not round to 360.
+        ((mul_unsigned(self.0, TURN_CENTIDEG as u16) + 0x8000) >> 16) as u16
+    }
+
+    /// The angle after a sweep from here.
+    pub const fn swept(self, sweep: Sweep) -> Self {
+        Self(self.0.wrapping_add(sweep.0 as u16))
+    }
+
+    /// The sweep from here to another angle, the short way round.
+    pub const fn sweep_to(self, other: Self) -> Sweep {
+        Sweep(other.0.wrapping_sub(self.0) as i16)
+    }
+}
+
+impl Sine {
+    /// In thousandths, rounded to nearest.
+    pub fn thousandths(self) -> i16 {
+        ((mul(self.0, 1000) + (1 << 14)) >> 15) as i16
+    }
+}
+
+impl Scale {
+    /// A length of this step in hundredths of a millimetre, rounded to nearest;
+    /// `length` within 16 bits, whatever its sign.
+    pub fn hundredths(self, length: i32) -> i32 {
+        let size = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
+        let signed = if length < 0 { -size } else { size };
+        (signed + ((1 << self.bits) >> 1)) >> self.bits
+    }
+}
+
+/// The phase's first sixteen bits, what tables are read by.
+pub const fn phase16(phase: u32) -> u16 {
+    (phase >> 8) as u16
+}
+
+/// The phase in thousandths of a cycle, 0..=999.
+pub fn thousandths_from_phase(phase: u32) -> u16 {
+    (mul_unsigned(phase16(phase), 1000) >> 16) as u16
+}
