@@ -12,6 +12,7 @@ use crate::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::part::{End, Servo, Side};
 use crate::robot::Robot;
+use crate::slider::Slider;
 use crate::text::Text;
 use crate::units::{Angle, Sine};
 
@@ -46,7 +47,10 @@ pub enum Answer {
 }
 
 /// Prints bytes of seven bits as they are.
-pub fn ascii<W: uWrite + ?Sized>(out: &mut W, bytes: &[u8]) -> Result<(), W::Error> {
+pub fn ascii<W>(out: &mut W, bytes: impl Iterator<Item = u8>) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
     for byte in bytes {
         out.write_char(char::from(byte & 0x7f))?;
     }
@@ -119,7 +123,8 @@ impl Refusal {
     pub const fn code(&self) -> u8 {
         match self {
             Self::Misread(Misread::Unknown) => 1,
-            Self::Misread(Misread::SpeedRange | Misread::WatchRange) | Self::Travel(_) => 3,
+            Self::Misread(Misread::SpeedRange | Misread::WatchRange | Misread::PoseRange(_))
+            | Self::Travel(_) => 3,
             Self::Misread(_) => 2,
             Self::Unsafe(Hazard::Margin { .. }) => 4,
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
@@ -135,7 +140,7 @@ impl Refusal {
         W: uWrite + ?Sized,
     {
         match self {
-            Self::Misread(misread) => print_misread(*misread, out),
+            Self::Misread(misread) => print_misread(*misread, motion, out),
             Self::Travel(servo) => print_travel(*servo, motion, out),
             Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
             Self::TooLong => Text::TooLong.print(out),
@@ -144,7 +149,11 @@ impl Refusal {
     }
 }
 
-fn print_misread<W: uWrite + ?Sized>(misread: Misread, out: &mut W) -> Result<(), W::Error> {
+fn print_misread<R, W>(misread: Misread, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
     let text = match misread {
         Misread::Unknown => Text::Unknown,
         Misread::Surplus => Text::Surplus,
@@ -154,6 +163,7 @@ fn print_misread<W: uWrite + ?Sized>(misread: Misread, out: &mut W) -> Result<()
         Misread::WatchWants => Text::WatchWants,
         Misread::WatchRange => Text::WatchRange,
         Misread::PoseWants => Text::PoseWants,
+        Misread::PoseRange(servo) => return print_travel(servo, motion, out),
     };
     text.print(out)
 }
@@ -170,7 +180,7 @@ where
     let calibration = &motion.calibration()[index];
     let neutral = motion.robot().neutral()[index];
     number(out, neutral.swept(calibration.min).centideg().into(), 2)?;
-    dots(out)?;
+    Text::Dots.print(out)?;
     number(out, neutral.swept(calibration.max).centideg().into(), 2)
 }
 
@@ -208,26 +218,35 @@ where
             Text::Least.print(out)?;
             sine(out, least)
         }
-        Hazard::Stroke { side, travel } => {
+        Hazard::Stroke { side, length } => {
             match side {
                 Side::Left => Text::Left,
                 Side::Right => Text::Right,
             }
             .print(out)?;
-            Text::Slider.print(out)?;
-            signed(out, travel, 2)?;
-            Text::Within.print(out)?;
-            let [least, most] = robot.side(side).stroke();
-            signed(out, least, 2)?;
-            dots(out)?;
-            signed(out, most, 2)
+            let Slider { min, max, .. } = robot.side(side);
+            print_stroke(Text::Slider, length, side, robot, out)?;
+            print_stroke(Text::Within, min, side, robot, out)?;
+            print_stroke(Text::Dots, max, side, robot, out)
         }
     }
 }
 
-fn dots<W: uWrite + ?Sized>(out: &mut W) -> Result<(), W::Error> {
-    out.write_char('.')?;
-    out.write_char('.')
+/// Prints the travel from nominal of a slider's length, after `text`.
+#[inline(never)]
+fn print_stroke<R, W>(
+    text: Text,
+    length: u16,
+    side: Side,
+    robot: &R,
+    out: &mut W,
+) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
+    text.print(out)?;
+    signed(out, robot.side(side).travel(length), 2)
 }
 
 fn print_servo<W: uWrite + ?Sized>(servo: Servo, out: &mut W) -> Result<(), W::Error> {

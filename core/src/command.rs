@@ -4,9 +4,11 @@
 //! `robot.toml`. Nothing here acts; a line that is not wholly understood is an
 //! error and changes nothing.
 
-use crate::gait::GaitId;
+use crate::gait::{GaitId, Name};
+use crate::part::Servo;
 use crate::robot::Robot;
 use crate::text::Text;
+use crate::units::{Angle, TURN_CENTIDEG};
 
 /// A command, with its arguments checked as far as syntax and range go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +23,8 @@ pub enum Command {
     Rest,
     /// Pace of gaits in percent, 10..=100.
     Speed(u8),
-    /// Go to chassis angles, A1 to A4, hundredths of a degree.
-    Pose([i32; 4]),
+    /// Go to chassis angles, A1 to A4.
+    Pose([Angle; 4]),
     /// Print the state.
     Status,
     /// Report the pose every so many frames; 0 ends it.
@@ -48,10 +50,15 @@ pub enum Misread {
     WatchRange,
     /// `pose` wants four angles of at most two decimals.
     PoseWants,
+    /// The angle of this servo is more than a turn.
+    PoseRange(Servo),
 }
 
 /// The rarest report: every 200 s.
 pub const WATCH_MOST: u16 = 10_000;
+
+/// Larger angles are taken for mistakes; a turn either way is enough.
+const LARGEST_ANGLE: i32 = TURN_CENTIDEG;
 
 /// The words that the console takes for its own; no gait's name may begin with
 /// one.
@@ -127,34 +134,58 @@ impl<'a> Words<'a> {
 }
 
 fn pose(mut words: Words) -> Result<Command, Misread> {
-    let mut angles = [0; 4];
-    for angle in &mut angles {
-        *angle = centideg(words.next()).ok_or(Misread::PoseWants)?;
+    let mut angles = [Angle(0); 4];
+    let mut beyond = None;
+    for (place, angle) in angles.iter_mut().enumerate() {
+        let centideg = centideg(words.next()).ok_or(Misread::PoseWants)?;
+        if centideg.abs() > LARGEST_ANGLE {
+            beyond = beyond.or(Some(Servo::at(place)));
+        } else {
+            *angle = Angle::from_centideg(centideg);
+        }
     }
-    if !words.is_done() {
-        return Err(Misread::PoseWants);
+    match beyond {
+        _ if !words.is_done() => Err(Misread::PoseWants),
+        Some(servo) => Err(Misread::PoseRange(servo)),
+        None => Ok(Command::Pose(angles)),
     }
-    Ok(Command::Pose(angles))
 }
 
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
 fn gait<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut misread = Misread::Unknown;
     for id in GaitId::all(robot) {
-        let name = robot.name(id);
-        let (mut given, mut known) = (Words(line), Words(&name));
-        loop {
-            match (given.next(), known.next()) {
-                ([], []) => return Ok(Command::Gait(id)),
-                (_, []) => misread = Misread::Surplus,
-                ([], _) => misread = Misread::Incomplete,
-                (word, other) if word == other => continue,
-                _ => {}
-            }
-            break;
+        match compare(Words(line), robot.name(id)) {
+            Some(Misread::Unknown) => {}
+            Some(other) => misread = other,
+            None => return Ok(Command::Gait(id)),
         }
     }
     Err(misread)
+}
+
+/// What keeps the words of a line from being a name.
+fn compare(mut words: Words, name: Name) -> Option<Misread> {
+    let mut word = words.next();
+    for byte in name {
+        match word {
+            [] if byte == b' ' => {
+                word = words.next();
+                if word.is_empty() {
+                    return Some(Misread::Incomplete);
+                }
+            }
+            [first, rest @ ..] if *first == byte => word = rest,
+            _ => return Some(Misread::Unknown),
+        }
+    }
+    if !word.is_empty() {
+        Some(Misread::Unknown)
+    } else if words.is_done() {
+        None
+    } else {
+        Some(Misread::Surplus)
+    }
 }
 
 /// The one whole number that is all there is; 65535 stands for more than that.

@@ -14,18 +14,14 @@ use crate::guard::Clearance;
 use crate::hazard::Hazard;
 use crate::line::{Ended, Line};
 use crate::motion::{Activity, Motion};
-use crate::part::Servo;
 use crate::pose::{Pose, Pulses};
 use crate::robot::Robot;
 use crate::text::Text;
-use crate::units::{TURN_CENTIDEG, thousandths_from_phase};
+use crate::units::thousandths_from_phase;
 
 /// The longest line that [`Console::write_line`] writes, with its line end: a
 /// `status` whose every number has all its digits.
 pub const LONGEST_LINE: u8 = 192;
-
-/// Larger angles are taken for mistakes; a turn either way is enough.
-const LARGEST_ANGLE: i32 = TURN_CENTIDEG;
 
 /// What the board counts for `status`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -196,7 +192,9 @@ impl<R: Robot> Console<R> {
                 self.motion.start_gait(gait);
             }
             Command::Pose(angles) => {
-                let pose = self.pose_at(&angles).map_err(Refusal::Travel)?;
+                let motion = &self.motion;
+                let pose = Pose::at(&angles, &motion.robot().neutral(), motion.calibration())
+                    .map_err(Refusal::Travel)?;
                 if resting {
                     return Err(Refusal::Resting);
                 }
@@ -210,16 +208,6 @@ impl<R: Robot> Console<R> {
             }
         }
         Ok(Answer::Done)
-    }
-
-    fn pose_at(&self, angles: &[i32; 4]) -> Result<Pose, Servo> {
-        for (servo, angle) in Servo::ALL.into_iter().zip(angles) {
-            if angle.abs() > LARGEST_ANGLE {
-                return Err(servo);
-            }
-        }
-        let motion = &self.motion;
-        Pose::at_centideg(angles, &motion.robot().neutral(), motion.calibration())
     }
 
     /// Prints a line of an answer; returns what is left of it.
@@ -252,7 +240,7 @@ impl<R: Robot> Console<R> {
             },
             Answer::Done => {
                 Text::Ok.print(out)?;
-                answer::ascii(out, self.line.text())?;
+                answer::ascii(out, self.line.text().iter().copied())?;
             }
             Answer::Status => self.print_status(out, counters)?,
         }
@@ -273,12 +261,12 @@ impl<R: Robot> Console<R> {
         let mut gait = first;
         loop {
             let name = robot.name(gait);
-            length += 1 + name.len() as u8;
+            length += 1 + name.length();
             if length > ROOM {
                 return Ok(Some(gait));
             }
             out.write_char(if gait == first { ' ' } else { '|' })?;
-            answer::ascii(out, &name)?;
+            answer::ascii(out, name)?;
             match gait.next(robot) {
                 Some(next) => gait = next,
                 None => return Ok(None),
@@ -329,13 +317,8 @@ impl<R: Robot> Console<R> {
 
     /// A gait's name as a value without a blank: `arc-left`.
     fn print_key<W: uWrite + ?Sized>(&self, out: &mut W, gait: GaitId) -> Result<(), W::Error> {
-        let mut name = self.motion.robot().name(gait);
-        for byte in &mut name {
-            if *byte == b' ' {
-                *byte = b'-';
-            }
-        }
-        answer::ascii(out, &name)
+        let name = self.motion.robot().name(gait);
+        answer::ascii(out, name.map(|byte| if byte == b' ' { b'-' } else { byte }))
     }
 }
 

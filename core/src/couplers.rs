@@ -103,6 +103,7 @@ impl<'a> Couplers<'a> {
     /// bars' squared ones. None where the couplers do not close the loop, or so
     /// near to that, or to coinciding crank tips, that the type-2 margin is below
     /// a tenth, the least limit that a robot may have.
+    #[inline(always)]
     pub fn at(&self, tips_sq: u32) -> Option<Lean> {
         let (left, right) = (self.left, self.right);
         let reach_sq = reach_sq(left, right);

@@ -36,6 +36,7 @@ impl<'a> Curve<'a> {
 
     /// The function's value; None below the table's first octave, where the
     /// argument is less than 1/1024 of the largest.
+    #[inline(always)]
     pub fn at(&self, argument: u32) -> Option<i16> {
         if argument < self.largest >> OCTAVES || argument == 0 {
             return None;

@@ -103,6 +103,8 @@ impl<'a> FiveBar<'a> {
 
     /// The margins with the cranks in these directions of the end's own frame. All
     /// zero where the loop cannot close or is too near to that.
+    // Inlined into its one caller, where a firmware's bars are constants.
+    #[inline(always)]
     pub fn margins(&self, left: Direction, right: Direction) -> EndMargins {
         // Half the step of the bars, so that the distance of the crank tips fits
         // and the shift is one of whole bytes.
@@ -137,6 +139,7 @@ struct Tips {
 impl Tips {
     /// The type-1 margin of a crank: `(1 + skew) cross + rise dot` over twice its
     /// coupler.
+    #[inline(never)]
     fn elbow(self, crank: Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
         let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);
         let dot = upper((mul(self.along, crank.cos) + mul(self.across, crank.sin)) << 1);

@@ -6,7 +6,6 @@
 //! 128 samples in flash; between samples a straight line is within 0.1 deg of
 //! the real curve, which whoever makes the tables has checked.
 
-use heapless::Vec;
 use lizard_avr::{Flash, mul};
 
 use crate::pose::Pose;
@@ -28,8 +27,41 @@ pub const MOST_WAVES: usize = 255;
 /// Samples over a cycle, 1/65536 turn at a gain of 1.
 pub type Wave = [i16; SAMPLES];
 
-/// A gait's name: also its console command.
-pub type Name = Vec<u8, LONGEST_NAME>;
+/// A gait's name, byte by byte from flash, its words with a blank in between: also
+/// its console command.
+#[derive(Clone, Copy)]
+pub struct Name<'a> {
+    names: Flash<'a, [u8]>,
+    at: u16,
+    left: u8,
+}
+
+impl<'a> Name<'a> {
+    /// The name of a gait among the names of its robot.
+    pub const fn of(gait: &Gait, names: Flash<'a, [u8]>) -> Self {
+        Self {
+            names,
+            at: gait.name_start,
+            left: gait.name_length,
+        }
+    }
+
+    /// Bytes that are left of it.
+    pub const fn length(&self) -> u8 {
+        self.left
+    }
+}
+
+impl Iterator for Name<'_> {
+    type Item = u8;
+
+    fn next(&mut self) -> Option<u8> {
+        self.left = self.left.checked_sub(1)?;
+        let byte = self.names.get(usize::from(self.at))?.load();
+        self.at += 1;
+        Some(byte)
+    }
+}
 
 /// What one servo does in a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -29,7 +29,7 @@ pub enum Hazard {
     Stroke {
         /// Which one.
         side: Side,
-        /// Its travel from nominal, hundredths of a millimetre.
-        travel: i32,
+        /// Its length, in its own steps.
+        length: u16,
     },
 }

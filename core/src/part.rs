@@ -33,8 +33,15 @@ pub enum Side {
 }
 
 impl Servo {
-    /// All four, in order.
-    pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
+    /// The servo at a place of an array of four; past the end, the last one.
+    pub const fn at(place: usize) -> Self {
+        match place {
+            0 => Self::A1,
+            1 => Self::A2,
+            2 => Self::A3,
+            _ => Self::A4,
+        }
+    }
 
     /// Its place in an array of four.
     pub const fn index(self) -> usize {

@@ -21,24 +21,22 @@ impl Pose {
     /// All servos at their neutral angle: the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// The pose at four chassis angles in hundredths of a degree, each less than
-    /// two turns.
+    /// The pose at four chassis angles.
     ///
     /// # Errors
     /// The first servo whose travel does not reach its angle.
-    pub fn at_centideg(
-        angles: &[i32; 4],
+    pub fn at(
+        angles: &[Angle; 4],
         neutral: &[Angle; 4],
         calibration: &[Calibration; 4],
     ) -> Result<Self, Servo> {
         let mut pose = Self::NEUTRAL;
-        for servo in Servo::ALL {
-            let index = servo.index();
-            let sweep = neutral[index].sweep_to(Angle::from_centideg(angles[index]));
-            if !calibration[index].reaches(sweep) {
-                return Err(servo);
+        for place in 0..4 {
+            let sweep = neutral[place].sweep_to(angles[place]);
+            if !calibration[place].reaches(sweep) {
+                return Err(Servo::at(place));
             }
-            pose.0[index] = sweep;
+            pose.0[place] = sweep;
         }
         Ok(pose)
     }

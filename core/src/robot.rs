@@ -55,18 +55,9 @@ pub trait Robot {
         gait.map_or(Gait::STILL, Flash::load)
     }
 
-    /// A gait's name, its words with a blank in between.
-    fn name(&self, id: GaitId) -> Name {
-        let gait = self.gait(id);
-        let start = usize::from(gait.name_start);
-        let mut name = Name::new();
-        for at in start..start + usize::from(gait.name_length) {
-            if let Some(byte) = self.names().get(at) {
-                // A name is never longer than the type holds.
-                _ = name.push(byte.load());
-            }
-        }
-        name
+    /// A gait's name.
+    fn name(&self, id: GaitId) -> Name<'_> {
+        Name::of(&self.gait(id), self.names())
     }
 }
 

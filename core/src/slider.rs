@@ -8,7 +8,6 @@
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::five_bar::upper;
-use crate::root::root;
 use crate::trig::Direction;
 use crate::units::Scale;
 
@@ -68,17 +67,9 @@ impl Slider {
         min * min <= length_sq && length_sq <= max * max
     }
 
-    /// The travel from nominal at a squared length, in hundredths of a millimetre.
-    pub fn travel(&self, length_sq: u32) -> i32 {
-        self.from_nominal(root(length_sq))
-    }
-
-    /// The ends of the stroke as travel from nominal, in hundredths of a millimetre.
-    pub fn stroke(&self) -> [i32; 2] {
-        [self.from_nominal(self.min), self.from_nominal(self.max)]
-    }
-
-    fn from_nominal(&self, length: u16) -> i32 {
+    /// The travel from nominal at a length, in hundredths of a millimetre.
+    #[inline(always)]
+    pub fn travel(&self, length: u16) -> i32 {
         self.scale
             .hundredths(i32::from(length) - i32::from(self.nominal))
     }

@@ -83,6 +83,7 @@ texts! {
     Right = "right";
     Slider = " slider is at ";
     Within = " mm, stroke ";
+    Dots = "..";
     TooLong = "a line has at most 63 characters";
     Resting = "servos are resting, send stand first";
 }

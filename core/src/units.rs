@@ -109,6 +109,7 @@ impl Sine {
 impl Scale {
     /// A length of this step in hundredths of a millimetre, rounded to nearest;
     /// `length` within 16 bits, whatever its sign.
+    #[inline(always)]
     pub fn hundredths(self, length: i32) -> i32 {
         let size = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
         let signed = if length < 0 { -size } else { size };

@@ -62,6 +62,16 @@ impl Body<'_> {
                 format!("{:?}", robot.calibration),
             ),
             (
+                "Whether the tail is built as the head is.",
+                "ENDS_ALIKE: bool",
+                (head == tail).to_string(),
+            ),
+            (
+                "Whether the right side is built as the left one is.",
+                "SIDES_ALIKE: bool",
+                (left == right).to_string(),
+            ),
+            (
                 "The head's loop, A1 on its left.",
                 "HEAD: FiveBar<'static>",
                 five_bar(head, "HEAD"),
