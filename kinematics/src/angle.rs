@@ -179,7 +179,8 @@ pub fn atan2_all<const N: usize>(y: [f64; N], x: [f64; N]) -> [f64; N] {
     degrees
 }
 
-/// The same direction in (-180, 180] degrees.
+/// The same direction in (-180, 180] degrees, exactly. Not a number if the angle
+/// is infinite.
 ///
 /// ```
 /// use lizard_kinematics::wrap;
@@ -190,9 +191,12 @@ pub fn wrap(degrees: f64) -> f64 {
     if degrees > -180.0 && degrees <= 180.0 {
         return degrees;
     }
-    let turned = degrees - 360.0 * libm::floor(degrees / 360.0);
+    // The remainder is exact, whatever the size of the angle.
+    let turned = degrees % 360.0;
     if turned > 180.0 {
         turned - 360.0
+    } else if turned <= -180.0 {
+        turned + 360.0
     } else {
         turned
     }

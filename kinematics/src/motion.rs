@@ -7,8 +7,10 @@
 
 use core::f64::consts::PI;
 
+use crate::end::End;
 use crate::five_bar::FiveBarPose;
 use crate::lizard::Solution;
+use crate::side::Side;
 use crate::slider::SliderPose;
 use crate::vector::Vector;
 
@@ -33,25 +35,25 @@ pub struct Derivative<T> {
 /// How everything passive moves, chassis frame. Legs follow their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Head couplers.
+    /// Head, left coupler; degrees.
     pub theta2: Derivative<f64>,
-    /// Head couplers.
+    /// Head, right coupler; degrees.
     pub theta3: Derivative<f64>,
-    /// Tail couplers.
+    /// Tail, left coupler; degrees.
     pub theta6: Derivative<f64>,
-    /// Tail couplers.
+    /// Tail, right coupler; degrees.
     pub theta7: Derivative<f64>,
-    /// Head point.
+    /// Head point; mm.
     pub head: Derivative<Vector>,
-    /// Tail point.
+    /// Tail point; mm.
     pub tail: Derivative<Vector>,
-    /// Direction of the left slider.
+    /// Direction of the left slider; degrees.
     pub phi_left: Derivative<f64>,
-    /// Travel of the left slider.
+    /// Travel of the left slider; mm.
     pub s_left: Derivative<f64>,
-    /// Direction of the right slider.
+    /// Direction of the right slider; degrees.
     pub phi_right: Derivative<f64>,
-    /// Travel of the right slider.
+    /// Travel of the right slider; mm.
     pub s_right: Derivative<f64>,
 }
 
@@ -66,30 +68,35 @@ impl Solution {
             rate: drive.rate[servo] * (PI / 180.0),
             acceleration: drive.acceleration[servo] * (PI / 180.0),
         };
-        let [a1, a2, a3, a4] = [spin(0), spin(1), spin(2), spin(3)];
-        let head = loop_motion(&self.head, a1, a2);
-        // The tail is solved in its own frame, where every angle is mirrored.
-        let tail = loop_motion(&self.tail, a4.map(|w| -w), a3.map(|w| -w));
-        let (phi_left, s_left) = slider_motion(
-            &self.left,
-            (self.left.rear_tip, a4),
-            (self.left.front_arm(), a1),
-        );
-        let (phi_right, s_right) = slider_motion(
-            &self.right,
-            (self.right.rear_tip, a3),
-            (self.right.front_arm(), a2),
-        );
+        let spins = [spin(0), spin(1), spin(2), spin(3)];
+        let end_motion = |end: End| {
+            let signed = |w: f64| end.sign() * w;
+            let [left, right] = end.pick(spins).map(|spin| spin.map(signed));
+            let LoopMotion { left, right, point } = loop_motion(self.end(end), left, right);
+            LoopMotion {
+                left: left.map(signed).map(degrees),
+                right: right.map(signed).map(degrees),
+                point: point.map(|v| end.mirror(v)),
+            }
+        };
+        let (head, tail) = (end_motion(End::Head), end_motion(End::Tail));
+        let side_motion = |side: Side| {
+            let ([front, rear], pose) = (side.pick(spins), self.side(side));
+            let (phi, s) = slider_motion(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
+            (phi.map(degrees), s)
+        };
+        let (phi_left, s_left) = side_motion(Side::Left);
+        let (phi_right, s_right) = side_motion(Side::Right);
         Motion {
-            theta2: head.left.map(degrees),
-            theta3: head.right.map(degrees),
-            theta6: tail.left.map(|w| degrees(-w)),
-            theta7: tail.right.map(|w| degrees(-w)),
-            head: head.apex,
-            tail: tail.apex.map(Vector::mirrored),
-            phi_left: phi_left.map(degrees),
+            theta2: head.left,
+            theta3: head.right,
+            theta6: tail.left,
+            theta7: tail.right,
+            head: head.point,
+            tail: tail.point,
+            phi_left,
             s_left,
-            phi_right: phi_right.map(degrees),
+            phi_right,
             s_right,
         }
     }
@@ -111,7 +118,7 @@ fn degrees(radians: f64) -> f64 {
 struct LoopMotion {
     left: Spin,
     right: Spin,
-    apex: Derivative<Vector>,
+    point: Derivative<Vector>,
 }
 
 /// d/dt and d2/dt2 of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3.
@@ -143,7 +150,7 @@ fn loop_motion(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopM
             rate: w3,
             acceleration: e3,
         },
-        apex: Derivative {
+        point: Derivative {
             rate: r1.left() * w1 + r2.left() * w2,
             acceleration: turning(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
         },

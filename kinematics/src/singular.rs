@@ -6,16 +6,16 @@
 //! left crank: with it fixed, a singular right crank is where two circles meet.
 
 use crate::angle::wrap;
-use crate::five_bar::{Branch, FiveBar};
+use crate::five_bar::{AssemblyMode, FiveBar};
 use crate::vector::Vector;
 
 /// A kind of singular position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Singularity {
     /// Type 2: the couplers lie on one line, or the crank tips coincide; the
-    /// apex is loose although both servos hold.
+    /// end point is loose although both servos hold.
     Couplers,
-    /// Type 1: left crank and coupler lie on one line; the apex cannot move
+    /// Type 1: left crank and coupler lie on one line; the end point cannot move
     /// along it.
     LeftArm,
     /// Type 1 of the right arm.
@@ -35,7 +35,7 @@ pub struct SingularPose {
 
 impl FiveBar {
     /// Every singular position with this left crank angle (degrees), on the
-    /// branch that the robot is built on; at most ten.
+    /// assembly mode that the robot is built in; at most ten.
     ///
     /// Coinciding crank tips are single points of the plane, which no crank
     /// angle but theirs finds: see [`FiveBar::coinciding_tips`].
@@ -50,17 +50,17 @@ impl FiveBar {
             .filter(|reach| *reach > 0.0)
             .flat_map(move |reach| bars.right_cranks_at(tip, reach))
             .map(|theta| (Singularity::Couplers, theta));
-        // Type 1 left: the apex at the stretched or the folded arm's end.
+        // Type 1 left: the end point at the stretched or the folded arm's end.
         let left_arm = [l2, -l2]
             .into_iter()
             .flat_map(move |reach| bars.right_cranks_at(tip + left * reach, l3))
             .map(|theta| (Singularity::LeftArm, theta));
-        // Type 1 right: the apex on a circle about the right shaft, l4 +- l3.
+        // Type 1 right: the end point on a circle about the right shaft, l4 +- l3.
         let right_arm = [bars.crank_right + l3, bars.crank_right - l3]
             .into_iter()
             .flat_map(move |reach| {
                 meet(tip, l2, bars.right_shaft(), reach.abs())
-                    .map(move |apex| (apex - bars.right_shaft()) * (1.0 / reach))
+                    .map(move |point| (point - bars.right_shaft()) * (1.0 / reach))
             })
             .filter(|crank| crank.is_finite())
             .map(|crank| (Singularity::RightArm, crank.angle()));
@@ -75,7 +75,7 @@ impl FiveBar {
             .filter(move |pose| bars.is_singular(pose))
     }
 
-    /// The crank angles where both crank tips are at one point and the apex is
+    /// The crank angles where both crank tips are at one point and the end point is
     /// free on a circle; needs equal couplers.
     pub fn coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
         let (left, right) = (self.left_shaft(), self.right_shaft());
@@ -95,11 +95,11 @@ impl FiveBar {
         meet(point, reach, shaft, self.crank_right).map(move |tip| (tip - shaft).angle())
     }
 
-    /// A candidate's margin vanishes on the robot's own branch; the other
-    /// branch shares the circles but not the arms. A couplers' candidate may
+    /// A candidate's margin vanishes in the robot's own assembly mode; the
+    /// other shares the circles but not the arms. A couplers' candidate may
     /// miss its closure by rounding and counts.
     fn is_singular(&self, pose: &SingularPose) -> bool {
-        match self.forward_on(Branch::Ahead, pose.theta_left, pose.theta_right) {
+        match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
             Ok(closed) => {
                 let margin = match pose.kind {

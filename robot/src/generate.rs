@@ -3,7 +3,7 @@
 
 use std::fmt::{self, Display, Write};
 
-use lizard_kinematics::{FiveBar, Lizard, Slider};
+use lizard_kinematics::{End, FiveBar, Lizard, Side, Slider};
 
 use crate::Robot;
 use crate::servo::Servo;
@@ -58,25 +58,25 @@ impl Display for Body<'_> {
             (
                 "The head's loop, A1 on its left.",
                 "HEAD: FiveBar",
-                five_bar(&lizard.head(), "HEAD_SLOPE"),
+                five_bar(&lizard.end(End::Head), "HEAD_SLOPE"),
             ),
             (
                 "The tail's loop in tail-local angles, A4 on its left.",
                 "TAIL: FiveBar",
                 five_bar(
-                    &lizard.tail(),
+                    &lizard.end(End::Tail),
                     slopes(lizard).last().map_or("HEAD_SLOPE", |(name, _)| name),
                 ),
             ),
             (
                 "The slider between A1 and A4.",
                 "LEFT: Slider",
-                slider(robot_stroke(self.0), &lizard.left()),
+                slider(robot_stroke(self.0), &lizard.side(Side::Left)),
             ),
             (
                 "The slider between A2 and A3.",
                 "RIGHT: Slider",
-                slider(robot_stroke(self.0), &lizard.right()),
+                slider(robot_stroke(self.0), &lizard.side(Side::Right)),
             ),
             (
                 "Smallest margins, Q15, rounded up.",
@@ -176,7 +176,7 @@ fn five_bar(bars: &FiveBar, slope: &str) -> String {
 /// The tables of coupler slopes: one serves both loops where the couplers of
 /// head and tail are alike.
 fn slopes(lizard: &Lizard) -> Vec<(&'static str, i64)> {
-    let [head, tail] = [lizard.head(), lizard.tail()].map(|bars| length(bars.coupler_left));
+    let [head, tail] = End::ALL.map(|end| length(lizard.end(end).coupler_left));
     let mut slopes = vec![("HEAD_SLOPE", head), ("TAIL_SLOPE", tail)];
     slopes.dedup_by_key(|(_, coupler)| *coupler);
     slopes

@@ -35,7 +35,7 @@ pub use audit::{Audit, Least, Peak};
 pub use error::{Error, Hint, Problem};
 pub use gait::{Gait, Stride};
 pub use ground::{Feet, Ground, Travel};
-pub use path::{Loop, Path, PathLeg};
+pub use path::{Path, PathLeg};
 pub use report::{Report, Row};
 pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
 pub use servo::Servo;

@@ -1,6 +1,6 @@
 //! The robot's measurements in robot.toml, and what each of them may be.
 
-use lizard_kinematics::{Leg, Limits, Links, Lizard};
+use lizard_kinematics::{Leg, Limits, Links, Lizard, Side};
 
 use crate::error::{Checked, Problem};
 use crate::ground::Ground;
@@ -248,7 +248,10 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
 /// The ends of the stroke must be lengths that a slider can have and that the
 /// firmware holds.
 pub(crate) fn strokes(lizard: &Lizard, limits: &Limits) -> Checked<()> {
-    let (left, right) = (lizard.left().nominal, lizard.right().nominal);
+    let (left, right) = (
+        lizard.side(Side::Left).nominal,
+        lizard.side(Side::Right).nominal,
+    );
     let (min, max) = (-left.min(right), SIDE_REACH - left.max(right));
     for (key, value) in [
         ("limits.stroke_min", limits.stroke_min),

@@ -40,7 +40,7 @@ fn the_object_has_exactly_the_promised_keys() {
     assert_eq!(keys(&one["legs"]["fl"]), "coupler follower");
     assert_eq!(
         keys(&one["margins"]),
-        "apex_head apex_tail leg_bl leg_br leg_fl leg_fr type1_a1 type1_a2 type1_a3 type1_a4"
+        "leg_lf leg_lh leg_rf leg_rh type1_a1 type1_a2 type1_a3 type1_a4 type2_head type2_tail"
     );
     assert_eq!(one["safe"], true);
     assert_eq!(one["why"], Value::Array(vec![]));

@@ -1,7 +1,7 @@
 //! The whole robot: loops, conventions, neutral pose, limits.
 
 use crate::reference::{any_lizard, lizard, loop_gap};
-use lizard_kinematics::{Check, Lanes, Limits, Pose, Vector, wrap};
+use lizard_kinematics::{Check, End, Lanes, Limits, Pose, Vector, wrap};
 use proptest::prelude::*;
 
 const NEUTRAL: [f64; 4] = [138.590378, 41.409622, 318.590378, 221.409622];
@@ -23,10 +23,10 @@ fn at_the_neutral_pose_the_sliders_are_at_nominal_and_the_head_at_57_840() {
     let solution = lizard().solve(&NEUTRAL.into()).unwrap();
     assert!(solution.left.s.abs() < 1e-6 && solution.right.s.abs() < 1e-6);
     assert!((solution.head.gap.length() - 65.0).abs() < 1e-6);
-    assert!((solution.head.apex - Vector::new(0.0, 57.840)).length() < 1e-3);
+    assert!((solution.head.end_point - Vector::new(0.0, 57.840)).length() < 1e-3);
     assert!((solution.head_point() - Vector::new(0.0, 125.340)).length() < 1e-3);
     assert!((solution.tail_point() - Vector::new(0.0, -125.340)).length() < 1e-3);
-    assert!((solution.margins.apex_head - 0.98791).abs() < 1e-5);
+    assert!((solution.margins.type2[0] - 0.98791).abs() < 1e-5);
     assert!((solution.left.phi() - 90.0).abs() < 1e-9);
     assert!(LIMITS.allow(&solution));
 }
@@ -44,8 +44,8 @@ proptest! {
         let s = robot.solve(&pose).unwrap();
         // In chassis angles the tail's loop is the head's with other signs only
         // in its frame, so one vector loop serves both.
-        let head = loop_gap(&robot.head(), [t1, s.theta2(), s.theta3(), t4]);
-        let tail = loop_gap(&robot.tail(), [t5, s.theta6(), s.theta7(), t8]);
+        let head = loop_gap(&robot.end(End::Head), [t1, s.theta2(), s.theta3(), t4]);
+        let tail = loop_gap(&robot.end(End::Tail), [t5, s.theta6(), s.theta7(), t8]);
         prop_assert!(head[0].hypot(head[1]) < 1e-9);
         prop_assert!(tail[0].hypot(tail[1]) < 1e-9);
         // R10 + R14 = R11 + R12 + R13, and alike on the right.
@@ -77,8 +77,8 @@ proptest! {
         let (one, two) = (one.unwrap(), two.unwrap());
         prop_assert!((one.head_point().x + two.head_point().x).abs() < 1e-9);
         prop_assert!((one.left.s - two.right.s).abs() < 1e-9);
-        prop_assert!((one.margins.type1_a1 - two.margins.type1_a2).abs() < 1e-9);
-        prop_assert!((one.margins.type1_a3 - two.margins.type1_a4).abs() < 1e-9);
+        prop_assert!((one.margins.type1[0] - two.margins.type1[1]).abs() < 1e-9);
+        prop_assert!((one.margins.type1[2] - two.margins.type1[3]).abs() < 1e-9);
     }
 
     #[test]
@@ -95,8 +95,12 @@ proptest! {
 #[test]
 fn head_and_tail_angles_lead_back_to_the_points() {
     let robot = lizard();
-    let [a1, a2] = robot.head_angles(Vector::new(8.0, 52.0)).unwrap();
-    let [a3, a4] = robot.tail_angles(Vector::new(-5.0, 60.0)).unwrap();
+    let [a1, a2] = robot
+        .point_angles(End::Head, Vector::new(8.0, 52.0))
+        .unwrap();
+    let [a3, a4] = robot
+        .point_angles(End::Tail, Vector::new(-5.0, 60.0))
+        .unwrap();
     let solution = robot.solve(&[a1, a2, a3, a4].into()).unwrap();
     assert!((solution.head_point() - Vector::new(8.0, 119.5)).length() < 1e-9);
     assert!((solution.tail_point() - Vector::new(-5.0, -127.5)).length() < 1e-9);
@@ -115,7 +119,7 @@ fn each_broken_limit_has_its_sentence() {
     let [_, a2, a3, a4] = NEUTRAL;
     assert_eq!(
         says([176.0, a2, a3, a4]),
-        ["margin leg_fl 0.070 is below 0.300"]
+        ["margin leg_lf 0.070 is below 0.300"]
     );
     assert_eq!(
         says([60.0, 60.0, a3, a4])[0],
@@ -146,12 +150,12 @@ fn margins_have_ten_names_and_a_least() {
     let names: Vec<_> = margins.iter().map(|(check, _)| check.name()).collect();
     assert_eq!(
         names.join(" "),
-        "apex_head apex_tail type1_a1 type1_a2 type1_a3 type1_a4 leg_fl leg_fr leg_br leg_bl"
+        "type2_head type2_tail type1_a1 type1_a2 type1_a3 type1_a4 leg_lf leg_rf leg_rh leg_lh"
     );
     let (least, value) = margins.min();
     assert!(matches!(
         least,
-        Check::LegFl | Check::LegFr | Check::LegBr | Check::LegBl
+        Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh
     ));
     assert!((value - 41.409622f64.to_radians().sin()).abs() < 1e-12);
 }
@@ -181,9 +185,9 @@ proptest! {
                 (passive.s_left, p.s_left), (passive.s_right, p.s_right),
                 (head.x, alone.head_point().x), (head.y, alone.head_point().y),
                 (tail.x, alone.tail_point().x), (tail.y, alone.tail_point().y),
-                (all.margins.apex_head, alone.margins.apex_head),
-                (all.margins.type1_a3, alone.margins.type1_a3),
-                (all.margins.leg_bl, alone.margins.leg_bl),
+                (all.margins.type2[0], alone.margins.type2[0]),
+                (all.margins.type1[2], alone.margins.type1[2]),
+                (all.margins.leg[3], alone.margins.leg[3]),
             ] {
                 prop_assert_eq!(lane.0[i].to_bits(), one.to_bits());
             }

@@ -98,7 +98,7 @@ proptest! {
         prop_assume!(now.is_ok());
         let now = now.unwrap();
         // Near a singularity the third derivative swamps any fixed step.
-        prop_assume!(now.margins.apex_head > 0.3 && now.margins.apex_tail > 0.3);
+        prop_assume!(now.margins.type2[0] > 0.3 && now.margins.type2[1] > 0.3);
         prop_assume!(now.head.gap.length() > 5.0 && now.tail.gap.length() > 5.0);
         prop_assume!(now.left.d > 20.0 && now.right.d > 20.0);
         let (rates, accelerations) = numbers(&now, &drive);
