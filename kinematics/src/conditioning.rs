@@ -73,3 +73,36 @@ impl FiveBarPose {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use crate::motion::Drive;
+    use crate::reference::{any_lizard, any_pose};
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn the_jacobian_moves_the_head_as_the_rates_do(
+            robot in any_lizard(), pose in any_pose(), rate in [-300.0..300.0, -300.0..300.0f64],
+        ) {
+            let solved = robot.solve(&pose.into());
+            prop_assume!(solved.is_ok());
+            let solved = solved.unwrap();
+            prop_assume!(solved.head.type2 > 1e-3);
+            let drive = Drive { rate: [rate[0], rate[1], 0.0, 0.0], ..Drive::default() };
+            let truth = solved.motion(&drive).head.rate;
+            let j = solved.head.jacobian();
+            let ours = j.left * rate[0].to_radians() + j.right * rate[1].to_radians();
+            prop_assert!((truth - ours).length() < 1e-9 * (1.0 + truth.length()) / solved.head.type2);
+            let [largest, smallest] = j.singular_values();
+            prop_assert!((smallest / largest - solved.head.lci()).abs() < 1e-9);
+            prop_assert!((largest * smallest - j.determinant().abs()).abs() < 1e-9 * largest * largest);
+        }
+    }
+}

@@ -182,3 +182,99 @@ fn put<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, en
     matrix[row][column] = entry.x;
     matrix[row + 1][column] = entry.y;
 }
+
+#[cfg(test)]
+#[allow(clippy::needless_range_loop)] // Matrices read best with their indices.
+mod tests {
+    use proptest::prelude::*;
+
+    use crate::reference::{any_lizard, any_pose};
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn k_and_k_star_are_the_derivatives_of_the_loop_equations(
+            robot in any_lizard(), pose in any_pose(),
+        ) {
+            let solved = robot.solve(&pose.into());
+            prop_assume!(solved.is_ok());
+            let solved = solved.unwrap();
+            let passive = solved.passive();
+            let step = 1e-4;
+            let radian = 1f64.to_degrees();
+            let k = solved.active_matrix();
+            for column in 0..4 {
+                let moved = |by: f64| {
+                    let mut active = pose;
+                    active[column] += by * radian;
+                    robot.residual(active, &passive)
+                };
+                let (up, down) = (moved(step), moved(-step));
+                for row in 0..8 {
+                    let slope = (up[row] - down[row]) / (2.0 * step);
+                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K {row} {column}");
+                }
+            }
+            let k = solved.passive_matrix();
+            for column in 0..8 {
+                let moved = |by: f64| {
+                    let mut p = passive;
+                    let field = [
+                        &mut p.theta2, &mut p.theta3, &mut p.theta6, &mut p.theta7,
+                        &mut p.phi_left, &mut p.s_left, &mut p.phi_right, &mut p.s_right,
+                    ].into_iter().nth(column).unwrap();
+                    *field += if matches!(column, 5 | 7) { by } else { by * radian };
+                    robot.residual(pose, &p)
+                };
+                let (up, down) = (moved(step), moved(-step));
+                for row in 0..8 {
+                    let slope = (up[row] - down[row]) / (2.0 * step);
+                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K* {row} {column}");
+                }
+            }
+        }
+
+        #[test]
+        fn the_blocks_multiply_to_the_determinant_of_k_star(
+            robot in any_lizard(), pose in any_pose(),
+        ) {
+            let solved = robot.solve(&pose.into());
+            prop_assume!(solved.is_ok());
+            let solved = solved.unwrap();
+            let product = solved.blocks().determinant();
+            let eliminated = determinant(solved.passive_matrix());
+            let l = robot.links;
+            let scale = l.l2 * l.l3 * l.l7 * l.l8 * solved.left.d * solved.right.d;
+            prop_assert!((product - eliminated).abs() < 1e-9 * scale, "{product} {eliminated}");
+        }
+    }
+
+    /// By Gauss with pivoting.
+    fn determinant(mut m: [[f64; 8]; 8]) -> f64 {
+        let mut product = 1.0;
+        for i in 0..8 {
+            let pivot = (i..8)
+                .max_by(|&a, &b| m[a][i].abs().total_cmp(&m[b][i].abs()))
+                .unwrap();
+            if pivot != i {
+                m.swap(pivot, i);
+                product = -product;
+            }
+            product *= m[i][i];
+            if m[i][i] == 0.0 {
+                return 0.0;
+            }
+            for row in i + 1..8 {
+                let factor = m[row][i] / m[i][i];
+                for column in i..8 {
+                    m[row][column] -= factor * m[i][column];
+                }
+            }
+        }
+        product
+    }
+}

@@ -26,9 +26,12 @@
 //! # Determinism
 //! Only IEEE basic operations and `libm` are used, so the same input gives the
 //! same bits on every host, and a build script, a test and a web page agree.
-#![no_std]
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+
+#[cfg(test)]
+extern crate self as lizard_kinematics;
 
 mod angle;
 mod conditioning;
@@ -48,6 +51,10 @@ mod singular;
 mod slider;
 mod vector;
 mod workspace;
+
+#[cfg(test)]
+#[path = "../tests/kinematics/reference.rs"]
+mod reference;
 
 pub use angle::{atan2, atan2_all, sin_cos, sin_cos_all, wrap};
 pub use conditioning::Jacobian;

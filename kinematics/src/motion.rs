@@ -183,3 +183,129 @@ fn slider_motion(
         },
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::lizard::{Lizard, Pose};
+    use crate::reference::{any_lizard, any_pose};
+    use crate::wrap;
+
+    /// Longest step of the central differences, s.
+    const STEP: f64 = 1e-4;
+    /// No angle turns by more than about this in a step, deg.
+    const TURN: f64 = 0.1;
+
+    /// Every passive quantity in the order of [`numbers`].
+    fn values(s: &Solution) -> [f64; 12] {
+        let (head, tail) = (s.head_point(), s.tail_point());
+        [
+            s.theta2(),
+            s.theta3(),
+            s.theta6(),
+            s.theta7(),
+            s.left.phi(),
+            s.right.phi(),
+            head.x,
+            head.y,
+            tail.x,
+            tail.y,
+            s.left.s,
+            s.right.s,
+        ]
+    }
+
+    /// Rates and accelerations in the order of [`values`].
+    fn numbers(s: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
+        let m = s.motion(drive);
+        (
+            [
+                m.theta2.rate,
+                m.theta3.rate,
+                m.theta6.rate,
+                m.theta7.rate,
+                m.phi_left.rate,
+                m.phi_right.rate,
+                m.head.rate.x,
+                m.head.rate.y,
+                m.tail.rate.x,
+                m.tail.rate.y,
+                m.s_left.rate,
+                m.s_right.rate,
+            ],
+            [
+                m.theta2.acceleration,
+                m.theta3.acceleration,
+                m.theta6.acceleration,
+                m.theta7.acceleration,
+                m.phi_left.acceleration,
+                m.phi_right.acceleration,
+                m.head.acceleration.x,
+                m.head.acceleration.y,
+                m.tail.acceleration.x,
+                m.tail.acceleration.y,
+                m.s_left.acceleration,
+                m.s_right.acceleration,
+            ],
+        )
+    }
+
+    /// The robot `t` seconds later, under constant servo accelerations.
+    fn later(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
+        let mut there = pose;
+        for (i, angle) in there.iter_mut().enumerate() {
+            *angle += drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0;
+        }
+        robot.solve(&Pose::from(there)).ok()
+    }
+
+    fn drives() -> impl Strategy<Value = Drive> {
+        let four = |most: f64| [-most..most, -most..most, -most..most, -most..most];
+        (four(300.0), four(2000.0)).prop_map(|(rate, acceleration)| Drive { rate, acceleration })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn rates_and_accelerations_are_the_differences_of_positions(
+            robot in any_lizard(), pose in any_pose(), drive in drives(),
+        ) {
+            let now = robot.solve(&pose.into());
+            prop_assume!(now.is_ok());
+            let now = now.unwrap();
+            // Near a singularity the third derivative swamps any fixed step.
+            prop_assume!(now.margins.type2[0] > 0.3 && now.margins.type2[1] > 0.3);
+            prop_assume!(now.head.gap.length() > 5.0 && now.tail.gap.length() > 5.0);
+            prop_assume!(now.left.d > 20.0 && now.right.d > 20.0);
+            let (rates, accelerations) = numbers(&now, &drive);
+            let largest = |all: &[f64; 12]| all.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
+            let (fast, hard) = (largest(&rates), largest(&accelerations));
+            let step = STEP.min(TURN / fast);
+            // Five points: error of the fourth order in the step.
+            let at = |steps: f64| later(&robot, pose, &drive, steps * step).map(|s| values(&s));
+            let here = values(&now);
+            let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(at) else {
+                return Err(TestCaseError::fail("a neighbour does not close"));
+            };
+            for i in 0..12 {
+                let from_here = |there: f64| {
+                    if i < 6 { wrap(there - here[i]) } else { there - here[i] }
+                };
+                let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(from_here);
+                let rate = (a - 8.0 * b + 8.0 * d - e) / (12.0 * step);
+                let acceleration = (16.0 * (b + d) - a - e) / (12.0 * step * step);
+                prop_assert!((rate - rates[i]).abs() < 1e-6 * fast, "{i}: {rate} {}", rates[i]);
+                prop_assert!(
+                    (acceleration - accelerations[i]).abs() < 1e-6 * hard.max(100.0),
+                    "{i}: {acceleration} {}", accelerations[i]
+                );
+            }
+        }
+    }
+}

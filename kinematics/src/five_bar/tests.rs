@@ -1,6 +1,6 @@
 //! The five-bar against Newton's method and the law of cosines.
 
-use crate::reference::{HEAD, apex, loop_gap, newton};
+use crate::reference::{HEAD, end_point, loop_gap, newton};
 use lizard_kinematics::{AssemblyMode, Elbow, Fault, FiveBar, Vector, wrap};
 use proptest::prelude::*;
 
@@ -29,13 +29,13 @@ proptest! {
     fn every_loop_that_closes_closes_to_a_billionth_of_a_millimetre(
         bars in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
     ) {
-        for branch in [AssemblyMode::Ahead, AssemblyMode::Behind] {
-            if let Ok(pose) = bars.forward_in(branch, left, right) {
+        for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
+            if let Ok(pose) = bars.forward_in(mode, left, right) {
                 let [x, y] = loop_gap(
                     &bars,
                     [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
                 );
-                prop_assert!(x.hypot(y) < 1e-9, "{branch:?} gapes by {x} {y}");
+                prop_assert!(x.hypot(y) < 1e-9, "{mode:?} gapes by {x} {y}");
                 let reach = (pose.end_point - pose.right_tip).length();
                 prop_assert!((reach - bars.coupler_right).abs() < 1e-9);
             }
@@ -46,7 +46,7 @@ proptest! {
     fn it_finds_a_position_exactly_where_the_law_of_cosines_does(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
-        match (bars.forward(left, right), apex(&bars, left, right)) {
+        match (bars.forward(left, right), end_point(&bars, left, right)) {
             (Ok(pose), Some([x, y])) => {
                 // acos loses half the digits when the triangle is flat.
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
@@ -93,7 +93,7 @@ proptest! {
         if let Ok(assemblies) = bars.inverse(point) {
             for a in assemblies {
                 let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right).unwrap();
-                // The apex is nearly free where the tips nearly meet, and where the
+                // The end point is nearly free where the tips nearly meet, and where the
                 // couplers nearly line up.
                 let stiff = (pose.gap.length() / 1e3).min(pose.type2.abs());
                 let tolerance = 1e-9_f64.max(1e-12 / stiff);
@@ -110,7 +110,7 @@ proptest! {
             let (l, r) = (pose.type1_left(), pose.type1_right());
             // At a type-1 singularity the angle is a square root of the point.
             prop_assume!(l.abs() > 1e-2 && r.abs() > 1e-2 && pose.type2 > 1e-3);
-            // A shaft under the apex leaves that crank's angle free.
+            // A shaft under the end point leaves that crank's angle free.
             prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);
             prop_assume!((pose.end_point - bars.right_shaft()).length() > 1.0);
             let elbow = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
