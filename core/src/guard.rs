@@ -67,7 +67,7 @@ impl Clearance {
         let cranks = [[a1, a2], [rear_left, rear_right]];
         let mut ends = [EndMargins::default(); 2];
         for (margins, (end, [left, right])) in
-            ends.iter_mut().zip(End::BOTH.into_iter().zip(cranks))
+            ends.iter_mut().zip(End::ALL.into_iter().zip(cranks))
         {
             *margins = robot.end(end).margins(left, right);
         }
@@ -119,7 +119,7 @@ impl Clearance {
                 });
             }
         }
-        for (side, length_sq) in Side::BOTH.into_iter().zip(self.sliders_sq) {
+        for (side, length_sq) in Side::ALL.into_iter().zip(self.sliders_sq) {
             let slider = robot.side(side);
             if !slider.allows(length_sq) {
                 let length = root(length_sq);

@@ -51,10 +51,10 @@ impl Servo {
 
 impl End {
     /// Both, the head first.
-    pub const BOTH: [Self; 2] = [Self::Head, Self::Tail];
+    pub const ALL: [Self; 2] = [Self::Head, Self::Tail];
 }
 
 impl Side {
     /// Both, the left one first.
-    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+    pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 }

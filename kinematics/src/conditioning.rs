@@ -1,11 +1,11 @@
-//! How well the two servos steer the apex: the Jacobian of a five-bar and its
+//! How well the two servos steer the end point: the Jacobian of a five-bar and its
 //! local conditioning index.
 
 use crate::five_bar::FiveBarPose;
 use crate::vector::Vector;
 
 /// Apex velocity for each servo's rate, mm per radian: J = A^-1 B with
-/// A (apex velocity) = B (crank rates).
+/// A (end point velocity) = B (crank rates).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jacobian {
     /// Apex displacement per radian of the left crank.
@@ -15,7 +15,7 @@ pub struct Jacobian {
 }
 
 impl Jacobian {
-    /// det J, mm^2: apex area swept per unit of crank area.
+    /// det J, mm^2: end point area swept per unit of crank area.
     pub fn determinant(&self) -> f64 {
         self.left.cross(self.right)
     }
@@ -36,7 +36,7 @@ impl Jacobian {
 impl FiveBarPose {
     /// The Jacobian. Each coupler passes on only the velocity along itself, so
     /// the row for the left one reads l2 . v = l2 . (rate of its crank tip).
-    /// Not finite at a type-2 singularity, where the apex is loose.
+    /// Not finite at a type-2 singularity, where the end point is loose.
     pub fn jacobian(&self) -> Jacobian {
         let (left, right) = self.pull();
         Jacobian {
@@ -47,7 +47,7 @@ impl FiveBarPose {
 
     /// Local conditioning index: smallest over largest singular value of the
     /// Jacobian (spectral norm), 0 at a singularity of either type, 1 where the
-    /// servos steer the apex equally well in every direction.
+    /// servos steer the end point equally well in every direction.
     pub fn lci(&self) -> f64 {
         // The index has no scale, so the factor 1/type2 is left out and nothing
         // blows up near the type-2 singularity.
@@ -71,5 +71,38 @@ impl FiveBarPose {
             -self.bars.crank_left * self.type1_left(),
             self.bars.crank_right * self.type1_right(),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use crate::motion::Drive;
+    use crate::reference::{any_lizard, any_pose};
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn the_jacobian_moves_the_head_as_the_rates_do(
+            robot in any_lizard(), pose in any_pose(), rate in [-300.0..300.0, -300.0..300.0f64],
+        ) {
+            let solved = robot.solve(&pose.into());
+            prop_assume!(solved.is_ok());
+            let solved = solved.unwrap();
+            prop_assume!(solved.head.type2 > 1e-3);
+            let drive = Drive { rate: [rate[0], rate[1], 0.0, 0.0], ..Drive::default() };
+            let truth = solved.motion(&drive).head.rate;
+            let j = solved.head.jacobian();
+            let ours = j.left * rate[0].to_radians() + j.right * rate[1].to_radians();
+            prop_assert!((truth - ours).length() < 1e-9 * (1.0 + truth.length()) / solved.head.type2);
+            let [largest, smallest] = j.singular_values();
+            prop_assert!((smallest / largest - solved.head.lci()).abs() < 1e-9);
+            prop_assert!((largest * smallest - j.determinant().abs()).abs() < 1e-9 * largest * largest);
+        }
     }
 }

@@ -6,8 +6,10 @@
 //! tail x, y, left x, y, right x, y in mm, all in the chassis frame with
 //! counter-clockwise angles, which changes signs of several printed entries.
 
+use crate::end::End;
 use crate::lizard::{Lizard, Solution};
 use crate::real::Real;
+use crate::side::Side;
 use crate::vector::Vector;
 
 /// The joints that follow: angles in degrees, travel in mm.
@@ -49,12 +51,13 @@ impl<T: Real> Solution<T> {
     /// faster than one by one, and the same bits.
     #[inline(always)]
     pub fn passive(&self) -> Passive<T> {
-        let (head, tail) = (&self.head, &self.tail);
+        let [theta2, theta3] = self.couplers(End::Head);
+        let [theta6, theta7] = self.couplers(End::Tail);
         let along = [
-            head.left_coupler,
-            head.right_coupler,
-            tail.left_coupler.mirrored(),
-            tail.right_coupler.mirrored(),
+            theta2,
+            theta3,
+            theta6,
+            theta7,
             self.left.span,
             self.right.span,
         ];
@@ -80,43 +83,34 @@ impl Solution {
     /// K: derivatives of the loop equations by theta1, theta4, theta8, theta5,
     /// mm per radian. 8x4.
     pub fn active_matrix(&self) -> [[f64; 4]; 8] {
-        let [r1, r4] = [
-            self.head.left * self.head.bars.crank_left,
-            self.head.right * self.head.bars.crank_right,
-        ];
-        let [r6, r9] = [
-            self.tail.left.mirrored() * self.tail.bars.crank_left,
-            self.tail.right.mirrored() * self.tail.bars.crank_right,
-        ];
         let mut k = [[0.0; 4]; 8];
-        put(&mut k, 0, 0, r1.left());
-        put(&mut k, 0, 1, -r4.left());
-        put(&mut k, 2, 3, r6.left());
-        put(&mut k, 2, 2, -r9.left());
-        put(&mut k, 4, 0, self.left.front_arm().left());
-        put(&mut k, 4, 3, -self.left.rear_tip.left());
-        put(&mut k, 6, 1, self.right.front_arm().left());
-        put(&mut k, 6, 2, -self.right.rear_tip.left());
+        for (row, end) in ROWS.into_iter().zip(End::ALL) {
+            let ([left, right], pose) = (end.servos(), self.end(end));
+            let bars = &pose.bars;
+            let crank = end.mirror(pose.left) * bars.crank_left;
+            put(&mut k, row, left, crank.left());
+            let crank = end.mirror(pose.right) * bars.crank_right;
+            put(&mut k, row, right, -crank.left());
+        }
+        for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
+            let ([front, rear], pose) = (side.servos(), self.side(side));
+            put(&mut k, row, front, pose.front_arm().left());
+            put(&mut k, row, rear, -pose.rear_tip.left());
+        }
         k
     }
 
     /// K*: derivatives by theta2, theta3, theta6, theta7, phi and s left, phi
     /// and s right, mm per radian and mm per mm. 8x8.
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
-        let [r2, r3] = [
-            self.head.left_coupler * self.head.bars.coupler_left,
-            self.head.right_coupler * self.head.bars.coupler_right,
-        ];
-        let [r7, r8] = [
-            self.tail.left_coupler.mirrored() * self.tail.bars.coupler_left,
-            self.tail.right_coupler.mirrored() * self.tail.bars.coupler_right,
-        ];
         let mut k = [[0.0; 8]; 8];
-        put(&mut k, 0, 0, r2.left());
-        put(&mut k, 0, 1, -r3.left());
-        put(&mut k, 2, 2, r7.left());
-        put(&mut k, 2, 3, -r8.left());
-        for (at, slider) in [(4, &self.left), (6, &self.right)] {
+        for (at, end) in ROWS.into_iter().zip(End::ALL) {
+            let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
+            put(&mut k, at, at, (left * bars.coupler_left).left());
+            put(&mut k, at, at + 1, -(right * bars.coupler_right).left());
+        }
+        for (at, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
+            let slider = self.side(side);
             put(&mut k, at, at, -slider.span.left());
             put(&mut k, at, at + 1, slider.span * (-1.0 / slider.d));
         }
@@ -125,11 +119,15 @@ impl Solution {
 
     /// The factors of det K*.
     pub fn blocks(&self) -> Blocks {
-        let (head, tail) = (&self.head.bars, &self.tail.bars);
-        Blocks {
-            head: -head.coupler_left * head.coupler_right * self.head.type2,
+        let block = |end: End| {
+            let pose = self.end(end);
+            let lengths = pose.bars.coupler_left * pose.bars.coupler_right;
             // Mirroring turns the sign of the sine.
-            tail: tail.coupler_left * tail.coupler_right * self.tail.type2,
+            -end.sign() * lengths * pose.type2
+        };
+        Blocks {
+            head: block(End::Head),
+            tail: block(End::Tail),
             left: -self.left.d,
             right: -self.right.d,
         }
@@ -140,28 +138,143 @@ impl Lizard {
     /// By how much the eight loop equations miss for any values of the joints,
     /// mm: active angles in servo order. Zero at a solution.
     pub fn residual(&self, active: [f64; 4], passive: &Passive) -> [f64; 8] {
-        let l = &self.links;
-        let [t1, t4, t8, t5] = active;
-        let [a1, a2, a3, a4] = self.shafts();
-        let cis = Vector::direction;
-        let head = a1 + cis(t1) * l.l1 + cis(passive.theta2) * l.l2
-            - (a2 + cis(t4) * l.l4 + cis(passive.theta3) * l.l3);
-        let tail = a4 + cis(t5) * l.l6 + cis(passive.theta6) * l.l7
-            - (a3 + cis(t8) * l.l9 + cis(passive.theta7) * l.l8);
-        let left = a1 + cis(t1 + 90.0) * l.l14
-            - (a4 + cis(t5 - 90.0) * l.l11)
-            - cis(passive.phi_left) * (l.l12 + l.l13 + passive.s_left);
-        let right = a2 + cis(t4 - 90.0) * l.l19
-            - (a3 + cis(t8 + 90.0) * l.l16)
-            - cis(passive.phi_right) * (l.l17 + l.l18 + passive.s_right);
-        [
-            head.x, head.y, tail.x, tail.y, left.x, left.y, right.x, right.y,
-        ]
+        let (shafts, cis) = (self.shafts(), Vector::direction);
+        let couplers = [
+            [passive.theta2, passive.theta3],
+            [passive.theta6, passive.theta7],
+        ];
+        let sliders = [
+            (passive.phi_left, passive.s_left),
+            (passive.phi_right, passive.s_right),
+        ];
+        let mut residual = [0.0; 8];
+        let mut put = |row: usize, gap: Vector| {
+            (residual[row], residual[row + 1]) = (gap.x, gap.y);
+        };
+        for ((row, end), theta) in ROWS.into_iter().zip(End::ALL).zip(couplers) {
+            let ([left, right], bars) = (end.servos(), self.end(end));
+            let gap = shafts[left]
+                + cis(active[left]) * bars.crank_left
+                + cis(theta[0]) * bars.coupler_left
+                - (shafts[right]
+                    + cis(active[right]) * bars.crank_right
+                    + cis(theta[1]) * bars.coupler_right);
+            put(row, gap);
+        }
+        for ((row, side), (phi, s)) in ROWS.into_iter().skip(2).zip(Side::ALL).zip(sliders) {
+            let ([front, rear], slider) = (side.servos(), self.side(side));
+            let right_angle = 90.0 * side.sign();
+            let gap = shafts[front] + cis(active[front] + right_angle) * slider.front
+                - (shafts[rear] + cis(active[rear] - right_angle) * slider.rear)
+                - cis(phi) * (slider.nominal + s);
+            put(row, gap);
+        }
+        residual
     }
 }
+
+/// The first row of each loop: head, tail, left, right. In K* also its first
+/// column.
+const ROWS: [usize; 4] = [0, 2, 4, 6];
 
 /// A column pair: the x and y rows of one loop.
 fn put<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, entry: Vector) {
     matrix[row][column] = entry.x;
     matrix[row + 1][column] = entry.y;
+}
+
+#[cfg(test)]
+#[allow(clippy::needless_range_loop)] // Matrices read best with their indices.
+mod tests {
+    use proptest::prelude::*;
+
+    use crate::reference::{any_lizard, any_pose};
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn k_and_k_star_are_the_derivatives_of_the_loop_equations(
+            robot in any_lizard(), pose in any_pose(),
+        ) {
+            let solved = robot.solve(&pose.into());
+            prop_assume!(solved.is_ok());
+            let solved = solved.unwrap();
+            let passive = solved.passive();
+            let step = 1e-4;
+            let radian = 1f64.to_degrees();
+            let k = solved.active_matrix();
+            for column in 0..4 {
+                let moved = |by: f64| {
+                    let mut active = pose;
+                    active[column] += by * radian;
+                    robot.residual(active, &passive)
+                };
+                let (up, down) = (moved(step), moved(-step));
+                for row in 0..8 {
+                    let slope = (up[row] - down[row]) / (2.0 * step);
+                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K {row} {column}");
+                }
+            }
+            let k = solved.passive_matrix();
+            for column in 0..8 {
+                let moved = |by: f64| {
+                    let mut p = passive;
+                    let field = [
+                        &mut p.theta2, &mut p.theta3, &mut p.theta6, &mut p.theta7,
+                        &mut p.phi_left, &mut p.s_left, &mut p.phi_right, &mut p.s_right,
+                    ].into_iter().nth(column).unwrap();
+                    *field += if matches!(column, 5 | 7) { by } else { by * radian };
+                    robot.residual(pose, &p)
+                };
+                let (up, down) = (moved(step), moved(-step));
+                for row in 0..8 {
+                    let slope = (up[row] - down[row]) / (2.0 * step);
+                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K* {row} {column}");
+                }
+            }
+        }
+
+        #[test]
+        fn the_blocks_multiply_to_the_determinant_of_k_star(
+            robot in any_lizard(), pose in any_pose(),
+        ) {
+            let solved = robot.solve(&pose.into());
+            prop_assume!(solved.is_ok());
+            let solved = solved.unwrap();
+            let product = solved.blocks().determinant();
+            let eliminated = determinant(solved.passive_matrix());
+            let l = robot.links;
+            let scale = l.l2 * l.l3 * l.l7 * l.l8 * solved.left.d * solved.right.d;
+            prop_assert!((product - eliminated).abs() < 1e-9 * scale, "{product} {eliminated}");
+        }
+    }
+
+    /// By Gauss with pivoting.
+    fn determinant(mut m: [[f64; 8]; 8]) -> f64 {
+        let mut product = 1.0;
+        for i in 0..8 {
+            let pivot = (i..8)
+                .max_by(|&a, &b| m[a][i].abs().total_cmp(&m[b][i].abs()))
+                .unwrap();
+            if pivot != i {
+                m.swap(pivot, i);
+                product = -product;
+            }
+            product *= m[i][i];
+            if m[i][i] == 0.0 {
+                return 0.0;
+            }
+            for row in i + 1..8 {
+                let factor = m[row][i] / m[i][i];
+                for column in i..8 {
+                    m[row][column] -= factor * m[i][column];
+                }
+            }
+        }
+        product
+    }
 }

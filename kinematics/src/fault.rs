@@ -2,34 +2,32 @@
 
 use core::fmt;
 
+use crate::end::End;
+use crate::side::Side;
+
 /// A mechanism of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The five-bar between A1 and A2.
-    Head,
-    /// The five-bar between A4 and A3.
-    Tail,
-    /// The slider between A1 and A4.
-    Left,
-    /// The slider between A2 and A3.
-    Right,
+    /// The five-bar of an end.
+    End(End),
+    /// The slider of a side.
+    Side(Side),
 }
 
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Head => "head",
-            Self::Tail => "tail",
-            Self::Left => "left side",
-            Self::Right => "right side",
-        })
+        match self {
+            Self::End(end) => write!(f, "{end}"),
+            Self::Side(side) => write!(f, "{side} side"),
+        }
     }
 }
 
 /// Why one loop has no position, or no single one. Lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// An input is infinite or not a number.
+    /// An input is infinite or not a number, or a result would be: lengths beyond
+    /// about 1e75 mm or below 1e-75 mm overflow on the way.
     NotFinite,
     /// The crank tips are further apart than both couplers reach.
     Apart {
@@ -45,11 +43,12 @@ pub enum Fault {
         /// Difference of the couplers.
         least: f64,
     },
-    /// The crank tips coincide (d = 0): the apex can be anywhere on a circle.
+    /// The crank tips coincide (d = 0): the end point can be anywhere on a
+    /// circle.
     Coincident,
     /// A point is outside the ring that one crank and its coupler reach.
     OutOfReach {
-        /// Which crank, seen along the loop's own y axis.
+        /// True for the left crank, seen along the five-bar's own y axis.
         left: bool,
         /// Distance of the point from that crank's shaft.
         distance: f64,
@@ -78,7 +77,7 @@ impl fmt::Display for Fault {
                 "the crank tips are {gap:.3} mm apart, the couplers need {least:.3} mm"
             ),
             Self::Coincident => {
-                f.write_str("singular: the crank tips coincide, the apex is free on a circle")
+                f.write_str("singular: the crank tips coincide, the end point is free on a circle")
             }
             Self::OutOfReach {
                 left,

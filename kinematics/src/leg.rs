@@ -2,39 +2,44 @@
 //!
 //! Ground and coupler are equally long, and so are crank and follower; then the
 //! follower stays parallel to the crank and the coupler never turns. At crank
-//! angles 0 and 180 degrees all four joints lie on one line, and from there the
-//! linkage may fold into an anti-parallelogram instead. The margin is the
-//! distance from that.
+//! angles 0 and 180 degrees, the change points, all four joints lie on one line,
+//! and from there the linkage may go on as an anti-parallelogram, whose coupler
+//! turns. A robot that has passed a change point does not know which of the two
+//! it has, so the margin is signed: positive between the change points on the
+//! side where the leg was assembled, negative beyond them.
 //!
 //! The paper's half-angle formulas for the follower take the root of the
 //! anti-parallelogram for 0 < theta_lg < 180, have sign slips in J and L, and
 //! read theta1 in H for all four legs.
 
 use crate::angle::wrap;
+use crate::end::End;
 use crate::real::Real;
 use crate::vector::Vector;
 
-/// Link lengths of one leg in mm.
+/// Link lengths of one leg in mm, all above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// Between the two pivots on the chassis: lg10.
+    /// Between the two pivots on the chassis, mm: lg10.
     pub ground: f64,
-    /// The link that the spring drives: lg1.
+    /// The link that the spring drives, mm: lg1.
     pub crank: f64,
-    /// Between crank and follower: lg12.
+    /// Between crank and follower, mm: lg12.
     pub coupler: f64,
-    /// The other pivoted link: lg13.
+    /// The other pivoted link, mm: lg13.
     pub follower: f64,
 }
 
 /// A leg at some crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegPose<T = f64> {
-    /// theta_lg, the crank's angle, degrees as given.
+    /// theta_lg, the crank's angle, degrees as given, chassis frame.
     pub theta: T,
-    /// Direction of the crank, and of the follower, length one.
+    /// Direction of the crank, and of the follower, length one, chassis frame.
     pub direction: Vector<T>,
-    /// |sin theta_lg|: 0 at the change points.
+    /// The signed margin, -1 to 1: sin theta_lg in the frame of the leg's end,
+    /// so sin theta_lg in front and -sin theta_lg behind. 0 at the change
+    /// points, positive on the side where the leg was assembled.
     pub margin: T,
 }
 
@@ -57,18 +62,26 @@ impl Leg {
         self.ground == self.coupler && self.crank == self.follower
     }
 
-    /// The leg at a crank angle in degrees.
-    pub fn forward(&self, theta: f64) -> LegPose {
-        self.close(theta, Vector::direction(theta))
+    /// The leg of an end at a crank angle in degrees, chassis frame.
+    pub fn forward(&self, end: End, theta: f64) -> LegPose {
+        self.shape(end, theta, Vector::direction(theta))
     }
 
-    /// The leg at a crank angle in degrees whose direction is known already.
+    /// The leg of an end at a crank angle in degrees whose direction is known
+    /// already; both in the chassis frame.
     #[inline(always)]
-    pub fn close<T: Real>(&self, theta: T, crank: Vector<T>) -> LegPose<T> {
+    pub fn shape<T: Real>(&self, end: End, theta: T, crank: Vector<T>) -> LegPose<T> {
         LegPose {
             theta,
             direction: crank,
-            margin: crank.y.magnitude(),
+            margin: margin(end.mirror(crank)),
         }
     }
+}
+
+/// The signed margin of a leg whose crank has this direction (length one) in the
+/// frame of its end.
+#[inline(always)]
+pub(crate) fn margin<T: Real>(crank: Vector<T>) -> T {
+    crank.y
 }

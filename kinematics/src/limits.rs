@@ -2,21 +2,23 @@
 
 use core::fmt;
 
+use crate::end::End;
+use crate::five_bar::FiveBarPose;
 use crate::lizard::Solution;
 use crate::margins::Check;
 
 /// Smallest margins and the slider's travel that a robot allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Least type-2 margin, head and tail.
+    /// Least type-2 margin of head and tail, a sine, 0 to 1.
     pub type2: f64,
-    /// Least signed type-1 margin of the four arms.
+    /// Least signed type-1 margin of the four arms, a sine, 0 to 1.
     pub type1: f64,
-    /// Least margin of the four legs.
+    /// Least signed margin of the four legs, a sine, 0 to 1.
     pub leg: f64,
-    /// Shortest slider travel from nominal, mm.
+    /// Least slider travel from nominal, mm, at most 0.
     pub stroke_min: f64,
-    /// Longest slider travel from nominal, mm.
+    /// Greatest slider travel from nominal, mm, at least 0.
     pub stroke_max: f64,
 }
 
@@ -27,7 +29,7 @@ pub struct Violation {
     pub what: Check,
     /// Its value: a sine for margins, mm for stroke and crossing.
     pub value: f64,
-    /// The bound that it passes.
+    /// The bound that it passes, in the same unit.
     pub limit: f64,
 }
 
@@ -64,49 +66,55 @@ impl fmt::Display for Violation {
 }
 
 impl Limits {
-    /// Every limit that a solved pose breaks; none if it is safe.
+    /// The limit that a condition breaks with a value (a sine, or mm), if it
+    /// breaks one. A value at its limit is safe; crank tips at 0 mm are crossed.
+    pub fn broken(&self, what: Check, value: f64) -> Option<Violation> {
+        let (least, most) = match what {
+            Check::Type2Head | Check::Type2Tail => (self.type2, f64::INFINITY),
+            Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4 => {
+                (self.type1, f64::INFINITY)
+            }
+            Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh => (self.leg, f64::INFINITY),
+            Check::StrokeLeft | Check::StrokeRight => (self.stroke_min, self.stroke_max),
+            Check::UncrossedHead | Check::UncrossedTail => {
+                let limit = 0.0;
+                return (value <= limit).then_some(Violation { what, value, limit });
+            }
+        };
+        let limit = if value < least {
+            least
+        } else if value > most {
+            most
+        } else {
+            return None;
+        };
+        Some(Violation { what, value, limit })
+    }
+
+    /// Every limit that a solved pose breaks; none if it is safe. This is what
+    /// safe means, everywhere.
     ///
-    /// Besides margins and stroke this asks that the crank tips are not crossed
+    /// Besides margins and strokes it asks that the crank tips are not crossed
     /// (K2 > 0): beyond d = 0 lies a second region with good margins that the
     /// robot cannot be in.
     pub fn violations(&self, solution: &Solution) -> impl Iterator<Item = Violation> + use<> {
         let limits = *self;
-        let margins = solution.margins.iter().filter_map(move |(what, value)| {
-            let limit = match what {
-                Check::ApexHead | Check::ApexTail => limits.type2,
-                Check::LegFl | Check::LegFr | Check::LegBr | Check::LegBl => limits.leg,
-                _ => limits.type1,
-            };
-            (value < limit).then_some(Violation { what, value, limit })
-        });
-        let strokes = [
-            (Check::StrokeLeft, solution.left.s),
-            (Check::StrokeRight, solution.right.s),
-        ]
-        .into_iter()
-        .filter_map(move |(what, value)| {
-            if value < limits.stroke_min {
-                let limit = limits.stroke_min;
-                Some(Violation { what, value, limit })
-            } else if value > limits.stroke_max {
-                let limit = limits.stroke_max;
-                Some(Violation { what, value, limit })
-            } else {
-                None
-            }
-        });
-        let crossings = [
-            (Check::UncrossedHead, solution.head.gap.x),
-            (Check::UncrossedTail, solution.tail.gap.x),
-        ]
-        .into_iter()
-        .filter(|(_, across)| *across <= 0.0)
-        .map(|(what, value)| Violation {
-            what,
-            value,
-            limit: 0.0,
-        });
-        margins.chain(strokes).chain(crossings)
+        solution
+            .conditions()
+            .filter_map(move |(what, value)| limits.broken(what, value))
+    }
+
+    /// Every limit that a five-bar breaks by itself, as the given end, whatever
+    /// the rest of the robot does.
+    pub fn end_violations(
+        &self,
+        end: End,
+        pose: &FiveBarPose,
+    ) -> impl Iterator<Item = Violation> + use<> {
+        let limits = *self;
+        pose.conditions(end)
+            .into_iter()
+            .filter_map(move |(what, value)| limits.broken(what, value))
     }
 
     /// True if a solved pose breaks no limit.

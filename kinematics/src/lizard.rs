@@ -1,12 +1,13 @@
 //! The whole robot: four servo angles in, every joint out (Algorithm 1).
 
-use crate::angle::wrap;
+use crate::end::End;
 use crate::fault::{Fault, Infeasible, Part};
-use crate::five_bar::{Branch, FiveBar, FiveBarPose};
+use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
 use crate::leg::{Leg, LegPose};
 use crate::links::Links;
 use crate::margins::Margins;
 use crate::real::{Lanes, Real};
+use crate::side::Side;
 use crate::slider::{Slider, SliderPose};
 use crate::vector::Vector;
 
@@ -61,128 +62,182 @@ pub struct Solution<T = f64> {
     /// origin is the middle of l0.
     pub head: FiveBarPose<T>,
     /// The tail in its own frame: origin in the middle of l5, y backwards. Its
-    /// left crank is A4's. See [`Solution::tail_point`] for the chassis frame.
+    /// left crank is A4's. See [`Solution::point`] for the chassis frame.
     pub tail: FiveBarPose<T>,
     /// The slider between A1 and A4; axes are the chassis frame's.
     pub left: SliderPose<T>,
     /// The slider between A2 and A3; axes are the chassis frame's.
     pub right: SliderPose<T>,
-    /// Legs in servo order: front left, front right, back right, back left.
+    /// Legs in servo order: LF, RF, RH, LH.
     pub legs: [LegPose<T>; 4],
     /// Distance from each singularity.
     pub margins: Margins<T>,
-    /// y of the head's base, mm, chassis frame; the tail's is its negative.
-    base_y: f64,
+    /// The robot it belongs to.
+    lizard: Lizard,
 }
 
 impl Solution {
     /// theta2, the head's left coupler: degrees, chassis frame.
     pub fn theta2(&self) -> f64 {
-        self.head.theta_left_coupler()
+        self.couplers(End::Head)[0].angle()
     }
 
     /// theta3, the head's right coupler: degrees, chassis frame.
     pub fn theta3(&self) -> f64 {
-        self.head.theta_right_coupler()
+        self.couplers(End::Head)[1].angle()
     }
 
     /// theta6, the tail's left coupler: degrees, chassis frame.
     pub fn theta6(&self) -> f64 {
-        self.tail.left_coupler.mirrored().angle()
+        self.couplers(End::Tail)[0].angle()
     }
 
     /// theta7, the tail's right coupler: degrees, chassis frame.
     pub fn theta7(&self) -> f64 {
-        self.tail.right_coupler.mirrored().angle()
+        self.couplers(End::Tail)[1].angle()
     }
 }
 
 impl<T: Real> Solution<T> {
-    /// The head point in mm, chassis frame.
+    /// The five-bar of an end, in the end's own frame.
     #[inline(always)]
-    pub fn head_point(&self) -> Vector<T> {
-        self.head.apex + Vector::of(Vector::new(0.0, self.base_y))
+    pub const fn end(&self, end: End) -> &FiveBarPose<T> {
+        match end {
+            End::Head => &self.head,
+            End::Tail => &self.tail,
+        }
     }
 
-    /// The tail point in mm, chassis frame.
+    /// The slider of a side.
+    #[inline(always)]
+    pub const fn side(&self, side: Side) -> &SliderPose<T> {
+        match side {
+            Side::Left => &self.left,
+            Side::Right => &self.right,
+        }
+    }
+
+    /// The end point of an end, mm, chassis frame.
+    #[inline(always)]
+    pub fn point(&self, end: End) -> Vector<T> {
+        self.lizard.to_chassis(end, self.end(end).end_point)
+    }
+
+    /// The head point, mm, chassis frame.
+    #[inline(always)]
+    pub fn head_point(&self) -> Vector<T> {
+        self.point(End::Head)
+    }
+
+    /// The tail point, mm, chassis frame.
     #[inline(always)]
     pub fn tail_point(&self) -> Vector<T> {
-        self.tail.apex.mirrored() - Vector::of(Vector::new(0.0, self.base_y))
+        self.point(End::Tail)
+    }
+
+    /// Directions of the left and the right coupler of an end, length one,
+    /// chassis frame.
+    #[inline(always)]
+    pub fn couplers(&self, end: End) -> [Vector<T>; 2] {
+        let bars = self.end(end);
+        [
+            end.mirror(bars.left_coupler),
+            end.mirror(bars.right_coupler),
+        ]
+    }
+
+    /// Tips of the four cranks in servo order, mm, chassis frame.
+    pub fn crank_tips(&self) -> [Vector<T>; 4] {
+        let mut tips = [self.head.left_tip; 4];
+        for end in End::ALL {
+            let ([left, right], bars) = (end.servos(), self.end(end));
+            tips[left] = self.lizard.to_chassis(end, bars.left_tip);
+            tips[right] = self.lizard.to_chassis(end, bars.right_tip);
+        }
+        tips
     }
 }
 
 impl Lizard {
-    /// The head's five-bar.
+    /// The five-bar of an end, to be solved in the end's own frame.
     #[inline]
-    pub const fn head(&self) -> FiveBar {
+    pub const fn end(&self, end: End) -> FiveBar {
         let l = &self.links;
-        FiveBar {
-            base: l.l0,
-            crank_left: l.l1,
-            coupler_left: l.l2,
-            coupler_right: l.l3,
-            crank_right: l.l4,
+        match end {
+            End::Head => FiveBar {
+                base: l.l0,
+                crank_left: l.l1,
+                coupler_left: l.l2,
+                coupler_right: l.l3,
+                crank_right: l.l4,
+            },
+            End::Tail => FiveBar {
+                base: l.l5,
+                crank_left: l.l6,
+                coupler_left: l.l7,
+                coupler_right: l.l8,
+                crank_right: l.l9,
+            },
         }
     }
 
-    /// The tail's five-bar. In its own frame angles are the negatives of the
-    /// chassis frame's; then the tail is solved as the head is.
+    /// The slider of a side.
     #[inline]
-    pub const fn tail(&self) -> FiveBar {
+    pub const fn side(&self, side: Side) -> Slider {
         let l = &self.links;
-        FiveBar {
-            base: l.l5,
-            crank_left: l.l6,
-            coupler_left: l.l7,
-            coupler_right: l.l8,
-            crank_right: l.l9,
+        let offset = side.sign() * (l.l5 - l.l0) / 2.0;
+        match side {
+            Side::Left => Slider {
+                offset,
+                base: l.l10,
+                front: l.l14,
+                rear: l.l11,
+                nominal: l.l12 + l.l13,
+            },
+            Side::Right => Slider {
+                offset,
+                base: l.l15,
+                front: l.l19,
+                rear: l.l16,
+                nominal: l.l17 + l.l18,
+            },
         }
     }
 
-    /// The left flank.
+    /// y of the middle of an end's base, mm, chassis frame.
     #[inline]
-    pub const fn left(&self) -> Slider {
-        let l = &self.links;
-        Slider {
-            offset: (l.l5 - l.l0) / 2.0,
-            base: l.l10,
-            front: l.l14,
-            rear: l.l11,
-            nominal: l.l12 + l.l13,
-        }
+    pub const fn base_y(&self, end: End) -> f64 {
+        end.sign() * self.links.l10 / 2.0
     }
 
-    /// The right flank.
-    #[inline]
-    pub const fn right(&self) -> Slider {
-        let l = &self.links;
-        Slider {
-            offset: (l.l0 - l.l5) / 2.0,
-            base: l.l15,
-            front: l.l19,
-            rear: l.l16,
-            nominal: l.l17 + l.l18,
-        }
+    /// A point of an end's own frame in the chassis frame, mm.
+    #[inline(always)]
+    pub fn to_chassis<T: Real>(&self, end: End, point: Vector<T>) -> Vector<T> {
+        end.mirror(point) + Vector::of(Vector::new(0.0, self.base_y(end)))
+    }
+
+    /// A point of the chassis frame in an end's own frame, mm.
+    #[inline(always)]
+    pub fn to_end<T: Real>(&self, end: End, point: Vector<T>) -> Vector<T> {
+        end.mirror(point - Vector::of(Vector::new(0.0, self.base_y(end))))
     }
 
     /// Shafts of A1, A2, A3, A4 in mm, chassis frame.
-    pub const fn shafts(&self) -> [Vector; 4] {
-        let l = &self.links;
-        let y = l.l10 / 2.0;
-        [
-            Vector::new(-l.l0 / 2.0, y),
-            Vector::new(l.l0 / 2.0, y),
-            Vector::new(l.l5 / 2.0, -y),
-            Vector::new(-l.l5 / 2.0, -y),
-        ]
+    pub fn shafts(&self) -> [Vector; 4] {
+        let mut shafts = [Vector::default(); 4];
+        for end in End::ALL {
+            let ([left, right], bars) = (end.servos(), self.end(end));
+            shafts[left] = self.to_chassis(end, bars.left_shaft());
+            shafts[right] = self.to_chassis(end, bars.right_shaft());
+        }
+        shafts
     }
 
     /// The whole robot at a pose.
     ///
-    /// The side arms stand at right angles to the cranks, away from the head:
-    /// theta12 = theta1 + 90, theta9 = theta5 - 90, theta16 = theta4 - 90,
-    /// theta13 = theta8 + 90. (The paper prints the last two with the other
-    /// sign, which would swing the right arms across the chassis.)
+    /// # Errors
+    /// The first loop that does not close, and why: see [`FiveBar::forward`] and
+    /// [`Slider::forward`].
     #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
         let solution = self.shape(pose);
@@ -200,15 +255,13 @@ impl Lizard {
     /// In which lanes every loop closes; [`Lizard::solve`] says why one does not.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, solution: &Solution<Lanes<N>>) -> [bool; N] {
-        let Lanes(head) = solution.head.gap.length();
-        let Lanes(tail) = solution.tail.gap.length();
-        let (Lanes(left), Lanes(right)) = (solution.left.d, solution.right.d);
+        let head = self.end(End::Head).closes(&solution.head);
+        let tail = self.end(End::Tail).closes(&solution.tail);
+        let left = self.side(Side::Left).closes(&solution.left);
+        let right = self.side(Side::Right).closes(&solution.right);
         let mut closes = [false; N];
         for i in 0..N {
-            closes[i] = self.head().check(head[i]).is_ok()
-                && self.tail().check(tail[i]).is_ok()
-                && self.left().check(left[i]).is_ok()
-                && self.right().check(right[i]).is_ok();
+            closes[i] = head[i] && tail[i] && left[i] && right[i];
         }
         closes
     }
@@ -217,13 +270,15 @@ impl Lizard {
     #[inline]
     fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
         let at = |part: Part| move |fault: Fault| Infeasible { part, fault };
-        let (head, tail) = (solution.head.gap.length(), solution.tail.gap.length());
-        self.head().check(head).map_err(at(Part::Head))?;
-        self.tail().check(tail).map_err(at(Part::Tail))?;
-        self.left().check(solution.left.d).map_err(at(Part::Left))?;
-        self.right()
-            .check(solution.right.d)
-            .map_err(at(Part::Right))
+        for end in End::ALL {
+            let checked = self.end(end).check(solution.end(end));
+            checked.map_err(at(Part::End(end)))?;
+        }
+        for side in Side::ALL {
+            let checked = self.side(side).check(solution.side(side));
+            checked.map_err(at(Part::Side(side)))?;
+        }
+        Ok(())
     }
 
     /// Every closed form, without a question asked.
@@ -237,16 +292,19 @@ impl Lizard {
         for i in 0..4 {
             cranks[i] = Vector::new(cosines[i], sines[i]);
         }
-        let [a1, a2, a3, a4] = cranks;
-        let head = self.head().shape(Branch::Ahead, a1, a2);
-        let tail = self
-            .tail()
-            .shape(Branch::Ahead, a4.mirrored(), a3.mirrored());
-        let left = self.left().shape(a4.right(), a1.left());
-        let right = self.right().shape(a3.left(), a2.right());
-        let mut legs = [self.leg.close(angles[0], a1); 4];
+        let head = self.shape_end(End::Head, cranks);
+        let tail = self.shape_end(End::Tail, cranks);
+        let left = self.shape_side(Side::Left, cranks);
+        let right = self.shape_side(Side::Right, cranks);
+        let mut legs = [self.leg.shape(End::Head, angles[0], cranks[0]); 4];
         for i in 1..4 {
-            legs[i] = self.leg.close(angles[i], cranks[i]);
+            legs[i] = self.leg.shape(End::of_servo(i), angles[i], cranks[i]);
+        }
+        let mut type1 = [head.type2; 4];
+        for (end, bars) in [(End::Head, &head), (End::Tail, &tail)] {
+            let [left, right] = end.servos();
+            type1[left] = bars.type1_left();
+            type1[right] = bars.type1_right();
         }
         Solution {
             pose: *pose,
@@ -256,43 +314,63 @@ impl Lizard {
             right,
             legs,
             margins: Margins {
-                apex_head: head.type2,
-                apex_tail: tail.type2,
-                type1_a1: head.type1_left(),
-                type1_a2: head.type1_right(),
-                type1_a3: tail.type1_right(),
-                type1_a4: tail.type1_left(),
-                leg_fl: legs[0].margin,
-                leg_fr: legs[1].margin,
-                leg_br: legs[2].margin,
-                leg_bl: legs[3].margin,
+                type2: [head.type2, tail.type2],
+                type1,
+                leg: [
+                    legs[0].margin,
+                    legs[1].margin,
+                    legs[2].margin,
+                    legs[3].margin,
+                ],
             },
-            base_y: self.links.l10 / 2.0,
+            lizard: *self,
         }
     }
 
+    /// The five-bar of an end at crank directions in servo order (length one,
+    /// chassis frame), of one robot or in several lanes; only the end's own two
+    /// are read. It has a meaning only where [`FiveBar::closes`] says so.
+    #[inline(always)]
+    pub fn shape_end<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
+        let [left, right] = end.pick(cranks);
+        self.end(end)
+            .shape(AssemblyMode::Ahead, end.mirror(left), end.mirror(right))
+    }
+
+    /// The slider of a side at crank directions in servo order (length one,
+    /// chassis frame), likewise.
+    #[inline(always)]
+    pub fn shape_side<T: Real>(&self, side: Side, cranks: [Vector<T>; 4]) -> SliderPose<T> {
+        let [front, rear] = side.pick(cranks);
+        self.side(side)
+            .shape(side.rear_arm(rear), side.front_arm(front))
+    }
+
     /// The margins at a pose; no arc tangents are taken.
+    ///
+    /// # Errors
+    /// As [`Lizard::solve`].
     pub fn margins(&self, pose: &Pose) -> Result<Margins, Infeasible> {
         self.solve(pose).map(|solution| solution.margins)
     }
 
-    /// The crank angles A1, A2 (degrees, chassis frame) that put the head at a
-    /// point in mm from the middle of l0, with outward elbows.
-    pub fn head_angles(&self, point: Vector) -> Result<[f64; 2], Infeasible> {
-        let [outward, ..] = self.head().inverse(point).map_err(|fault| Infeasible {
-            part: Part::Head,
-            fault,
-        })?;
-        Ok([outward.theta_left, outward.theta_right])
-    }
-
-    /// The crank angles A3, A4 (degrees, chassis frame) that put the tail at a
-    /// point in mm from the middle of l5, y backwards, with outward elbows.
-    pub fn tail_angles(&self, point: Vector) -> Result<[f64; 2], Infeasible> {
-        let [outward, ..] = self.tail().inverse(point).map_err(|fault| Infeasible {
-            part: Part::Tail,
-            fault,
-        })?;
-        Ok([wrap(-outward.theta_right), wrap(-outward.theta_left)])
+    /// The angles of an end's two servos (degrees in (-180, 180], chassis frame)
+    /// that put its end point at a point in mm of the end's own frame, with
+    /// outward elbows. In servo order: A1, A2 or A3, A4.
+    ///
+    /// # Errors
+    /// As [`FiveBar::inverse`].
+    pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
+        let part = Part::End(end);
+        let [outward, ..] = self
+            .end(end)
+            .inverse(point)
+            .map_err(|fault| Infeasible { part, fault })?;
+        let [left, right] =
+            [outward.theta_left, outward.theta_right].map(|theta| end.mirror_angle(theta));
+        Ok(match end {
+            End::Head => [left, right],
+            End::Tail => [right, left],
+        })
     }
 }

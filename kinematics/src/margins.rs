@@ -1,30 +1,35 @@
-//! How far a pose is from each singularity.
+//! The conditions of a safe pose, by name, and their values.
 
 use core::fmt;
 
-/// What a limit is about.
+use crate::end::End;
+use crate::five_bar::FiveBarPose;
+use crate::leg;
+use crate::lizard::Solution;
+
+/// A condition that a limit is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
     /// Type-2 of the head, sin(theta3 - theta2).
-    ApexHead,
-    /// Type-2 of the tail, sin(theta7 - theta6) in tail-local angles.
-    ApexTail,
+    Type2Head,
+    /// Type-2 of the tail, sin(theta7 - theta6) in the tail's own frame.
+    Type2Tail,
     /// Type-1 of the arm on A1, sin(theta1 - theta2).
     Type1A1,
     /// Type-1 of the arm on A2, sin(theta3 - theta4).
     Type1A2,
-    /// Type-1 of the arm on A3.
+    /// Type-1 of the arm on A3, sin(theta7 - theta8) in the tail's own frame.
     Type1A3,
-    /// Type-1 of the arm on A4.
+    /// Type-1 of the arm on A4, sin(theta5 - theta6) in the tail's own frame.
     Type1A4,
-    /// Front left leg, |sin theta1|.
-    LegFl,
-    /// Front right leg, |sin theta4|.
-    LegFr,
-    /// Back right leg, |sin theta8|.
-    LegBr,
-    /// Back left leg, |sin theta5|.
-    LegBl,
+    /// Left front leg, sin theta1.
+    LegLf,
+    /// Right front leg, sin theta4.
+    LegRf,
+    /// Right hind leg, -sin theta8.
+    LegRh,
+    /// Left hind leg, -sin theta5.
+    LegLh,
     /// Travel of the left slider, mm.
     StrokeLeft,
     /// Travel of the right slider, mm.
@@ -38,19 +43,30 @@ pub enum Check {
 }
 
 impl Check {
-    /// The name in JSON and in answers, such as `apex_head`.
+    /// Of both ends, in the order of [`End::ALL`].
+    pub const TYPE2: [Self; 2] = [Self::Type2Head, Self::Type2Tail];
+    /// Of the four arms, in servo order.
+    pub const TYPE1: [Self; 4] = [Self::Type1A1, Self::Type1A2, Self::Type1A3, Self::Type1A4];
+    /// Of the four legs, in servo order.
+    pub const LEG: [Self; 4] = [Self::LegLf, Self::LegRf, Self::LegRh, Self::LegLh];
+    /// Of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
+    pub const STROKE: [Self; 2] = [Self::StrokeLeft, Self::StrokeRight];
+    /// Of both ends, in the order of [`End::ALL`].
+    pub const UNCROSSED: [Self; 2] = [Self::UncrossedHead, Self::UncrossedTail];
+
+    /// The name in JSON and in answers, such as `type2_head`.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::ApexHead => "apex_head",
-            Self::ApexTail => "apex_tail",
+            Self::Type2Head => "type2_head",
+            Self::Type2Tail => "type2_tail",
             Self::Type1A1 => "type1_a1",
             Self::Type1A2 => "type1_a2",
             Self::Type1A3 => "type1_a3",
             Self::Type1A4 => "type1_a4",
-            Self::LegFl => "leg_fl",
-            Self::LegFr => "leg_fr",
-            Self::LegBr => "leg_br",
-            Self::LegBl => "leg_bl",
+            Self::LegLf => "leg_lf",
+            Self::LegRf => "leg_rf",
+            Self::LegRh => "leg_rh",
+            Self::LegLh => "leg_lh",
             Self::StrokeLeft => "stroke_left",
             Self::StrokeRight => "stroke_right",
             Self::UncrossedHead => "uncrossed_head",
@@ -65,47 +81,69 @@ impl fmt::Display for Check {
     }
 }
 
-/// All ten margins of a pose. Each is the sine of an angle between two links:
-/// 0 at a singularity, at most 1. Type-1 margins are positive for the outward
-/// elbows that the robot is built with.
+/// All ten margins of a pose. Each is the sine of an angle between two links, -1
+/// to 1: 0 at a singularity or a change point, positive on the side on which the
+/// robot is built. [`Check`] documents each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)] // `Check` documents each.
 pub struct Margins<T = f64> {
-    pub apex_head: T,
-    pub apex_tail: T,
-    pub type1_a1: T,
-    pub type1_a2: T,
-    pub type1_a3: T,
-    pub type1_a4: T,
-    pub leg_fl: T,
-    pub leg_fr: T,
-    pub leg_br: T,
-    pub leg_bl: T,
+    /// Of head and tail: [`Check::TYPE2`].
+    pub type2: [T; 2],
+    /// Of the four arms, in servo order: [`Check::TYPE1`].
+    pub type1: [T; 4],
+    /// Of the four legs, in servo order: [`Check::LEG`].
+    pub leg: [T; 4],
 }
 
 impl Margins {
     /// Every margin with its name.
     pub fn iter(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
-        [
-            (Check::ApexHead, self.apex_head),
-            (Check::ApexTail, self.apex_tail),
-            (Check::Type1A1, self.type1_a1),
-            (Check::Type1A2, self.type1_a2),
-            (Check::Type1A3, self.type1_a3),
-            (Check::Type1A4, self.type1_a4),
-            (Check::LegFl, self.leg_fl),
-            (Check::LegFr, self.leg_fr),
-            (Check::LegBr, self.leg_br),
-            (Check::LegBl, self.leg_bl),
-        ]
-        .into_iter()
+        let named = |checks, values| core::iter::zip(checks, values);
+        core::iter::zip(Check::TYPE2, self.type2)
+            .chain(named(Check::TYPE1, self.type1))
+            .chain(named(Check::LEG, self.leg))
     }
 
-    /// The smallest margin with its name.
+    /// The smallest margin with its name; the first of several.
     pub fn min(&self) -> (Check, f64) {
         self.iter()
-            .fold((Check::ApexHead, self.apex_head), |least, next| {
+            .fold((Check::Type2Head, self.type2[0]), |least, next| {
                 if next.1 < least.1 { next } else { least }
             })
+    }
+}
+
+impl Solution {
+    /// The value of every condition of a safe pose: margins, strokes, crank tips
+    /// across.
+    pub fn conditions(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
+        self.margins
+            .iter()
+            .chain(core::iter::zip(Check::STROKE, [self.left.s, self.right.s]))
+            .chain(core::iter::zip(
+                Check::UNCROSSED,
+                [self.head.gap.x, self.tail.gap.x],
+            ))
+    }
+}
+
+impl FiveBarPose {
+    /// The value of every condition of a safe pose that this end alone decides:
+    /// type-2, type-1 and leg margins, the left crank's first, and the crank tips
+    /// across.
+    pub fn conditions(&self, end: End) -> [(Check, f64); 6] {
+        let of_end = |[head, tail]: [Check; 2]| match end {
+            End::Head => head,
+            End::Tail => tail,
+        };
+        let [arm_left, arm_right] = end.pick(Check::TYPE1);
+        let [leg_left, leg_right] = end.pick(Check::LEG);
+        [
+            (of_end(Check::TYPE2), self.type2),
+            (arm_left, self.type1_left()),
+            (arm_right, self.type1_right()),
+            (leg_left, leg::margin(self.left)),
+            (leg_right, leg::margin(self.right)),
+            (of_end(Check::UNCROSSED), self.gap.x),
+        ]
     }
 }

@@ -7,8 +7,10 @@
 
 use core::f64::consts::PI;
 
+use crate::end::End;
 use crate::five_bar::FiveBarPose;
 use crate::lizard::Solution;
+use crate::side::Side;
 use crate::slider::SliderPose;
 use crate::vector::Vector;
 
@@ -33,25 +35,25 @@ pub struct Derivative<T> {
 /// How everything passive moves, chassis frame. Legs follow their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Head couplers.
+    /// Head, left coupler; degrees.
     pub theta2: Derivative<f64>,
-    /// Head couplers.
+    /// Head, right coupler; degrees.
     pub theta3: Derivative<f64>,
-    /// Tail couplers.
+    /// Tail, left coupler; degrees.
     pub theta6: Derivative<f64>,
-    /// Tail couplers.
+    /// Tail, right coupler; degrees.
     pub theta7: Derivative<f64>,
-    /// Head point.
+    /// Head point; mm.
     pub head: Derivative<Vector>,
-    /// Tail point.
+    /// Tail point; mm.
     pub tail: Derivative<Vector>,
-    /// Direction of the left slider.
+    /// Direction of the left slider; degrees.
     pub phi_left: Derivative<f64>,
-    /// Travel of the left slider.
+    /// Travel of the left slider; mm.
     pub s_left: Derivative<f64>,
-    /// Direction of the right slider.
+    /// Direction of the right slider; degrees.
     pub phi_right: Derivative<f64>,
-    /// Travel of the right slider.
+    /// Travel of the right slider; mm.
     pub s_right: Derivative<f64>,
 }
 
@@ -66,30 +68,35 @@ impl Solution {
             rate: drive.rate[servo] * (PI / 180.0),
             acceleration: drive.acceleration[servo] * (PI / 180.0),
         };
-        let [a1, a2, a3, a4] = [spin(0), spin(1), spin(2), spin(3)];
-        let head = loop_motion(&self.head, a1, a2);
-        // The tail is solved in its own frame, where every angle is mirrored.
-        let tail = loop_motion(&self.tail, a4.map(|w| -w), a3.map(|w| -w));
-        let (phi_left, s_left) = slider_motion(
-            &self.left,
-            (self.left.rear_tip, a4),
-            (self.left.front_arm(), a1),
-        );
-        let (phi_right, s_right) = slider_motion(
-            &self.right,
-            (self.right.rear_tip, a3),
-            (self.right.front_arm(), a2),
-        );
+        let spins = [spin(0), spin(1), spin(2), spin(3)];
+        let end_motion = |end: End| {
+            let signed = |w: f64| end.sign() * w;
+            let [left, right] = end.pick(spins).map(|spin| spin.map(signed));
+            let LoopMotion { left, right, point } = loop_motion(self.end(end), left, right);
+            LoopMotion {
+                left: left.map(signed).map(degrees),
+                right: right.map(signed).map(degrees),
+                point: point.map(|v| end.mirror(v)),
+            }
+        };
+        let (head, tail) = (end_motion(End::Head), end_motion(End::Tail));
+        let side_motion = |side: Side| {
+            let ([front, rear], pose) = (side.pick(spins), self.side(side));
+            let (phi, s) = slider_motion(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
+            (phi.map(degrees), s)
+        };
+        let (phi_left, s_left) = side_motion(Side::Left);
+        let (phi_right, s_right) = side_motion(Side::Right);
         Motion {
-            theta2: head.left.map(degrees),
-            theta3: head.right.map(degrees),
-            theta6: tail.left.map(|w| degrees(-w)),
-            theta7: tail.right.map(|w| degrees(-w)),
-            head: head.apex,
-            tail: tail.apex.map(Vector::mirrored),
-            phi_left: phi_left.map(degrees),
+            theta2: head.left,
+            theta3: head.right,
+            theta6: tail.left,
+            theta7: tail.right,
+            head: head.point,
+            tail: tail.point,
+            phi_left,
             s_left,
-            phi_right: phi_right.map(degrees),
+            phi_right,
             s_right,
         }
     }
@@ -111,7 +118,7 @@ fn degrees(radians: f64) -> f64 {
 struct LoopMotion {
     left: Spin,
     right: Spin,
-    apex: Derivative<Vector>,
+    point: Derivative<Vector>,
 }
 
 /// d/dt and d2/dt2 of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3.
@@ -143,7 +150,7 @@ fn loop_motion(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopM
             rate: w3,
             acceleration: e3,
         },
-        apex: Derivative {
+        point: Derivative {
             rate: r1.left() * w1 + r2.left() * w2,
             acceleration: turning(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
         },
@@ -175,4 +182,130 @@ fn slider_motion(
             acceleration: a.dot(along) + pose.d * turn * turn,
         },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::lizard::{Lizard, Pose};
+    use crate::reference::{any_lizard, any_pose};
+    use crate::wrap;
+
+    /// Longest step of the central differences, s.
+    const STEP: f64 = 1e-4;
+    /// No angle turns by more than about this in a step, deg.
+    const TURN: f64 = 0.1;
+
+    /// Every passive quantity in the order of [`numbers`].
+    fn values(s: &Solution) -> [f64; 12] {
+        let (head, tail) = (s.head_point(), s.tail_point());
+        [
+            s.theta2(),
+            s.theta3(),
+            s.theta6(),
+            s.theta7(),
+            s.left.phi(),
+            s.right.phi(),
+            head.x,
+            head.y,
+            tail.x,
+            tail.y,
+            s.left.s,
+            s.right.s,
+        ]
+    }
+
+    /// Rates and accelerations in the order of [`values`].
+    fn numbers(s: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
+        let m = s.motion(drive);
+        (
+            [
+                m.theta2.rate,
+                m.theta3.rate,
+                m.theta6.rate,
+                m.theta7.rate,
+                m.phi_left.rate,
+                m.phi_right.rate,
+                m.head.rate.x,
+                m.head.rate.y,
+                m.tail.rate.x,
+                m.tail.rate.y,
+                m.s_left.rate,
+                m.s_right.rate,
+            ],
+            [
+                m.theta2.acceleration,
+                m.theta3.acceleration,
+                m.theta6.acceleration,
+                m.theta7.acceleration,
+                m.phi_left.acceleration,
+                m.phi_right.acceleration,
+                m.head.acceleration.x,
+                m.head.acceleration.y,
+                m.tail.acceleration.x,
+                m.tail.acceleration.y,
+                m.s_left.acceleration,
+                m.s_right.acceleration,
+            ],
+        )
+    }
+
+    /// The robot `t` seconds later, under constant servo accelerations.
+    fn later(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
+        let mut there = pose;
+        for (i, angle) in there.iter_mut().enumerate() {
+            *angle += drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0;
+        }
+        robot.solve(&Pose::from(there)).ok()
+    }
+
+    fn drives() -> impl Strategy<Value = Drive> {
+        let four = |most: f64| [-most..most, -most..most, -most..most, -most..most];
+        (four(300.0), four(2000.0)).prop_map(|(rate, acceleration)| Drive { rate, acceleration })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn rates_and_accelerations_are_the_differences_of_positions(
+            robot in any_lizard(), pose in any_pose(), drive in drives(),
+        ) {
+            let now = robot.solve(&pose.into());
+            prop_assume!(now.is_ok());
+            let now = now.unwrap();
+            // Near a singularity the third derivative swamps any fixed step.
+            prop_assume!(now.margins.type2[0] > 0.3 && now.margins.type2[1] > 0.3);
+            prop_assume!(now.head.gap.length() > 5.0 && now.tail.gap.length() > 5.0);
+            prop_assume!(now.left.d > 20.0 && now.right.d > 20.0);
+            let (rates, accelerations) = numbers(&now, &drive);
+            let largest = |all: &[f64; 12]| all.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
+            let (fast, hard) = (largest(&rates), largest(&accelerations));
+            let step = STEP.min(TURN / fast);
+            // Five points: error of the fourth order in the step.
+            let at = |steps: f64| later(&robot, pose, &drive, steps * step).map(|s| values(&s));
+            let here = values(&now);
+            let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(at) else {
+                return Err(TestCaseError::fail("a neighbour does not close"));
+            };
+            for i in 0..12 {
+                let from_here = |there: f64| {
+                    if i < 6 { wrap(there - here[i]) } else { there - here[i] }
+                };
+                let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(from_here);
+                let rate = (a - 8.0 * b + 8.0 * d - e) / (12.0 * step);
+                let acceleration = (16.0 * (b + d) - a - e) / (12.0 * step * step);
+                prop_assert!((rate - rates[i]).abs() < 1e-6 * fast, "{i}: {rate} {}", rates[i]);
+                prop_assert!(
+                    (acceleration - accelerations[i]).abs() < 1e-6 * hard.max(100.0),
+                    "{i}: {acceleration} {}", accelerations[i]
+                );
+            }
+        }
+    }
 }

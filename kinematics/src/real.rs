@@ -22,8 +22,6 @@ pub trait Real:
     fn of(value: f64) -> Self;
     /// Square root, rounded correctly; of a negative number it is 0.
     fn root(self) -> Self;
-    /// Without its sign.
-    fn magnitude(self) -> Self;
     /// Sines and cosines of angles in degrees.
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]);
     /// Angles of vectors in (-180, 180] degrees.
@@ -40,11 +38,6 @@ impl Real for f64 {
     fn root(self) -> Self {
         // Not `max`, which would turn what is no number into 0.
         libm::sqrt(if self < 0.0 { 0.0 } else { self })
-    }
-
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
     }
 
     #[inline(always)]
@@ -139,11 +132,6 @@ impl<const N: usize> Real for Lanes<N> {
     #[inline(always)]
     fn root(self) -> Self {
         self.each(Real::root)
-    }
-
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.each(f64::abs)
     }
 
     #[inline(always)]

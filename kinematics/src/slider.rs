@@ -1,34 +1,36 @@
-//! A telescope between two arms: the RRPRR flank.
+//! A slider between two arms, on either side of the robot: the RRPRR loop.
 //!
-//! Both arms are rigid with a crank, so their tips are known, and the slider is
-//! simply the line from the rear tip to the front one: length d = l12 + l13 + s,
-//! direction phi. It has no singularity but d = 0; what limits it is its stroke.
+//! Both arms are rigid with a crank, so their tips are known, and the prismatic
+//! joint lies on the line from the rear tip to the front one: length
+//! d = l12 + l13 + s, direction phi. It has no singularity but d = 0; what limits
+//! it is its stroke.
 //!
 //! The paper takes theta10 + theta11 = 0 for the two halves; with angles counted
 //! counter-clockwise the halves are opposite, theta11 = theta10 + 180, and the
 //! unknowns are phi = theta10 and s.
 
 use crate::fault::Fault;
-use crate::real::Real;
+use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// Link lengths of a flank in mm. The origin is the rear shaft.
+/// Dimensions of one side in mm. The origin is the rear shaft, the axes are the
+/// chassis frame's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
-    /// x of the front shaft relative to the rear one: 0 if head and tail have
-    /// equally wide bases.
+    /// x of the front shaft relative to the rear one, mm, either sign: 0 if head
+    /// and tail have equally wide bases.
     pub offset: f64,
-    /// y of the front shaft relative to the rear one: l10, l15.
+    /// y of the front shaft relative to the rear one, mm: l10, l15.
     pub base: f64,
-    /// Front arm: l14, l19.
+    /// Front arm, mm: l14, l19.
     pub front: f64,
-    /// Rear arm: l11, l16.
+    /// Rear arm, mm: l11, l16.
     pub rear: f64,
-    /// Distance of the arm tips at s = 0: l12 + l13, l17 + l18.
+    /// Distance of the arm tips at s = 0, mm: l12 + l13, l17 + l18.
     pub nominal: f64,
 }
 
-/// A closed flank. Points in mm from the rear shaft.
+/// A closed side. Points in mm from the rear shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderPose<T = f64> {
     /// Tip of the rear arm.
@@ -39,9 +41,9 @@ pub struct SliderPose<T = f64> {
     pub front_shaft: Vector<T>,
     /// From the rear tip to the front one.
     pub span: Vector<T>,
-    /// Length of the span, d.
+    /// Length of the span, mm: d.
     pub d: T,
-    /// Slider travel s from nominal.
+    /// Slider travel from nominal, mm: s, positive when longer.
     pub s: T,
 }
 
@@ -61,6 +63,10 @@ impl SliderPose {
 impl Slider {
     /// The slider between arms at two angles in degrees (theta9 and theta12 on
     /// the left, theta13 and theta16 on the right).
+    ///
+    /// # Errors
+    /// [`Fault::Collapsed`] where the arm tips coincide, [`Fault::NotFinite`] for
+    /// what is no number or overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
         self.close(
             Vector::direction(theta_rear),
@@ -69,28 +75,39 @@ impl Slider {
     }
 
     /// The slider between arms of two directions of length one.
+    ///
+    /// # Errors
+    /// As [`Slider::forward`].
     #[inline]
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
         let pose = self.shape(rear, front);
-        self.check(pose.d)?;
+        self.check(&pose)?;
         Ok(pose)
     }
 
-    /// Whether a slider of length `d` mm has a direction.
+    /// Why a pose has no meaning, if it has none.
     #[inline]
-    pub(crate) fn check(&self, d: f64) -> Result<(), Fault> {
-        if !d.is_finite() {
-            Err(Fault::NotFinite)
-        } else if d == 0.0 {
-            Err(Fault::Collapsed)
-        } else {
-            Ok(())
-        }
+    pub(crate) fn check(&self, pose: &SliderPose) -> Result<(), Fault> {
+        check_numbers(pose.d, pose.s)
     }
 
-    /// The pose, if [`Slider::check`] agrees; else it has no meaning.
+    /// In which lanes the slider has a direction; [`Slider::close`] says why one
+    /// has not.
     #[inline(always)]
-    pub(crate) fn shape<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
+    pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
+        let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
+        let mut closes = [false; N];
+        for i in 0..N {
+            closes[i] = check_numbers(d[i], s[i]).is_ok();
+        }
+        closes
+    }
+
+    /// The pose at arm directions of length one, of one robot or in several
+    /// lanes, without asking whether it has a direction: see [`Slider::closes`].
+    /// What the caller does not use, the compiler leaves out.
+    #[inline(always)]
+    pub fn shape<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
         let rear_tip = rear * self.rear;
         let front_shaft = Vector::of(Vector::new(self.offset, self.base));
         let front_tip = front_shaft + front * self.front;
@@ -104,5 +121,16 @@ impl Slider {
             d,
             s: d - T::of(self.nominal),
         }
+    }
+}
+
+#[inline(always)]
+fn check_numbers(d: f64, s: f64) -> Result<(), Fault> {
+    if !d.is_finite() || !s.is_finite() {
+        Err(Fault::NotFinite)
+    } else if d == 0.0 {
+        Err(Fault::Collapsed)
+    } else {
+        Ok(())
     }
 }

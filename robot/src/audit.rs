@@ -194,14 +194,9 @@ impl Audit {
         };
         let (left, right) = (solution.left.s, solution.right.s);
         Self {
-            type2: least(&[Check::ApexHead, Check::ApexTail]),
-            type1: least(&[
-                Check::Type1A1,
-                Check::Type1A2,
-                Check::Type1A3,
-                Check::Type1A4,
-            ]),
-            leg: least(&[Check::LegFl, Check::LegFr, Check::LegBr, Check::LegBl]),
+            type2: least(&Check::TYPE2),
+            type1: least(&Check::TYPE1),
+            leg: least(&Check::LEG),
             stroke: (left.min(right), left.max(right)),
             peak,
         }

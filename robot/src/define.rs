@@ -5,11 +5,11 @@ use std::collections::HashMap;
 
 use lizard_core::command::WORDS;
 use lizard_core::gait::{LONGEST_NAME, MOST_GAITS};
-use lizard_kinematics::Lizard;
+use lizard_kinematics::{End, Lizard};
 
 use crate::error::{Checked, Hint, Problem};
 use crate::gait::{Gait, Stride};
-use crate::path::{Loop, Path, PathLeg};
+use crate::path::{Path, PathLeg};
 use crate::reader::Section;
 use crate::servo::LEGS;
 use crate::waveform::{Harmonic, Waveform};
@@ -237,17 +237,17 @@ fn waveform(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
 fn path(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
     only(one, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
-    for whole in [Loop::Head, Loop::Tail] {
-        if !one.has(whole.name()) {
+    for end in End::ALL {
+        if !one.has(end.name()) {
             continue;
         }
-        let section = one.section(whole.name(), &["centre", "x", "y"])?;
+        let section = one.section(end.name(), &["centre", "x", "y"])?;
         let path = Path {
             centre: section.pair("centre", -255.0, 255.0, "mm")?,
             x: harmonics(&section, "x")?,
             y: harmonics(&section, "y")?,
         };
-        let legs = PathLeg::pair(body.lizard, body.neutral, whole, &path)
+        let legs = PathLeg::pair(body.lizard, body.neutral, end, &path)
             .map_err(|problem| problem.at(section.key.clone()))?;
         for (servo, leg) in legs {
             strides[servo] = Stride {

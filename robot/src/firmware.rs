@@ -115,10 +115,13 @@ impl Firmware {
         let stroke = (limits.stroke_min, limits.stroke_max);
         let mut firmware = Self {
             pins: servos.map(|servo| servo.pin),
-            ends: [Loop::new(&lizard.head())?, Loop::new(&lizard.tail())?],
+            ends: [
+                Loop::new(&lizard.end(kinematics::End::Head))?,
+                Loop::new(&lizard.end(kinematics::End::Tail))?,
+            ],
             sides: [
-                side(&lizard.left(), stroke)?,
-                side(&lizard.right(), stroke)?,
+                side(&lizard.side(kinematics::Side::Left), stroke)?,
+                side(&lizard.side(kinematics::Side::Right), stroke)?,
             ],
             limits: Limits {
                 type2: sine(limits.type2),

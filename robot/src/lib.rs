@@ -37,7 +37,7 @@ pub use error::{Error, Hint, Problem};
 pub use firmware::Firmware;
 pub use gait::{Gait, Stride};
 pub use ground::{Feet, Ground, Travel};
-pub use path::{Loop, Path, PathLeg};
+pub use path::{Path, PathLeg};
 pub use report::{Report, Row};
 pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
 pub use servo::Servo;

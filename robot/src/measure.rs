@@ -1,8 +1,7 @@
 //! The robot's measurements in robot.toml, and what each of them may be.
 
-use lizard_kinematics::{Leg, Limits, Links, Lizard};
-
 use lizard_core::five_bar::SHORTEST_COUPLER;
+use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::error::{Checked, Problem};
 use crate::firmware::loop_scale;
@@ -212,8 +211,8 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
 /// length.
 pub(crate) fn fits(lizard: &Lizard, limits: &Limits) -> Checked<()> {
     for (bars, names) in [
-        (lizard.head(), ["links.l2", "links.l3"]),
-        (lizard.tail(), ["links.l7", "links.l8"]),
+        (lizard.end(End::Head), ["links.l2", "links.l3"]),
+        (lizard.end(End::Tail), ["links.l7", "links.l8"]),
     ] {
         let scale = loop_scale(&bars).ok_or_else(|| Problem::TooLarge.at(names[0]))?;
         let least = f64::from(SHORTEST_COUPLER) / f64::from(1u32 << scale.bits);
@@ -223,7 +222,10 @@ pub(crate) fn fits(lizard: &Lizard, limits: &Limits) -> Checked<()> {
             }
         }
     }
-    let shortest = lizard.left().nominal.min(lizard.right().nominal);
+    let shortest = Side::ALL
+        .map(|side| lizard.side(side).nominal)
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
     for (key, value) in [
         ("limits.stroke_min", limits.stroke_min),
         ("limits.stroke_max", limits.stroke_max),

@@ -1,38 +1,11 @@
 //! Gaits by path: the head or the tail point follows a closed curve, and the
 //! inverse of the five-bar says how the two cranks must turn.
 
-use lizard_kinematics::{Lizard, Vector, wrap};
+use lizard_kinematics::{End, Lizard, Vector, wrap};
 
 use crate::error::Problem;
 use crate::servo::FORWARD;
 use crate::waveform::Harmonic;
-
-/// Which of the two five-bars a path belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Loop {
-    /// Between A1 and A2.
-    Head,
-    /// Between A4 and A3.
-    Tail,
-}
-
-impl Loop {
-    /// Its key in robot.toml.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Head => "head",
-            Self::Tail => "tail",
-        }
-    }
-
-    /// Its two servos, as indices in servo order.
-    pub const fn servos(self) -> [usize; 2] {
-        match self {
-            Self::Head => [0, 1],
-            Self::Tail => [2, 3],
-        }
-    }
-}
 
 /// A closed curve: in each coordinate a centre and a sum of harmonics, mm from
 /// the middle of the base, outward positive in y.
@@ -58,7 +31,7 @@ impl Path {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathLeg {
     lizard: Lizard,
-    whole: Loop,
+    end: End,
     path: Path,
     /// Servo, 0 to 3.
     servo: usize,
@@ -70,30 +43,30 @@ pub struct PathLeg {
 const CHECKED: usize = 4096;
 
 impl PathLeg {
-    /// The two servos of a loop, with their indices, once every point of the
+    /// The two servos of an end, with their indices, once every point of the
     /// path was found within reach. `neutral`: all four neutral angles, deg.
     pub(crate) fn pair(
         lizard: Lizard,
         neutral: [f64; 4],
-        whole: Loop,
+        end: End,
         path: &Path,
     ) -> Result<[(usize, Self); 2], Problem> {
         for i in 0..CHECKED {
             let phase = i as f64 / CHECKED as f64;
             let point = path.at(phase);
-            if angles(&lizard, whole, point).is_none() {
+            if lizard.point_angles(end, point).is_err() {
                 return Err(Problem::OutOfReach {
-                    which: whole.name(),
+                    which: end.name(),
                     x: point.x,
                     y: point.y,
                     phase,
                 });
             }
         }
-        Ok(whole.servos().map(|servo| {
+        Ok(end.servos().map(|servo| {
             let leg = Self {
                 lizard,
-                whole,
+                end,
                 path: path.clone(),
                 servo,
                 neutral: neutral[servo],
@@ -108,17 +81,11 @@ impl PathLeg {
         // Out of reach cannot happen: `pair` saw no such point, and the check
         // of every sample keeps the path's type-1 margins, which are zero at
         // the edge of reach, far from zero.
-        let angles =
-            angles(&self.lizard, self.whole, self.path.at(phase)).expect("a path within reach");
+        let angles = self
+            .lizard
+            .point_angles(self.end, self.path.at(phase))
+            .expect("a path within reach");
         let angle = angles[self.servo % 2];
         FORWARD[self.servo] * wrap(angle - self.neutral)
-    }
-}
-
-/// The crank angles that put a loop's point somewhere, elbows outward.
-fn angles(lizard: &Lizard, whole: Loop, point: Vector) -> Option<[f64; 2]> {
-    match whole {
-        Loop::Head => lizard.head_angles(point).ok(),
-        Loop::Tail => lizard.tail_angles(point).ok(),
     }
 }

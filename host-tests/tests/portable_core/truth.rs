@@ -60,31 +60,14 @@ pub struct Conditions {
 
 impl Conditions {
     /// At chassis angles in degrees; None where a loop does not close.
-    ///
-    /// One thing is told apart here that lizard-kinematics does not: a leg's
-    /// |sin theta_lg| is the same on both sides of a change point, but a
-    /// parallelogram that has passed one may have come out crossed. So beyond
-    /// 0 and 180 deg a leg counts as negative, as the core has it.
     pub fn of(lizard: &Lizard, angles: [f64; 4]) -> Option<Self> {
         let solution = lizard.solve(&angles.into()).ok()?;
-        let m = &solution.margins;
-        let leg = |servo: usize, margin: f64| {
-            let outward = solution.legs[servo].direction.y * [1.0, 1.0, -1.0, -1.0][servo];
-            margin.copysign(outward)
-        };
+        let mut margins = [0.0; 10];
+        for (margin, (_, value)) in margins.iter_mut().zip(solution.margins.iter()) {
+            *margin = value;
+        }
         Some(Self {
-            margins: [
-                m.apex_head,
-                m.apex_tail,
-                m.type1_a1,
-                m.type1_a2,
-                m.type1_a3,
-                m.type1_a4,
-                leg(0, m.leg_fl),
-                leg(1, m.leg_fr),
-                leg(2, m.leg_br),
-                leg(3, m.leg_bl),
-            ],
+            margins,
             travels: [solution.left.s, solution.right.s],
             across: [solution.head.gap.x, solution.tail.gap.x],
             tips: [solution.head.gap.length(), solution.tail.gap.length()],

@@ -1,6 +1,6 @@
 //! The mechanism from above, head up: chassis, five-bars, sliders and legs.
 
-use lizard_kinematics::{Solution, Vector, wrap};
+use lizard_kinematics::{End, Side, Solution, Vector, wrap};
 use lizard_robot::Robot;
 use svg::Document;
 use svg::node::element::{Group, Path};
@@ -32,10 +32,12 @@ pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
         group = view.leg(group, servo);
     }
     group = view.chassis(group);
-    group = view.slider(group, [0, 3]);
-    group = view.slider(group, [1, 2]);
-    group = view.five_bar(group, [0, 1], solution.head_point());
-    group = view.five_bar(group, [3, 2], solution.tail_point());
+    for side in Side::ALL {
+        group = view.slider(group, side);
+    }
+    for end in End::ALL {
+        group = view.five_bar(group, end);
+    }
     if labels {
         group = view.labels(group);
     }
@@ -81,15 +83,7 @@ impl View<'_> {
 
     /// Tip of a servo's crank.
     fn crank_tip(&self, servo: usize) -> Joint {
-        let (head, tail) = (&self.solution.head, &self.solution.tail);
-        let shaft_y = Vector::new(0.0, self.shafts()[servo].y);
-        shaft_y
-            + match servo {
-                0 => head.left_tip,
-                1 => head.right_tip,
-                2 => tail.right_tip.mirrored(),
-                _ => tail.left_tip.mirrored(),
-            }
+        self.solution.crank_tips()[servo]
     }
 
     /// A lizard's outline, pale, so that a mechanism looks like an animal.
@@ -176,17 +170,16 @@ impl View<'_> {
         group
     }
 
-    /// The telescope between the arms of a front and a rear servo.
-    fn slider(&self, mut group: Group, [front, rear]: [usize; 2]) -> Group {
-        let slider = if front == 0 {
-            self.solution.left
-        } else {
-            self.solution.right
-        };
+    /// The prismatic joint between the arms of a front and a rear servo.
+    fn slider(&self, mut group: Group, side: Side) -> Group {
+        let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
         let (low, high) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
         let links = &self.robot.lizard.links;
-        let tube = if front == 0 { links.l12 } else { links.l17 };
+        let tube = match side {
+            Side::Left => links.l12,
+            Side::Right => links.l17,
+        };
         let along = (high - low) * (1.0 / slider.d);
         group =
             group
@@ -201,9 +194,10 @@ impl View<'_> {
     }
 
     /// Two cranks, two couplers and the point that they carry.
-    fn five_bar(&self, mut group: Group, servos: [usize; 2], apex: Joint) -> Group {
+    fn five_bar(&self, mut group: Group, end: End) -> Group {
+        let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
-            group = group.add(bar(self.crank_tip(servo), apex, STEEL, 3.4));
+            group = group.add(bar(self.crank_tip(servo), point, STEEL, 3.4));
         }
         for servo in servos {
             let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
@@ -214,7 +208,7 @@ impl View<'_> {
                 .add(circle(page(shaft), 1.2 * PIXELS_PER_MM, "white"));
         }
         group.add(
-            circle(page(apex), 3.4 * PIXELS_PER_MM, "#f0e442")
+            circle(page(point), 3.4 * PIXELS_PER_MM, "#f0e442")
                 .set("stroke", DARK)
                 .set("stroke-width", 2.5),
         )

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_kinematics::{Assembly, Branch, Elbow, FiveBar, Pose, Vector, wrap};
+use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector, wrap};
 use lizard_robot::{Robot, servo};
 use serde::Serialize;
 
@@ -80,40 +80,16 @@ struct Way {
     why: Vec<String>,
 }
 
-/// Which five-bar, and how its frame lies in the chassis frame.
-#[derive(Clone, Copy)]
-struct End {
-    bars: FiveBar,
-    base_y: f64,
-    /// +1 for the head, -1 for the tail, whose frame is mirrored.
-    sign: f64,
-    /// Left and right servo.
-    servos: [usize; 2],
-}
-
 /// Finds and prints the angles.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let base_y = robot.lizard.links.l10 / 2.0;
-    let head = End {
-        bars: robot.lizard.head(),
-        base_y,
-        sign: 1.0,
-        servos: [0, 1],
-    };
-    let tail = End {
-        bars: robot.lizard.tail(),
-        base_y,
-        sign: -1.0,
-        servos: [3, 2],
-    };
     let part = |end: End, point: &Option<Vec<f64>>| {
         point
             .as_ref()
             .map(|p| solve(&robot, end, Vector::new(p[0], p[1])))
     };
-    let (head_loop, tail_loop) = (part(head, &args.head), part(tail, &args.tail));
-    let report = report(&robot, head_loop, tail_loop, [head, tail]);
+    let (head, tail) = (part(End::Head, &args.head), part(End::Tail, &args.tail));
+    let report = report(&robot, head, tail);
     let mut out = io::stdout().lock();
     if args.json {
         serde_json::to_writer_pretty(&mut out, &report)?;
@@ -131,8 +107,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
-    let local = Vector::new(point.x, end.sign * point.y - end.base_y);
-    let (assemblies, why) = match end.bars.inverse(local) {
+    let local = robot.lizard.to_end(end, point);
+    let (assemblies, why) = match robot.lizard.end(end).inverse(local) {
         Ok(all) => {
             let ways = all.into_iter().map(|a| way(robot, end, local, a));
             (ways.collect(), None)
@@ -146,47 +122,34 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     }
 }
 
-fn way(robot: &Robot, end: End, point: Vector, a: Assembly) -> Way {
-    let there = end.bars.forward_on(a.branch, a.theta_left, a.theta_right);
+fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
+    let bars = robot.lizard.end(end);
+    let there = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
     let (error_mm, margin) = match &there {
-        Ok(pose) => ((pose.apex - point).length(), pose.margin()),
+        Ok(pose) => ((pose.end_point - point).length(), pose.margin()),
         Err(_) => (0.0, 0.0),
     };
-    let angles = [
-        wrap(end.sign * a.theta_left),
-        wrap(end.sign * a.theta_right),
-    ];
+    let angles = [a.theta_left, a.theta_right].map(|theta| end.mirror_angle(theta));
     let mut why: Vec<String> = end
-        .servos
+        .servos()
         .into_iter()
         .zip(angles)
         .filter_map(|(servo, angle)| beyond(robot, servo, angle))
         .collect();
-    if a.branch == Branch::Behind {
-        why.push("the apex would be on the other side of the crank tips".to_string());
+    let behind = a.assembly_mode == AssemblyMode::Behind;
+    if behind {
+        why.push("the end point would be on the other side of the crank tips".to_string());
     }
     if let Ok(pose) = &there {
-        let least = pose.type1_left().min(pose.type1_right());
-        if least < robot.limits.type1 {
-            why.push(format!(
-                "type-1 margin {least:.3} is below {:.3}",
-                robot.limits.type1
-            ));
-        }
-        if a.branch == Branch::Ahead && pose.type2 < robot.limits.type2 {
-            why.push(format!(
-                "type-2 margin {:.3} is below {:.3}",
-                pose.type2, robot.limits.type2
-            ));
-        }
+        // In the other assembly mode the type-2 margin is negative, which is said.
+        let said = |what| behind && Check::TYPE2.contains(&what);
+        let broken = robot.limits.end_violations(end, pose);
+        why.extend(broken.filter(|v| !said(v.what)).map(|v| v.to_string()));
     }
     Way {
-        left: bend(a.left),
-        right: bend(a.right),
-        apex: match a.branch {
-            Branch::Ahead => "ahead",
-            Branch::Behind => "behind",
-        },
+        left: bend(a.working_mode.left),
+        right: bend(a.working_mode.right),
+        apex: if behind { "behind" } else { "ahead" },
         theta_left: angles[0],
         theta_right: angles[1],
         error_mm,
@@ -216,14 +179,15 @@ fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
 }
 
 /// Puts both ends together and checks the whole robot.
-fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>, ends: [End; 2]) -> Report {
+fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos.map(|servo| servo.neutral);
     let mut whole = true;
-    for (part, end) in [(&head, ends[0]), (&tail, ends[1])] {
+    for (part, end) in [(&head, End::Head), (&tail, End::Tail)] {
         match part.as_ref().map(|part| part.assemblies.first()) {
             Some(Some(outward)) => {
-                angles[end.servos[0]] = outward.theta_left;
-                angles[end.servos[1]] = outward.theta_right;
+                let [left, right] = end.servos();
+                angles[left] = outward.theta_left;
+                angles[right] = outward.theta_right;
             }
             Some(None) => whole = false,
             None => {}

@@ -7,7 +7,7 @@
 
 use std::io::{self, Write};
 
-use lizard_kinematics::{Lizard, Solution, Vector};
+use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -137,9 +137,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// couplers, four slider halves.
 fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
     const CRANK: [usize; 4] = [1, 2, 3, 4];
-    let to_chassis = Vector::new(0.0, lizard.links.l10 / 2.0);
-    let head = |local: Vector| local + to_chassis;
-    let tail = |local: Vector| local.mirrored() - to_chassis;
+    let tips = s.crank_tips();
     let shafts = lizard.shafts();
     let pin = |a: usize, b: usize, point: Vector| Joint {
         links: [a, b],
@@ -147,14 +145,15 @@ fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
     };
     let mut joints: Vec<Joint> = (0..4).map(|i| pin(0, CRANK[i], shafts[i])).collect();
     // Head couplers 5, 6; tail couplers 7 (left), 8 (right).
-    joints.push(pin(CRANK[0], 5, head(s.head.left_tip)));
-    joints.push(pin(CRANK[1], 6, head(s.head.right_tip)));
+    joints.push(pin(CRANK[0], 5, tips[0]));
+    joints.push(pin(CRANK[1], 6, tips[1]));
     joints.push(pin(5, 6, s.head_point()));
-    joints.push(pin(CRANK[3], 7, tail(s.tail.left_tip)));
-    joints.push(pin(CRANK[2], 8, tail(s.tail.right_tip)));
+    joints.push(pin(CRANK[3], 7, tips[3]));
+    joints.push(pin(CRANK[2], 8, tips[2]));
     joints.push(pin(7, 8, s.tail_point()));
     // Slider halves: left rear 9, front 10; right rear 11, front 12.
-    for (slider, rear, front, halves) in [(&s.left, 3, 0, [9, 10]), (&s.right, 2, 1, [11, 12])] {
+    for (side, halves) in Side::ALL.into_iter().zip([[9, 10], [11, 12]]) {
+        let ([front, rear], slider) = (side.servos(), s.side(side));
         let rear_tip = shafts[rear] + slider.rear_tip;
         joints.push(pin(CRANK[rear], halves[0], rear_tip));
         joints.push(pin(

@@ -31,10 +31,10 @@ struct Side {
 
 #[derive(Serialize)]
 struct Legs {
-    fl: Leg,
-    fr: Leg,
-    br: Leg,
-    bl: Leg,
+    lf: Leg,
+    rf: Leg,
+    rh: Leg,
+    lh: Leg,
 }
 
 #[derive(Serialize)]
@@ -45,31 +45,34 @@ struct Leg {
 
 #[derive(Serialize)]
 struct Sines {
-    apex_head: f64,
-    apex_tail: f64,
+    type2_head: f64,
+    type2_tail: f64,
     type1_a1: f64,
     type1_a2: f64,
     type1_a3: f64,
     type1_a4: f64,
-    leg_fl: f64,
-    leg_fr: f64,
-    leg_br: f64,
-    leg_bl: f64,
+    leg_lf: f64,
+    leg_rf: f64,
+    leg_rh: f64,
+    leg_lh: f64,
 }
 
 impl From<&Margins> for Sines {
     fn from(m: &Margins) -> Self {
+        let [type2_head, type2_tail] = m.type2;
+        let [type1_a1, type1_a2, type1_a3, type1_a4] = m.type1;
+        let [leg_lf, leg_rf, leg_rh, leg_lh] = m.leg;
         Self {
-            apex_head: m.apex_head,
-            apex_tail: m.apex_tail,
-            type1_a1: m.type1_a1,
-            type1_a2: m.type1_a2,
-            type1_a3: m.type1_a3,
-            type1_a4: m.type1_a4,
-            leg_fl: m.leg_fl,
-            leg_fr: m.leg_fr,
-            leg_br: m.leg_br,
-            leg_bl: m.leg_bl,
+            type2_head,
+            type2_tail,
+            type1_a1,
+            type1_a2,
+            type1_a3,
+            type1_a4,
+            leg_lf,
+            leg_rf,
+            leg_rh,
+            leg_lh,
         }
     }
 }
@@ -84,7 +87,7 @@ impl Record {
         let why: Vec<String> = limits.violations(s).map(|v| v.to_string()).collect();
         let (head, tail) = (s.head_point(), s.tail_point());
         let p = s.passive();
-        let [fl, fr, br, bl] = s.legs.map(|leg| Leg {
+        let [lf, rf, rh, lh] = s.legs.map(|leg| Leg {
             follower: leg.follower(),
             coupler: leg.coupler(),
         });
@@ -103,7 +106,7 @@ impl Record {
                 phi: p.phi_right,
                 s: s.right.s,
             }),
-            legs: Some(Legs { fl, fr, br, bl }),
+            legs: Some(Legs { lf, rf, rh, lh }),
             margins: Some(Sines::from(&s.margins)),
             safe: why.is_empty(),
             why,
@@ -215,7 +218,7 @@ legs     followers  front left {:8.3}   front right {:8.3}   back right {:8.3}  
 margins  (0 is singular, 1 is best)  limits {} {} {}
          type-2    head {:+.4}   tail {:+.4}
          type-1    A1   {:+.4}   A2   {:+.4}   A3 {:+.4}   A4 {:+.4}
-         legs      fl   {:+.4}   fr   {:+.4}   br {:+.4}   bl {:+.4}
+         legs      LF   {:+.4}   RF   {:+.4}   RH {:+.4}   LH {:+.4}
 
 ",
         head.x, head.y, s.theta2(), s.theta3(),
@@ -224,9 +227,9 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
         s.right.s, s.right.phi(),
         legs[0], legs[1], legs[2], legs[3],
         limits.type2, limits.type1, limits.leg,
-        m.apex_head, m.apex_tail,
-        m.type1_a1, m.type1_a2, m.type1_a3, m.type1_a4,
-        m.leg_fl, m.leg_fr, m.leg_br, m.leg_bl,
+        m.type2[0], m.type2[1],
+        m.type1[0], m.type1[1], m.type1[2], m.type1[3],
+        m.leg[0], m.leg[1], m.leg[2], m.leg[3],
     );
     let broken: Vec<_> = limits.violations(s).collect();
     if broken.is_empty() {

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use lizard_kinematics::{Blocks, FiveBar, Pose, SingularPose, Singularity, Solution, wrap};
+use lizard_kinematics::{Blocks, End, FiveBar, Pose, SingularPose, Singularity, Solution, wrap};
 use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;
@@ -103,11 +103,9 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     } = solution.blocks();
     let leg = &robot.lizard.leg;
     let mut nearest = vec![];
-    let [a1, a2, a3, a4] = <[f64; 4]>::from(solution.pose);
-    for (name, bars, angles, servos, sign) in [
-        ("head", robot.lizard.head(), [a1, a2], [0, 1], 1.0),
-        ("tail", robot.lizard.tail(), [-a4, -a3], [3, 2], -1.0),
-    ] {
+    for end in End::ALL {
+        let (bars, servos, sign) = (robot.lizard.end(end), end.servos(), end.sign());
+        let angles = end.pick(solution.pose.into()).map(|angle| sign * angle);
         for kind in [
             Singularity::Couplers,
             Singularity::LeftArm,
@@ -118,12 +116,12 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
                 turn[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
                 turn[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
                 let what = match kind {
-                    Singularity::Couplers => format!("{name} type 2, the apex comes loose"),
+                    Singularity::Couplers => format!("{end} type 2, the end point comes loose"),
                     Singularity::LeftArm => {
-                        format!("{name} type 1, A{} arm straight or folded", servos[0] + 1)
+                        format!("{end} type 1, A{} arm straight or folded", servos[0] + 1)
                     }
                     Singularity::RightArm => {
-                        format!("{name} type 1, A{} arm straight or folded", servos[1] + 1)
+                        format!("{end} type 1, A{} arm straight or folded", servos[1] + 1)
                     }
                 };
                 nearest.push(Nearest {
@@ -134,7 +132,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
             }
         }
     }
-    for (servo, angle) in [a1, a2, a3, a4].into_iter().enumerate() {
+    for (servo, angle) in <[f64; 4]>::from(solution.pose).into_iter().enumerate() {
         // Change points at 0 and 180 degrees.
         let turn_by = 180.0 * (angle / 180.0).round() - angle;
         let mut turn = [0.0; 4];

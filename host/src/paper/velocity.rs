@@ -91,7 +91,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .lizard
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
-    let singular = solution.margins.apex_head.min(solution.margins.apex_tail);
+    let singular = solution.margins.type2[0].min(solution.margins.type2[1]);
     if singular < 1e-9 {
         return Err(Failure::Impossible(
             "the couplers line up: rates do not follow from the servos'".to_string(),

@@ -153,14 +153,22 @@ fn rates_agree_with_differences_of_positions() {
 
 #[test]
 fn a_point_leads_to_angles_and_back_to_the_point() {
-    for point in ["5 120", "-22 110", "0 139", "20 105.5"] {
+    // The last two would take a leg through its change point.
+    for (point, safe) in [
+        ("5 120", true),
+        ("-6 118", true),
+        ("0 139", true),
+        ("-22 110", false),
+        ("20 105.5", false),
+    ] {
         let report = lizard(&format!("inverse --json --head {point}"), "").json();
         let ways = report["head"]["assemblies"].as_array().unwrap();
         assert_eq!(ways.len(), 4);
         for way in ways {
             assert!(number(&way["error_mm"]) < 1e-9, "{point}");
         }
-        assert_eq!(ways[0]["reachable"], true, "{point}");
+        assert_eq!(ways[0]["reachable"], safe, "{point}");
+        assert_eq!(report["safe"], safe, "{point}");
         assert_eq!(ways[3]["reachable"], false, "{point}");
     }
 }

@@ -36,11 +36,11 @@ fn the_object_has_exactly_the_promised_keys() {
     );
     assert_eq!(keys(&one["left"]), "phi s");
     assert_eq!(keys(&one["right"]), "phi s");
-    assert_eq!(keys(&one["legs"]), "bl br fl fr");
-    assert_eq!(keys(&one["legs"]["fl"]), "coupler follower");
+    assert_eq!(keys(&one["legs"]), "lf lh rf rh");
+    assert_eq!(keys(&one["legs"]["lf"]), "coupler follower");
     assert_eq!(
         keys(&one["margins"]),
-        "apex_head apex_tail leg_bl leg_br leg_fl leg_fr type1_a1 type1_a2 type1_a3 type1_a4"
+        "leg_lf leg_lh leg_rf leg_rh type1_a1 type1_a2 type1_a3 type1_a4 type2_head type2_tail"
     );
     assert_eq!(one["safe"], true);
     assert_eq!(one["why"], Value::Array(vec![]));
@@ -108,11 +108,16 @@ fn what_it_prints_closes_every_loop() {
         let x = one["head"][0].as_f64().unwrap() - (-10.0 + head[0] + coupler[0]);
         let y = one["head"][1].as_f64().unwrap() - (67.5 + head[1] + coupler[1]);
         assert!(x.hypot(y) < 1e-9);
-        for (leg, theta) in [("fl", t1), ("fr", t4), ("br", t8), ("bl", t5)] {
+        for (leg, theta, sign) in [
+            ("lf", t1, 1.0),
+            ("rf", t4, 1.0),
+            ("rh", t8, -1.0),
+            ("lh", t5, -1.0),
+        ] {
             let follower = one["legs"][leg]["follower"].as_f64().unwrap();
             assert!(wrap(follower - theta).abs() < 1e-9);
             let margin = one["margins"][format!("leg_{leg}")].as_f64().unwrap();
-            assert!((margin - theta.to_radians().sin().abs()).abs() < 1e-12);
+            assert!((margin - sign * theta.to_radians().sin()).abs() < 1e-12);
         }
         assert_eq!(
             one["safe"].as_bool().unwrap(),
@@ -160,7 +165,7 @@ fn a_long_stream_keeps_its_order() {
     let solved = lines(&input);
     assert_eq!(solved.len(), 30_000);
     for (i, one) in solved.iter().enumerate() {
-        let follower = one["legs"]["fl"]["follower"].as_f64().unwrap();
+        let follower = one["legs"]["lf"]["follower"].as_f64().unwrap();
         assert!((follower - 100.0 - i as f64 / 1000.0).abs() < 1e-9);
     }
 }

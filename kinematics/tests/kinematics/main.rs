@@ -1,9 +1,9 @@
-//! The closed forms against solvers that share nothing with them but lengths.
+//! What crosses the modules: the whole robot against solvers that share nothing
+//! with it but lengths.
 
-mod angle;
-mod five_bar;
+mod conditions;
+mod finite;
+mod lanes;
 mod lizard;
-mod motion;
 mod reference;
-mod singular;
 mod workspace;

@@ -2,9 +2,11 @@
 //! equations in joint angles, and circles met by the law of cosines. Nothing
 //! here uses the crate's construction, only its lengths.
 
+#![allow(dead_code)] // Unit tests and integration tests use different parts.
+
 use std::f64::consts::PI;
 
-use lizard_kinematics::{FiveBar, Leg, Lizard};
+use lizard_kinematics::{FiveBar, Leg, Lizard, Vector};
 use proptest::prelude::*;
 
 /// The robot of the paper.
@@ -70,9 +72,9 @@ pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64;
     (fx.hypot(fy) < 1e-10).then_some([t2, t3])
 }
 
-/// The apex by the law of cosines at the left crank tip, left of the line
+/// The end point by the law of cosines at the left crank tip, left of the line
 /// between the tips; None if the circles miss each other.
-pub fn apex(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
+pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
     let (bx, by) = (
         bars.crank_left * a.cos() - bars.base / 2.0,
@@ -82,14 +84,13 @@ pub fn apex(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2
         bars.crank_right * b.cos() + bars.base / 2.0,
         bars.crank_right * b.sin(),
     );
-    let d = (cx - bx).hypot(cy - by);
-    let (l2, l3) = (bars.coupler_left, bars.coupler_right);
-    let cosine = (l2 * l2 + d * d - l3 * l3) / (2.0 * l2 * d);
-    if cosine.is_nan() || cosine.abs() > 1.0 {
-        return None;
-    }
-    let t2 = (cy - by).atan2(cx - bx) + cosine.acos();
-    Some([bx + l2 * t2.cos(), by + l2 * t2.sin()])
+    meeting(
+        Vector::new(bx, by),
+        bars.coupler_left,
+        Vector::new(cx, cy),
+        bars.coupler_right,
+    )
+    .map(|point| [point.x, point.y])
 }
 
 /// Robots of any proportions that come together: random links, l10 = l15.
@@ -106,4 +107,28 @@ pub fn any_lizard() -> impl Strategy<Value = Lizard> {
             ..paper
         }
     })
+}
+
+/// Servo angles that most robots close at, in servo order, degrees.
+pub fn any_pose() -> impl Strategy<Value = [f64; 4]> {
+    [0.0..180.0, 0.0..180.0, 180.0..360.0, 180.0..360.0f64]
+}
+
+/// The direction of an angle in degrees.
+pub fn cis(degrees: f64) -> Vector {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Vector::new(cos, sin)
+}
+
+/// Where a link of length `r` on `a` meets a link of length `s` on `b`, to the
+/// left of the line from `a` to `b`, by the law of cosines; None if they miss
+/// each other.
+pub fn meeting(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
+    let d = (b.x - a.x).hypot(b.y - a.y);
+    let cosine = (r * r + d * d - s * s) / (2.0 * r * d);
+    if cosine.is_nan() || cosine.abs() > 1.0 {
+        return None;
+    }
+    let angle = (b.y - a.y).atan2(b.x - a.x) + cosine.acos();
+    Some(Vector::new(a.x + r * angle.cos(), a.y + r * angle.sin()))
 }

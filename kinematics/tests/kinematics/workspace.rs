@@ -82,8 +82,8 @@ proptest! {
         if let Ok(all) = bars.inverse(Vector::new(x, y)) {
             for a in all {
                 let (Ok(one), Ok(two)) = (
-                    bars.forward_on(a.branch, a.theta_left, a.theta_right),
-                    large.forward_on(a.branch, a.theta_left, a.theta_right),
+                    bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right),
+                    large.forward_in(a.assembly_mode, a.theta_left, a.theta_right),
                 ) else { continue };
                 prop_assert!((0.0..=1.0 + 1e-12).contains(&one.lci()));
                 prop_assume!(one.gap.length() > 1e-3);
@@ -101,9 +101,12 @@ fn conditioning_vanishes_where_the_inscribed_circle_touches_the_rim() {
         for side in [1.0, -1.0] {
             let rim = circle.centre + away * (side * circle.radius / away.length());
             let a = HEAD.inverse(rim).unwrap()[0];
-            assert_eq!((a.left, a.right), (Elbow::Outward, Elbow::Outward));
+            assert_eq!(
+                (a.working_mode.left, a.working_mode.right),
+                (Elbow::Outward, Elbow::Outward)
+            );
             let pose = HEAD
-                .forward_on(a.branch, a.theta_left, a.theta_right)
+                .forward_in(a.assembly_mode, a.theta_left, a.theta_right)
                 .unwrap();
             assert!(pose.lci() < 1e-6, "{}", pose.lci());
         }

@@ -108,7 +108,7 @@ fn looking_moves_the_head_along_its_path_and_nothing_else() {
             .solve(&angles.into())
             .expect("a safe pose")
             .head
-            .apex;
+            .end_point;
         let turn = std::f64::consts::TAU * u;
         let wanted = Vector::new(10.0 * turn.sin(), 54.0 + 5.0 * (2.0 * turn).sin());
         assert!((head - wanted).length() < 0.05, "at {u}: {head:?}");

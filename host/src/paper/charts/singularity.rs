@@ -1,7 +1,7 @@
 //! The plane of the two head servos: margins, singular curves, and the paths
 //! that the gaits take through it.
 
-use lizard_kinematics::{Check, FiveBar, Pose, SingularPose, Singularity, wrap};
+use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wrap};
 use lizard_robot::{Gait, Robot};
 use svg::node::element::Group;
 
@@ -172,7 +172,7 @@ fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         .violations(&s)
         .any(|v| !matches!(v.what, Check::StrokeLeft | Check::StrokeRight));
     let m = &s.margins;
-    let margins = [m.apex_head, m.type1_a1, m.type1_a2, m.leg_fl, m.leg_fr];
+    let margins = [m.type2[0], m.type1[0], m.type1[1], m.leg[0], m.leg[1]];
     (!broken).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
@@ -237,7 +237,7 @@ fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 
 /// The singular curves within the plot, as short pieces.
 fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
-    let bars = robot.lizard.head();
+    let bars = robot.lizard.end(End::Head);
     group = sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
     // Once more with the other crank leading, where the first runs steeply: the
     // five-bar seen in a mirror, in which left and right change places.

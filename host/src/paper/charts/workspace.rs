@@ -1,6 +1,6 @@
 //! Where the head point can go, and how well the servos steer it there.
 
-use lizard_kinematics::{Circle, Vector, Workspace};
+use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
@@ -23,7 +23,7 @@ const BLUE: &str = "#0072b2";
 /// The four circles, the workspace between them, the inscribed circle, and the
 /// head at neutral.
 pub fn workspace(robot: &Robot) -> String {
-    let bars = robot.lizard.head();
+    let bars = robot.lizard.end(End::Head);
     let space = Workspace::of(&bars);
     let reach = (space.outer / 20.0).ceil() * 20.0 + 20.0;
     let plot = Plot {
@@ -89,7 +89,7 @@ pub fn workspace(robot: &Robot) -> String {
 
 /// The local conditioning index over the upper workspace, outward elbows.
 pub fn conditioning(robot: &Robot) -> String {
-    let bars = robot.lizard.head();
+    let bars = robot.lizard.end(End::Head);
     let space = Workspace::of(&bars);
     let reach = (space.outer / 20.0).ceil() * 20.0;
     let plot = Plot {
@@ -167,7 +167,7 @@ fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
         .map(|(_, gait)| {
             (0..=200)
                 .filter_map(|i| robot.lizard.solve(&gait.pose(f64::from(i) / 200.0)).ok())
-                .map(|s| (s.head.apex.x, s.head.apex.y))
+                .map(|s| (s.head.end_point.x, s.head.end_point.y))
                 .collect()
         })
         .collect()
@@ -179,7 +179,7 @@ fn mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         let points = [
             h.bars.left_shaft(),
             h.left_tip,
-            h.apex,
+            h.end_point,
             h.right_tip,
             h.bars.right_shaft(),
         ]

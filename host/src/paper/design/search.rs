@@ -8,7 +8,7 @@
 //! any gait of that amplitude is safe.
 
 use indicatif::{ParallelProgressIterator, ProgressBar};
-use lizard_kinematics::{FiveBar, Limits, Slider};
+use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -124,7 +124,7 @@ const ACROSS: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
 fn holds(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
-    let slider = flank(bars, demands);
+    let slider = slider(bars, demands);
     // theta5 in tail-local angles is what theta1 is, so neutral mirrors.
     let span = |front: f64, rear: f64| {
         slider
@@ -134,24 +134,19 @@ fn holds(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let nominal = span(neutral, neutral);
     ACROSS.iter().all(|&i| {
         let left = neutral + i * sweep;
-        left.to_radians().sin() >= limits.leg
-            && ACROSS.iter().all(|&j| {
-                let right = 180.0 - neutral + j * sweep;
-                let travel = span(left, neutral + j * sweep) - nominal;
-                travel >= limits.stroke_min
-                    && travel <= limits.stroke_max
-                    && bars.forward(left, right).is_ok_and(|pose| {
-                        pose.type2 >= limits.type2
-                            && pose.type1_left() >= limits.type1
-                            && pose.type1_right() >= limits.type1
-                            && pose.gap.x > 0.0
-                    })
-            })
+        ACROSS.iter().all(|&j| {
+            let right = 180.0 - neutral + j * sweep;
+            let travel = span(left, neutral + j * sweep) - nominal;
+            limits.broken(Check::StrokeLeft, travel).is_none()
+                && bars
+                    .forward(left, right)
+                    .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())
+        })
     })
 }
 
-/// A flank whose arms are as long as the cranks, as the paper's are.
-fn flank(bars: &FiveBar, demands: &Demands) -> Slider {
+/// A side whose arms are as long as the cranks, as the paper's are.
+fn slider(bars: &FiveBar, demands: &Demands) -> Slider {
     Slider {
         offset: 0.0,
         base: demands.chassis,

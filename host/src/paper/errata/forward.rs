@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use lizard_kinematics::{Links, Vector};
+use lizard_kinematics::{End, Links, Vector};
 
 use super::equation::Equation;
 use super::sample::{Sample, apart, cis};
@@ -58,7 +58,7 @@ pub const EQUATIONS: &[Equation] = &[
                     return Some(0.0);
                 };
                 let theta1 = s.s.pose.theta1;
-                let Ok(there) = s.lizard.head().forward(theta1, zero * 180.0 / PI) else {
+                let Ok(there) = s.lizard.end(End::Head).forward(theta1, zero * 180.0 / PI) else {
                     return Some(0.0);
                 };
                 let (l, t) = (&s.lizard.links, PI / 180.0);
@@ -279,7 +279,7 @@ fn near_vanishing_a(s: &Sample) -> Option<f64> {
     let theta4 = zero + (s.chance[0] - 0.5) * 2e-9 * PI / 180.0;
     let Ok(truth) = s
         .lizard
-        .head()
+        .end(End::Head)
         .forward(s.s.pose.theta1, theta4 * 180.0 / PI)
     else {
         return Some(0.0);

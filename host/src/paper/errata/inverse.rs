@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use lizard_kinematics::Vector;
+use lizard_kinematics::{End, Vector};
 
 use super::equation::Equation;
 use super::sample::{Sample, cis};
@@ -14,7 +14,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "(x11 - l1 cos θ1 + l0/2)² + (y11 - l1 sin θ1)² = l2²",
         miss: |s| {
             let l = &s.lizard.links;
-            arm(s.s.head.apex, -l.l0 / 2.0, l.l1, s.angles().t[1], l.l2)
+            arm(s.s.head.end_point, -l.l0 / 2.0, l.l1, s.angles().t[1], l.l2)
         },
         unit: "mm in length",
         clockwise: None,
@@ -25,7 +25,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "(x11 - l1 cos θ2 - l0/2)² + (y11 - l1 sin θ2)² = l2²",
         miss: |s| {
             let l = &s.lizard.links;
-            arm(s.s.head.apex, l.l0 / 2.0, l.l1, s.angles().t[2], l.l2)
+            arm(s.s.head.end_point, l.l0 / 2.0, l.l1, s.angles().t[2], l.l2)
         },
         unit: "mm in length",
         clockwise: None,
@@ -33,7 +33,7 @@ pub const EQUATIONS: &[Equation] = &[
             "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
             |s| {
                 let l = &s.lizard.links;
-                arm(s.s.head.apex, l.l0 / 2.0, l.l4, s.angles().t[4], l.l3)
+                arm(s.s.head.end_point, l.l0 / 2.0, l.l4, s.angles().t[4], l.l3)
             },
         )),
     },
@@ -115,7 +115,7 @@ fn arm(point: Vector, shaft: f64, crank: f64, angle: f64, coupler: f64) -> Optio
 
 /// The tail point from the middle of l5, chassis axes.
 fn tail(s: &Sample) -> Vector {
-    s.s.tail.apex.mirrored()
+    End::Tail.mirror(s.s.tail.end_point)
 }
 
 /// The middle of a slider from the middle between its shafts: 0 left, 1 right.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use lizard_kinematics::End;
+
 use super::equation::Equation;
 use super::sample::Sample;
 
@@ -165,12 +167,12 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "sin(θ2 + θ3) = 0",
         miss: |s| {
             let t = s.angles().t;
-            Some(((t[2] + t[3]).sin().abs() - s.s.margins.apex_head).abs())
+            Some(((t[2] + t[3]).sin().abs() - s.s.margins.type2[0]).abs())
         },
         unit: "in the sine",
         clockwise: Some(|s| {
             let t = s.angles().t;
-            Some(((t[2] + PI - t[3]).sin().abs() - s.s.margins.apex_head).abs())
+            Some(((t[2] + PI - t[3]).sin().abs() - s.s.margins.type2[0]).abs())
         }),
         corrected: Some(("sin(θ3 - θ2) = 0", |s| {
             let t = s.angles().t;
@@ -187,7 +189,7 @@ pub const EQUATIONS: &[Equation] = &[
         unit: "in the sine: it flags home",
         clockwise: None,
         corrected: Some(("sin(θ3 - θ2) = 0", |s| {
-            let head = s.lizard.head();
+            let head = s.lizard.end(End::Head);
             let theta1 = home_angle(s);
             let pose = head.forward(theta1, 180.0 - theta1).ok()?;
             let difference = pose.theta_right_coupler() - pose.theta_left_coupler();
@@ -199,12 +201,12 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "sin(θ6 + θ7) = 0",
         miss: |s| {
             let t = s.angles().t;
-            Some(((t[6] + t[7]).sin().abs() - s.s.margins.apex_tail).abs())
+            Some(((t[6] + t[7]).sin().abs() - s.s.margins.type2[1]).abs())
         },
         unit: "in the sine",
         clockwise: Some(|s| {
             let t = s.angles().t;
-            Some(((t[6] + PI - t[7]).sin().abs() - s.s.margins.apex_tail).abs())
+            Some(((t[6] + PI - t[7]).sin().abs() - s.s.margins.type2[1]).abs())
         }),
         corrected: Some(("sin(θ7 - θ6) = 0", |s| {
             let t = s.angles().t;
@@ -282,7 +284,11 @@ fn home_angle(s: &Sample) -> f64 {
 /// radians.
 fn neutral(s: &Sample) -> Option<(f64, f64)> {
     let theta1 = home_angle(s);
-    let pose = s.lizard.head().forward(theta1, 180.0 - theta1).ok()?;
+    let pose = s
+        .lizard
+        .end(End::Head)
+        .forward(theta1, 180.0 - theta1)
+        .ok()?;
     let sum = pose.theta_left_coupler() + pose.theta_right_coupler();
     Some((pose.type2, sum.to_radians()))
 }

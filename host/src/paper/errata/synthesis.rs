@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use lizard_kinematics::{Vector, Workspace};
+use lizard_kinematics::{End, Vector, Workspace};
 
 use super::equation::Equation;
 use super::sample::{Sample, TABLE, cis};
@@ -69,7 +69,7 @@ pub const EQUATIONS: &[Equation] = &[
         place: "3.1.3 maximal inscribed circle",
         printed: "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
         miss: |s| {
-            let bars = s.lizard.head();
+            let bars = s.lizard.end(End::Head);
             let (sum, difference) = (
                 bars.crank_left + bars.coupler_left,
                 (bars.crank_left - bars.coupler_left).abs(),
@@ -137,7 +137,7 @@ pub const EQUATIONS: &[Equation] = &[
 /// A point on the rim of an arm's reach, put into a circle equation whose y
 /// term is given; the miss is in the radius.
 fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
-    let bars = s.lizard.head();
+    let bars = s.lizard.end(End::Head);
     let mut worst = 0.0_f64;
     for shaft in [-bars.base / 2.0, bars.base / 2.0] {
         for radius in [
@@ -156,7 +156,7 @@ fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
 
 /// The index at a random point of the inscribed circle shrunk by a factor.
 fn lci_at(s: &Sample, shrink: f64) -> f64 {
-    let bars = s.lizard.head();
+    let bars = s.lizard.end(End::Head);
     Workspace::of(&bars)
         .inscribed_circle()
         .map_or(0.0, |circle| {

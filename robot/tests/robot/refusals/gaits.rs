@@ -171,7 +171,7 @@ amplitude = 20.0
     (
         "centre = [0.0, 54.0]",
         "centre = [0.0, 52.0]",
-        "gait.look: at phase 0.3428: margin leg_fr 0.262 is below 0.300",
+        "gait.look: at phase 0.3428: margin leg_rf 0.262 is below 0.300",
     ),
     (
         "centre = [0.0, 54.0]",
@@ -201,7 +201,7 @@ amplitude = 20.0
     (
         "amplitude = 15.0",
         "amplitude = 25.0",
-        "gait.trot: at phase 0.0000: margin leg_fl 0.284 is below 0.300",
+        "gait.trot: at phase 0.0000: margin leg_lf 0.284 is below 0.300",
     ),
     (
         r#"like = "walk""#,
@@ -227,7 +227,7 @@ period = 0.8"#,
     (
         "type2 = 0.3 ",
         "type2 = 0.9 ",
-        "gait.crawl: at phase 0.0000: margin apex_head 0.851 is below 0.900",
+        "gait.crawl: at phase 0.0000: margin type2_head 0.851 is below 0.900",
     ),
     (
         r#"duty = 0.875

@@ -142,7 +142,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "neutral = 138.590378",
         "neutral = 170.0",
-        "servo: the neutral pose is not safe: margin leg_fl 0.174 is below 0.300",
+        "servo: the neutral pose is not safe: margin leg_lf 0.174 is below 0.300",
     ),
     (
         "neutral = 138.590378",

@@ -1,7 +1,7 @@
 //! The five-bar against Newton's method and the law of cosines.
 
-use crate::reference::{HEAD, apex, loop_gap, newton};
-use lizard_kinematics::{Branch, Elbow, Fault, FiveBar, Vector, wrap};
+use crate::reference::{HEAD, end_point, loop_gap, newton};
+use lizard_kinematics::{AssemblyMode, Elbow, Fault, FiveBar, Vector, wrap};
 use proptest::prelude::*;
 
 /// Any five-bar, symmetrical or not, from 5 to 200 mm a link.
@@ -29,14 +29,14 @@ proptest! {
     fn every_loop_that_closes_closes_to_a_billionth_of_a_millimetre(
         bars in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
     ) {
-        for branch in [Branch::Ahead, Branch::Behind] {
-            if let Ok(pose) = bars.forward_on(branch, left, right) {
+        for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
+            if let Ok(pose) = bars.forward_in(mode, left, right) {
                 let [x, y] = loop_gap(
                     &bars,
                     [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
                 );
-                prop_assert!(x.hypot(y) < 1e-9, "{branch:?} gapes by {x} {y}");
-                let reach = (pose.apex - pose.right_tip).length();
+                prop_assert!(x.hypot(y) < 1e-9, "{mode:?} gapes by {x} {y}");
+                let reach = (pose.end_point - pose.right_tip).length();
                 prop_assert!((reach - bars.coupler_right).abs() < 1e-9);
             }
         }
@@ -46,11 +46,11 @@ proptest! {
     fn it_finds_a_position_exactly_where_the_law_of_cosines_does(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
-        match (bars.forward(left, right), apex(&bars, left, right)) {
+        match (bars.forward(left, right), end_point(&bars, left, right)) {
             (Ok(pose), Some([x, y])) => {
                 // acos loses half the digits when the triangle is flat.
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
-                prop_assert!((pose.apex.x - x).hypot(pose.apex.y - y) < tolerance);
+                prop_assert!((pose.end_point.x - x).hypot(pose.end_point.y - y) < tolerance);
             }
             (Err(Fault::Apart { .. } | Fault::Nested { .. }), None) => {}
             (ours, theirs) => prop_assert!(false, "{ours:?} against {theirs:?}"),
@@ -92,12 +92,12 @@ proptest! {
         let point = Vector::new(x, y);
         if let Ok(assemblies) = bars.inverse(point) {
             for a in assemblies {
-                let pose = bars.forward_on(a.branch, a.theta_left, a.theta_right).unwrap();
-                // The apex is nearly free where the tips nearly meet, and where the
+                let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right).unwrap();
+                // The end point is nearly free where the tips nearly meet, and where the
                 // couplers nearly line up.
                 let stiff = (pose.gap.length() / 1e3).min(pose.type2.abs());
                 let tolerance = 1e-9_f64.max(1e-12 / stiff);
-                prop_assert!((pose.apex - point).length() < tolerance, "{a:?} {pose:?}");
+                prop_assert!((pose.end_point - point).length() < tolerance, "{a:?} {pose:?}");
             }
         }
     }
@@ -110,13 +110,13 @@ proptest! {
             let (l, r) = (pose.type1_left(), pose.type1_right());
             // At a type-1 singularity the angle is a square root of the point.
             prop_assume!(l.abs() > 1e-2 && r.abs() > 1e-2 && pose.type2 > 1e-3);
-            // A shaft under the apex leaves that crank's angle free.
-            prop_assume!((pose.apex - bars.left_shaft()).length() > 1.0);
-            prop_assume!((pose.apex - bars.right_shaft()).length() > 1.0);
+            // A shaft under the end point leaves that crank's angle free.
+            prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);
+            prop_assume!((pose.end_point - bars.right_shaft()).length() > 1.0);
             let elbow = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
-            let back = bars.inverse(pose.apex).unwrap().into_iter()
-                .find(|a| a.left == elbow(l) && a.right == elbow(r)).unwrap();
-            prop_assert_eq!(back.branch, Branch::Ahead);
+            let back = bars.inverse(pose.end_point).unwrap().into_iter()
+                .find(|a| a.working_mode.left == elbow(l) && a.working_mode.right == elbow(r)).unwrap();
+            prop_assert_eq!(back.assembly_mode, AssemblyMode::Ahead);
             prop_assert!(wrap(back.theta_left - left).abs() < 1e-9, "{:?}", back);
             prop_assert!(wrap(back.theta_right - right).abs() < 1e-9, "{:?}", back);
         }
@@ -133,9 +133,13 @@ fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
                 continue;
             };
             let there = HEAD
-                .forward_on(outward.branch, outward.theta_left, outward.theta_right)
+                .forward_in(
+                    outward.assembly_mode,
+                    outward.theta_left,
+                    outward.theta_right,
+                )
                 .unwrap();
-            worst = worst.max((there.apex - point).length());
+            worst = worst.max((there.end_point - point).length());
         }
     }
     assert!(worst < 1e-9, "worst {worst} mm");
@@ -147,7 +151,7 @@ fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
     let theta = (1.0f64 / 3.0).acos().to_degrees();
     match HEAD.forward(theta, 180.0 - theta) {
         Err(Fault::Coincident) => {}
-        Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.apex.is_finite()),
+        Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.end_point.is_finite()),
         Err(other) => panic!("{other}"),
     }
     let degenerate = FiveBar { base: 0.0, ..HEAD };

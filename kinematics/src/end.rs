@@ -1,0 +1,116 @@
+//! The two ends of the robot, each carried by a five-bar.
+//!
+//! The tail is built as the head is, seen in a mirror that lies along the
+//! chassis frame's x axis. So each end has a frame of its own: x to the robot's
+//! right, y away from the chassis, origin in the middle of the end's base. In
+//! that frame one closed form solves both ends. What differs between the ends
+//! is here and nowhere else.
+
+use core::fmt;
+
+use crate::angle::wrap;
+use crate::real::Real;
+use crate::vector::Vector;
+
+/// One end of the robot: a five-bar and the point that it carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// In front, between A1 and A2.
+    Head,
+    /// Behind, between A4 and A3.
+    Tail,
+}
+
+impl End {
+    /// Both ends, the head first.
+    pub const ALL: [Self; 2] = [Self::Head, Self::Tail];
+
+    /// Its name in robot.toml and in messages: `head`, `tail`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Head => "head",
+            Self::Tail => "tail",
+        }
+    }
+
+    /// Indices, in servo order, of the servos of the left and of the right
+    /// crank: A1 and A2, or A4 and A3.
+    pub const fn servos(self) -> [usize; 2] {
+        match self {
+            Self::Head => [0, 1],
+            Self::Tail => [3, 2],
+        }
+    }
+
+    /// The end at which a servo stands, by its index in servo order, 0 to 3.
+    pub const fn of_servo(servo: usize) -> Self {
+        if servo < 2 { Self::Head } else { Self::Tail }
+    }
+
+    /// Where its y axis points in the chassis frame: 1 forward, -1 backward.
+    /// Angles, rates and y coordinates change frame by this factor.
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Head => 1.0,
+            Self::Tail => -1.0,
+        }
+    }
+
+    /// A direction or a displacement of the chassis frame in the end's own
+    /// frame, and the other way round.
+    #[inline(always)]
+    pub fn mirror<T: Real>(self, vector: Vector<T>) -> Vector<T> {
+        match self {
+            Self::Head => vector,
+            Self::Tail => vector.mirrored(),
+        }
+    }
+
+    /// An angle of the chassis frame in the end's own frame, and the other way
+    /// round; degrees, (-180, 180].
+    pub fn mirror_angle(self, degrees: f64) -> f64 {
+        wrap(self.sign() * degrees)
+    }
+
+    /// What belongs to the left and the right crank, picked from four in servo
+    /// order.
+    #[inline(always)]
+    pub fn pick<T: Copy>(self, of: [T; 4]) -> [T; 2] {
+        let [left, right] = self.servos();
+        [of[left], of[right]]
+    }
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_servo_stands_at_the_end_that_names_it() {
+        let mut seen = [0; 4];
+        for end in End::ALL {
+            for servo in end.servos() {
+                seen[servo] += 1;
+                assert_eq!(End::of_servo(servo), end);
+            }
+        }
+        assert_eq!(seen, [1; 4]);
+        assert_eq!(End::Tail.pick(["A1", "A2", "A3", "A4"]), ["A4", "A3"]);
+    }
+
+    #[test]
+    fn the_tails_frame_has_negative_angles_and_the_heads_is_the_chassis() {
+        assert_eq!(End::Tail.mirror_angle(221.5), 138.5);
+        assert_eq!(End::Tail.mirror_angle(180.0), 180.0);
+        assert_eq!(End::Head.mirror_angle(221.5), -138.5);
+        let vector = Vector::new(3.0, 4.0);
+        assert_eq!(End::Head.mirror(vector), vector);
+        assert_eq!(End::Tail.mirror(vector), Vector::new(3.0, -4.0));
+    }
+}

@@ -1,0 +1,196 @@
+//! From a point to the crank angles that put the end point there.
+//!
+//! Each arm by itself is a triangle of crank, coupler and the line from its shaft
+//! to the point. It can bend to either side of that line, so a point has four
+//! solutions.
+
+use super::{AssemblyMode, FiveBar, FiveBarPose, double_area};
+use crate::fault::Fault;
+use crate::vector::Vector;
+
+/// Which way a crank and its coupler bend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Elbow {
+    /// Away from the other crank, as the robot is built; positive type-1 margin.
+    Outward,
+    /// Towards the other crank.
+    Inward,
+}
+
+/// How both arms bend. A mechanism cannot change it without passing a type-1
+/// singularity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WorkingMode {
+    /// Bend of the left crank and coupler.
+    pub left: Elbow,
+    /// Bend of the right crank and coupler.
+    pub right: Elbow,
+}
+
+impl WorkingMode {
+    /// Both elbows outward, as the robot is built.
+    pub const OUTWARD: Self = Self {
+        left: Elbow::Outward,
+        right: Elbow::Outward,
+    };
+
+    /// All four: outward-outward, outward-inward, inward-outward, inward-inward,
+    /// the left elbow first.
+    pub const ALL: [Self; 4] = [
+        Self::OUTWARD,
+        Self {
+            left: Elbow::Outward,
+            right: Elbow::Inward,
+        },
+        Self {
+            left: Elbow::Inward,
+            right: Elbow::Outward,
+        },
+        Self {
+            left: Elbow::Inward,
+            right: Elbow::Inward,
+        },
+    ];
+}
+
+/// One of the four ways to put the end point somewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InverseSolution {
+    /// How the arms bend.
+    pub working_mode: WorkingMode,
+    /// The assembly mode in which the forward solution finds the point again.
+    pub assembly_mode: AssemblyMode,
+    /// Left crank angle, (-180, 180] degrees, the five-bar's own frame.
+    pub theta_left: f64,
+    /// Right crank angle, (-180, 180] degrees, the five-bar's own frame.
+    pub theta_right: f64,
+}
+
+impl FiveBar {
+    /// Crank angles that put the end point at a point (mm, own frame), one
+    /// solution for each of [`WorkingMode::ALL`], in that order. At the edge of
+    /// an arm's reach its two elbows coincide.
+    ///
+    /// The paper's second constraint equation has theta2, l1, l2 where theta4,
+    /// l4, l3 belong.
+    ///
+    /// # Errors
+    /// [`Fault::OutOfReach`] where an arm does not reach the point,
+    /// [`Fault::OnShaft`] where a crank's angle is free, [`Fault::NotFinite`] for
+    /// what is no number or overflows.
+    pub fn inverse(&self, point: Vector) -> Result<[InverseSolution; 4], Fault> {
+        let arms = self.arms(point)?;
+        let solution = |working_mode: WorkingMode| {
+            let (left, right, assembly_mode) = arms.bent(working_mode);
+            InverseSolution {
+                working_mode,
+                assembly_mode,
+                theta_left: left.angle(),
+                theta_right: right.angle(),
+            }
+        };
+        Ok(WorkingMode::ALL.map(solution))
+    }
+
+    /// The pose with the end point at a point (mm, own frame) and both elbows
+    /// outward: the inverse without its arc tangents.
+    ///
+    /// # Errors
+    /// As [`FiveBar::inverse`] and [`FiveBar::forward`].
+    pub fn reach(&self, point: Vector) -> Result<FiveBarPose, Fault> {
+        let (left, right, mode) = self.arms(point)?.bent(WorkingMode::OUTWARD);
+        self.close(mode, left, right)
+    }
+
+    fn arms(&self, point: Vector) -> Result<Arms, Fault> {
+        if !point.is_finite() {
+            return Err(Fault::NotFinite);
+        }
+        let to_left = point - self.left_shaft();
+        let to_right = point - self.right_shaft();
+        Ok(Arms {
+            bars: *self,
+            to_left,
+            to_right,
+            left: bend(to_left, self.crank_left, self.coupler_left, true)?,
+            right: bend(to_right, self.crank_right, self.coupler_right, false)?,
+        })
+    }
+}
+
+/// Both arms on their way to a point.
+struct Arms {
+    bars: FiveBar,
+    /// From each shaft to the point.
+    to_left: Vector,
+    to_right: Vector,
+    /// Direction of each crank, length one, bent counter-clockwise and clockwise
+    /// from the line to the point.
+    left: [Vector; 2],
+    right: [Vector; 2],
+}
+
+impl Arms {
+    /// Crank directions (length one) in a working mode, and the assembly mode.
+    fn bent(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
+        // Outward is to the left of the line from the left shaft to the point,
+        // and to the right of the line from the right shaft.
+        let left = match mode.left {
+            Elbow::Outward => self.left[0],
+            Elbow::Inward => self.left[1],
+        };
+        let right = match mode.right {
+            Elbow::Outward => self.right[1],
+            Elbow::Inward => self.right[0],
+        };
+        let from_left = self.to_left - left * self.bars.crank_left;
+        let from_right = self.to_right - right * self.bars.crank_right;
+        let mode = if from_left.cross(from_right) >= 0.0 {
+            AssemblyMode::Ahead
+        } else {
+            AssemblyMode::Behind
+        };
+        (left, right, mode)
+    }
+}
+
+/// The directions (length one) of a crank whose coupler ends in a point: bent
+/// counter-clockwise and clockwise from the line between shaft and point.
+fn bend(to_point: Vector, crank: f64, coupler: f64, left: bool) -> Result<[Vector; 2], Fault> {
+    let distance = to_point.length();
+    let (least, most) = ((crank - coupler).abs(), crank + coupler);
+    if !distance.is_finite() || !most.is_finite() {
+        return Err(Fault::NotFinite);
+    }
+    // A point on the rim that was computed elsewhere may miss it by rounding.
+    let slack = most * 4.0 * f64::EPSILON;
+    if distance > most + slack || distance < least - slack {
+        return Err(Fault::OutOfReach {
+            left,
+            distance,
+            least,
+            most,
+        });
+    }
+    if distance <= slack {
+        return Err(Fault::OnShaft);
+    }
+    // The crank against the line, scaled by twice the product of both lengths.
+    let along = distance * distance + (crank - coupler) * (crank + coupler);
+    let across = 2.0 * double_area(crank, coupler, distance);
+    let bent = [across, -across].map(|across| {
+        let crank = rotate(Vector::new(along, across), to_point);
+        crank * (1.0 / crank.length())
+    });
+    // Where the products overflow or vanish no direction of length one is left.
+    if bent.iter().all(|crank| (crank.square() - 1.0).abs() < 1e-9) {
+        Ok(bent)
+    } else {
+        Err(Fault::NotFinite)
+    }
+}
+
+/// `vector` turned by the angle of `frame` and scaled by its length.
+fn rotate(vector: Vector, frame: Vector) -> Vector {
+    frame * vector.x + frame.left() * vector.y
+}

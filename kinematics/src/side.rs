@@ -1,0 +1,112 @@
+//! The two sides of the robot, each with a slider between a front and a rear
+//! arm.
+//!
+//! An arm is rigid with its crank and stands at a right angle to it, away from
+//! the robot's middle line. So the arm's direction is the crank's, turned by +90
+//! or -90 degrees, and the right side is the left one in a mirror. The paper
+//! prints theta16 = theta4 + 90 and theta13 = theta8 - 90, which would swing the
+//! right arms across the chassis.
+
+use core::fmt;
+
+use crate::real::Real;
+use crate::vector::Vector;
+
+/// One side of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Between A1 and A4.
+    Left,
+    /// Between A2 and A3.
+    Right,
+}
+
+impl Side {
+    /// Both sides, the left first.
+    pub const ALL: [Self; 2] = [Self::Left, Self::Right];
+
+    /// Its name in messages: `left`, `right`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+
+    /// Indices, in servo order, of its front and its rear servo.
+    pub const fn servos(self) -> [usize; 2] {
+        match self {
+            Self::Left => [0, 3],
+            Self::Right => [1, 2],
+        }
+    }
+
+    /// Where the side lies: 1 on the left, -1 on the right. The front arm stands
+    /// at this times +90 degrees from its crank, the rear arm at this times -90.
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+
+    /// Direction of the front arm on a crank of this direction: theta12 =
+    /// theta1 + 90, theta16 = theta4 - 90. Chassis frame.
+    #[inline(always)]
+    pub fn front_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
+        match self {
+            Self::Left => crank.left(),
+            Self::Right => crank.right(),
+        }
+    }
+
+    /// Direction of the rear arm on a crank of this direction: theta9 =
+    /// theta5 - 90, theta13 = theta8 + 90. Chassis frame.
+    #[inline(always)]
+    pub fn rear_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
+        match self {
+            Self::Left => crank.right(),
+            Self::Right => crank.left(),
+        }
+    }
+
+    /// What belongs to the front and the rear servo, picked from four in servo
+    /// order.
+    #[inline(always)]
+    pub fn pick<T: Copy>(self, of: [T; 4]) -> [T; 2] {
+        let [front, rear] = self.servos();
+        [of[front], of[rear]]
+    }
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::end::End;
+
+    #[test]
+    fn each_servo_has_one_side_and_one_end() {
+        for (end, row) in [(End::Head, 0), (End::Tail, 1)] {
+            for (side, column) in [(Side::Left, 0), (Side::Right, 1)] {
+                assert_eq!(end.servos()[column], side.servos()[row]);
+            }
+        }
+        assert_eq!(Side::Right.pick(["A1", "A2", "A3", "A4"]), ["A2", "A3"]);
+    }
+
+    #[test]
+    fn with_the_cranks_straight_out_every_arm_points_away_from_the_middle_line() {
+        let (ahead, behind) = (Vector::new(0.0, 1.0), Vector::new(0.0, -1.0));
+        for side in Side::ALL {
+            let outward = Vector::new(-side.sign(), 0.0);
+            assert_eq!(side.front_arm(ahead), outward);
+            assert_eq!(side.rear_arm(behind), outward);
+        }
+    }
+}

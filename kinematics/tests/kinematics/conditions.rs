@@ -1,0 +1,229 @@
+//! Every condition of a safe pose, for robots without any symmetry, against a
+//! truth that writes each link and each angle out by its number in the paper.
+
+use std::collections::BTreeMap;
+
+use lizard_kinematics::{Check, End, Limits, Lizard, Pose, Side, Solution, Vector};
+use proptest::prelude::*;
+
+use crate::reference::{any_lizard, any_pose, cis, meeting};
+
+fn between(a: Vector, b: Vector) -> f64 {
+    (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
+}
+
+/// The values of all conditions by name, in the chassis frame; none where a loop
+/// does not close.
+fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static str, f64>> {
+    let l = &robot.links;
+    let y = l.l10 / 2.0;
+    let a1 = Vector::new(-l.l0 / 2.0, y);
+    let a2 = Vector::new(l.l0 / 2.0, y);
+    let a3 = Vector::new(l.l5 / 2.0, -y);
+    let a4 = Vector::new(-l.l5 / 2.0, -y);
+    // Crank tips.
+    let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
+    let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
+    // End points: left of the line p1 p4, and right of the line p5 p8.
+    let head = meeting(p1, l.l2, p4, l.l3)?;
+    let tail = meeting(p8, l.l8, p5, l.l7)?;
+    // Slider lengths.
+    let left = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
+    let right = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);
+    Some(BTreeMap::from([
+        ("type2_head", between(head - p1, head - p4)),
+        ("type2_tail", between(tail - p8, tail - p5)),
+        ("type1_a1", between(head - p1, cis(t1))),
+        ("type1_a2", between(cis(t4), head - p4)),
+        ("type1_a3", between(tail - p8, cis(t8))),
+        ("type1_a4", between(cis(t5), tail - p5)),
+        ("leg_lf", t1.to_radians().sin()),
+        ("leg_rf", t4.to_radians().sin()),
+        ("leg_rh", -t8.to_radians().sin()),
+        ("leg_lh", -t5.to_radians().sin()),
+        ("stroke_left", left.x.hypot(left.y) - l.l12 - l.l13),
+        ("stroke_right", right.x.hypot(right.y) - l.l17 - l.l18),
+        ("uncrossed_head", p4.x - p1.x),
+        ("uncrossed_tail", p8.x - p5.x),
+    ]))
+}
+
+/// Limits that differ for every kind.
+fn any_limits() -> impl Strategy<Value = Limits> {
+    [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64].prop_map(
+        |[type2, type1, leg, stroke_min, stroke_max]| Limits {
+            type2,
+            type1,
+            leg,
+            stroke_min,
+            stroke_max,
+        },
+    )
+}
+
+/// The two values between which a condition is safe, by the beginning of its
+/// name.
+fn range(limits: &Limits, name: &str) -> (f64, f64) {
+    match name.split('_').next().unwrap() {
+        "type2" => (limits.type2, f64::INFINITY),
+        "type1" => (limits.type1, f64::INFINITY),
+        "leg" => (limits.leg, f64::INFINITY),
+        "stroke" => (limits.stroke_min, limits.stroke_max),
+        _ => (f64::MIN_POSITIVE, f64::INFINITY),
+    }
+}
+
+fn solved(robot: &Lizard, pose: [f64; 4]) -> Option<Solution> {
+    robot.solve(&Pose::from(pose)).ok()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 4096, failure_persistence: None, max_global_rejects: 100_000,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn every_condition_is_measured_on_its_own_links_and_servos(
+        robot in any_lizard(), pose in any_pose(), turns in -2..=2i32,
+    ) {
+        let pose = pose.map(|angle| angle + 360.0 * f64::from(turns));
+        let solution = solved(&robot, pose);
+        let Some(truth) = truth(&robot, pose) else {
+            prop_assert!(solution.is_none_or(|s| s.head.type2.min(s.tail.type2) < 1e-6));
+            return Ok(());
+        };
+        let Some(s) = solution else {
+            prop_assert!(truth["type2_head"].min(truth["type2_tail"]) < 1e-6);
+            return Ok(());
+        };
+        // Nearly flat triangles cost the law of cosines half its digits.
+        prop_assume!(truth["type2_head"].min(truth["type2_tail"]) > 1e-4);
+        let conditions: BTreeMap<_, _> = s.conditions().map(|(what, v)| (what.name(), v)).collect();
+        prop_assert_eq!(conditions.len(), 14);
+        for (name, expected) in &truth {
+            let found = conditions[name];
+            prop_assert!((found - expected).abs() < 1e-7, "{name} {found} {expected}");
+        }
+        // The same margins in their arrays, and of each end by itself.
+        for (what, value) in s.margins.iter() {
+            prop_assert_eq!(value, conditions[what.name()]);
+        }
+        for end in End::ALL {
+            for (what, value) in s.end(end).conditions(end) {
+                prop_assert_eq!(value, conditions[what.name()], "{} {}", end, what);
+            }
+        }
+        let least = s.margins.iter().map(|(_, value)| value).fold(1.0, f64::min);
+        prop_assert_eq!(s.margins.min().1, least);
+    }
+
+    #[test]
+    fn a_limit_is_broken_exactly_by_the_conditions_of_its_kind(
+        robot in any_lizard(), pose in any_pose(), limits in any_limits(),
+    ) {
+        let Some(s) = solved(&robot, pose) else { return Ok(()) };
+        let mut expected = Vec::new();
+        for (what, value) in s.conditions() {
+            let (least, most) = range(&limits, what.name());
+            if value < least {
+                let crossed = Check::UNCROSSED.contains(&what);
+                expected.push((what, value, if crossed { 0.0 } else { least }));
+            } else if value > most {
+                expected.push((what, value, most));
+            }
+        }
+        let found: Vec<_> = limits.violations(&s).map(|v| (v.what, v.value, v.limit)).collect();
+        prop_assert_eq!(limits.allow(&s), found.is_empty());
+        prop_assert_eq!(&found, &expected);
+        // An end by itself finds its own.
+        let mut of_ends: Vec<_> = End::ALL
+            .into_iter()
+            .flat_map(|end| limits.end_violations(end, s.end(end)))
+            .map(|v| v.what.name())
+            .collect();
+        let mut of_all: Vec<_> = expected
+            .iter()
+            .filter(|(what, ..)| !Check::STROKE.contains(what))
+            .map(|(what, ..)| what.name())
+            .collect();
+        of_ends.sort_unstable();
+        of_all.sort_unstable();
+        prop_assert_eq!(of_ends, of_all);
+    }
+
+    #[test]
+    fn a_value_at_its_limit_is_safe_and_the_next_one_is_not(limits in any_limits()) {
+        let of_kinds: [(&[Check], f64); 4] = [
+            (&Check::TYPE2, limits.type2),
+            (&Check::TYPE1, limits.type1),
+            (&Check::LEG, limits.leg),
+            (&Check::STROKE, limits.stroke_min),
+        ];
+        for (checks, least) in of_kinds {
+            for &what in checks {
+                prop_assert_eq!(limits.broken(what, least), None);
+                let broken = limits.broken(what, least.next_down()).unwrap();
+                prop_assert_eq!((broken.what, broken.limit), (what, least));
+            }
+        }
+        for what in Check::STROKE {
+            prop_assert_eq!(limits.broken(what, limits.stroke_max), None);
+            let broken = limits.broken(what, limits.stroke_max.next_up()).unwrap();
+            prop_assert_eq!(broken.limit, limits.stroke_max);
+        }
+        for what in Check::UNCROSSED {
+            prop_assert!(limits.broken(what, 0.0).is_some());
+            prop_assert_eq!(limits.broken(what, f64::MIN_POSITIVE), None);
+        }
+    }
+
+    #[test]
+    fn points_of_the_robot_lie_at_the_ends_of_their_links(
+        robot in any_lizard(), pose in any_pose(),
+    ) {
+        let Some(s) = solved(&robot, pose) else { return Ok(()) };
+        prop_assume!(s.head.type2.min(s.tail.type2) > 1e-3);
+        let l = &robot.links;
+        let far = |a: Vector, b: Vector| (a - b).length();
+        let ([p1, p4, p8, p5], [a1, a2, a3, a4]) = (s.crank_tips(), robot.shafts());
+        for (tip, shaft, theta, length) in [
+            (p1, a1, pose[0], l.l1), (p4, a2, pose[1], l.l4),
+            (p8, a3, pose[2], l.l9), (p5, a4, pose[3], l.l6),
+        ] {
+            prop_assert!(far(tip, shaft + cis(theta) * length) < 1e-9);
+        }
+        for (end, tips, couplers) in [
+            (End::Head, [p1, p4], [l.l2, l.l3]), (End::Tail, [p5, p8], [l.l7, l.l8]),
+        ] {
+            let point = s.point(end);
+            for i in 0..2 {
+                prop_assert!(far(tips[i] + s.couplers(end)[i] * couplers[i], point) < 1e-9);
+            }
+            prop_assert!(far(robot.to_end(end, point), s.end(end).end_point) < 1e-9);
+        }
+        // Arm tips, from the rear shaft.
+        let [left, right] = Side::ALL.map(|side| s.side(side));
+        prop_assert!(far(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
+        prop_assert!(far(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
+        prop_assert!(far(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
+        prop_assert!(far(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
+    }
+
+    #[test]
+    fn the_angles_for_a_point_put_the_end_point_there_in_servo_order(
+        robot in any_lizard(), pose in any_pose(),
+    ) {
+        let Some(s) = solved(&robot, pose) else { return Ok(()) };
+        // Only outward elbows are found again, and not at a singularity.
+        prop_assume!(s.margins.type1.iter().chain(&s.margins.type2).all(|m| *m > 1e-2));
+        let mut found = Vec::new();
+        for end in End::ALL {
+            found.extend(robot.point_angles(end, s.end(end).end_point).unwrap());
+        }
+        for (angle, expected) in found.into_iter().zip(pose) {
+            prop_assert!(angle > -180.0 && angle <= 180.0);
+            prop_assert!(lizard_kinematics::wrap(angle - expected).abs() < 1e-9);
+        }
+    }
+}

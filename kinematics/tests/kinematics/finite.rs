@@ -1,0 +1,160 @@
+//! A solution holds finite numbers only, whatever lengths and angles go in.
+
+use lizard_kinematics::{
+    AssemblyMode, Fault, FiveBar, FiveBarPose, Infeasible, Lizard, Pose, Slider, Vector,
+};
+use proptest::prelude::*;
+
+use crate::reference::{any_lizard, any_pose, lizard};
+
+/// Lengths over the whole range of an f64, and ordinary ones.
+fn any_length() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        5.0..200.0f64,
+        (1.0..10.0f64, -320..308i32).prop_map(|(digits, power)| digits * 10f64.powi(power)),
+        (1.0..1.01f64, 74..79i32).prop_map(|(digits, power)| digits * 10f64.powi(power)),
+        (1.0..1.01f64, 150..156i32).prop_map(|(digits, power)| digits * 10f64.powi(power)),
+    ]
+}
+
+/// Five links that are alike in size, so that most close, or not at all alike.
+fn any_bars() -> impl Strategy<Value = FiveBar> {
+    let unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
+    (
+        unit(),
+        proptest::array::uniform5(0.2..2.0f64),
+        proptest::array::uniform5(any_length()),
+    )
+        .prop_map(|(unit, factors, lengths)| {
+            let l = match unit {
+                Some(unit) => factors.map(|factor| factor * unit),
+                None => lengths,
+            };
+            FiveBar {
+                base: l[0],
+                crank_left: l[1],
+                coupler_left: l[2],
+                coupler_right: l[3],
+                crank_right: l[4],
+            }
+        })
+}
+
+fn finite(pose: &FiveBarPose) -> bool {
+    let vectors = [
+        pose.left,
+        pose.right,
+        pose.left_tip,
+        pose.right_tip,
+        pose.left_coupler,
+        pose.right_coupler,
+        pose.end_point,
+        pose.gap,
+    ];
+    vectors.iter().all(|v| v.is_finite())
+        && pose.type2.is_finite()
+        && pose.type1_left().is_finite()
+        && pose.type1_right().is_finite()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 20_000, failure_persistence: None, ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn a_five_bar_of_any_size(bars in any_bars(), left in any::<f64>(), right in -180.0..180.0f64) {
+        for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
+            if let Ok(pose) = bars.forward_in(mode, left, right) {
+                prop_assert!(finite(&pose), "{pose:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_inverse_of_a_five_bar_of_any_size(
+        bars in any_bars(), x in -1.0..1.0f64, y in 0.0..2.0f64, other in any_length(),
+    ) {
+        for unit in [bars.crank_left, other] {
+            let point = Vector::new(x * unit, y * unit);
+            if let Ok(all) = bars.inverse(point) {
+                for a in all {
+                    prop_assert!(a.theta_left.is_finite() && a.theta_right.is_finite());
+                    // Nothing went to zero on the way either: the arm ends there.
+                    let tip = bars.left_shaft() + Vector::direction(a.theta_left) * bars.crank_left;
+                    let reach = (point - tip).length();
+                    let off = (reach - bars.coupler_left).abs();
+                    let size = bars.crank_left + bars.coupler_left + bars.base;
+                    prop_assert!(off < 1e-6 * size, "{off} of {size}: {a:?}");
+                }
+            }
+            if let Ok(pose) = bars.reach(point) {
+                prop_assert!(finite(&pose));
+            }
+        }
+    }
+
+    #[test]
+    fn a_slider_of_any_size(
+        l in proptest::array::uniform5(any_length()), rear in any::<f64>(), front in 0.0..360.0f64,
+    ) {
+        let slider = Slider { offset: l[0], base: l[1], front: l[2], rear: l[3], nominal: l[4] };
+        if let Ok(pose) = slider.forward(rear, front) {
+            prop_assert!(pose.d.is_finite() && pose.s.is_finite() && pose.span.is_finite());
+            prop_assert!(pose.rear_tip.is_finite() && pose.front_tip.is_finite());
+        }
+    }
+
+    #[test]
+    fn an_angle_of_any_size_is_the_angle_within_a_turn(
+        robot in any_lizard(), pose in any_pose(), huge in any::<f64>(), servo in 0..4usize,
+    ) {
+        prop_assume!(huge.is_finite());
+        let mut pose = pose;
+        pose[servo] = huge;
+        let far = robot.solve(&Pose::from(pose));
+        pose[servo] = huge % 360.0;
+        let near = robot.solve(&Pose::from(pose));
+        prop_assert_eq!(far.is_ok(), near.is_ok());
+        if let (Ok(far), Ok(near)) = (far, near) {
+            prop_assert_eq!(far.margins, near.margins);
+            prop_assert_eq!(far.head_point(), near.head_point());
+            prop_assert_eq!(far.legs[servo].follower(), near.legs[servo].follower());
+        }
+    }
+}
+
+#[test]
+fn a_robot_whose_lengths_overflow_says_which_part_does() {
+    let huge = |index: usize, length: f64| {
+        let paper = lizard();
+        let mut l = paper.links.to_array();
+        l[index] = length;
+        let robot = Lizard {
+            links: l.into(),
+            ..paper
+        };
+        let neutral = [138.59, 41.41, 318.59, 221.41];
+        match robot.solve(&neutral.into()) {
+            Err(Infeasible { part, fault }) => (part.to_string(), fault),
+            Ok(solution) => panic!("{solution:?}"),
+        }
+    };
+    for (index, length, part) in [
+        (0, 1e200, "head"),
+        (1, f64::NAN, "head"),
+        (2, f64::INFINITY, "head"),
+        (8, f64::NAN, "tail"),
+        (9, 1e308, "tail"),
+        (13, f64::INFINITY, "left side"),
+        (14, 1e308, "left side"),
+        (16, 1e308, "right side"),
+        (18, f64::NAN, "right side"),
+    ] {
+        assert_eq!(
+            huge(index, length),
+            (part.to_string(), Fault::NotFinite),
+            "l{index}"
+        );
+    }
+}
