@@ -89,7 +89,8 @@ struct Record<'a> {
     leg: Least,
     /// mm from nominal, smallest and largest
     stroke: [f64; 2],
-    /// Displacement of one cycle: mm and deg, counter-clockwise
+    /// Displacement of one cycle: mm and deg, counter-clockwise; null is
+    /// what hangs on a tie of two feet against two
     predicted: Predicted,
 }
 
@@ -102,9 +103,9 @@ struct Least {
 
 #[derive(Serialize)]
 struct Predicted {
-    forward: f64,
-    left: f64,
-    turn: f64,
+    forward: Option<f64>,
+    left: Option<f64>,
+    turn: Option<f64>,
 }
 
 impl<'a> Record<'a> {
@@ -127,9 +128,9 @@ impl<'a> Record<'a> {
             leg: least(audit.leg),
             stroke: [audit.stroke.0, audit.stroke.1],
             predicted: Predicted {
-                forward: row.travel.forward,
-                left: row.travel.left,
-                turn: row.travel.turn,
+                forward: row.way.forward,
+                left: row.way.left,
+                turn: row.way.turn,
             },
         }
     }
