@@ -17,15 +17,18 @@ const SCRIPT: &str = include_str!("numpy_solve.py");
 /// What each pose yields, in this order in the script too.
 const RESULTS: usize = 22;
 
+/// Largest difference that is rounding, deg, mm or margin.
+const ROUNDING: f64 = 1e-9;
+
 /// Passes over all poses; the fastest counts.
 const PASSES: usize = 5;
 
 /// Measure poses solved per second on one core, beside numpy and the floor.
 ///
 /// The same poses are solved here and by the same closed form in numpy (python3
-/// with numpy, if there is one), and the results are compared. The floor is the
-/// time of the four sine-cosine pairs and six arc tangents of each pose, computed
-/// in the same way.
+/// with numpy, if there is one), and the results are compared; a difference above
+/// 1e-9 ends with exit code 1. The floor is the time of the four sine-cosine pairs
+/// and six arc tangents of each pose, computed in the same way.
 #[derive(clap::Args)]
 pub struct Args {
     /// Number of poses
@@ -100,7 +103,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if args.json {
         serde_json::to_writer_pretty(&mut out, &report)?;
         writeln!(out)?;
-        return Ok(());
+        return agree(&report);
     }
     writeln!(
         out,
@@ -137,7 +140,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
         "  floor         {:8.0} % of the time is sines, cosines and arc tangents",
         100.0 * report.floor_share
     )?;
-    Ok(())
+    agree(&report)
+}
+
+/// Fails where numpy found something else.
+fn agree(report: &Report) -> Result<(), Failure> {
+    match &report.numpy {
+        // Not a number is no agreement.
+        Some(numpy) if !(numpy.worst_difference <= ROUNDING) => Err(Failure::Impossible(format!(
+            "the results of numpy differ by {:.1e}, more than {ROUNDING:.0e}",
+            numpy.worst_difference
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Poses all over the safe box, in servo order, by additive recurrence.
