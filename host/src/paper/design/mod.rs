@@ -186,7 +186,10 @@ workspace      {:.1} mm^2, upper half {:.1} mm^2; rings of {:.2} to {:.2} mm abo
             self.l1 + self.l2,
         );
         match &p.lci {
-            None => page += "MIC            none: half the base is longer than crank and coupler\n",
+            None => {
+                page +=
+                    "MIC            none: half the base is longer than crank and coupler together\n"
+            }
             Some(lci) => {
                 page += &format!(
                     "MIC            radius {:.3} mm ({:.3} D), centre (0, {:.3}) mm

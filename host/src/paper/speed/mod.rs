@@ -71,7 +71,7 @@ struct Numpy {
 /// Measures and prints.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let poses = poses(args.poses as usize);
+    let poses = poses(args.poses as usize, robot.neutral().into());
     let mut results = vec![[0.0; RESULTS]; poses.len()];
     let vectors = Arch::new();
     let seconds = fastest(|| {
@@ -155,18 +155,23 @@ fn agree(report: &Report) -> Result<(), Failure> {
     }
 }
 
-/// Poses all over the safe box, in servo order, by additive recurrence.
-fn poses(count: usize) -> Vec<[f64; 4]> {
+/// Sweep from neutral to either side that the poses cover, deg: the paper's safe
+/// box.
+const SWEEP: f64 = 34.0;
+
+/// Poses all around neutral, in servo order, by additive recurrence.
+fn poses(count: usize, neutral: [f64; 4]) -> Vec<[f64; 4]> {
     let steps = [
         0.856_674_883_854_502_9,
         0.733_891_856_627_125_9,
         0.628_706_720_880_788_5,
         0.538_597_257_223_611_4,
     ];
-    let starts = [94.0, 18.0, 274.0, 198.0];
     (1..=count)
         .map(|i| {
-            std::array::from_fn(|servo| starts[servo] + 68.0 * (i as f64 * steps[servo]).fract())
+            std::array::from_fn(|servo| {
+                neutral[servo] + SWEEP * (2.0 * (i as f64 * steps[servo]).fract() - 1.0)
+            })
         })
         .collect()
 }
@@ -346,6 +351,8 @@ fn numpy(
         .as_flattened()
         .iter()
         .zip(theirs)
+        // A pose without a solution here has nothing to compare.
+        .filter(|(a, _)| !a.is_nan())
         .map(|(a, b)| (a - f64::from_ne_bytes(*b)).abs())
         // NaN must not pass for agreement.
         .fold(0.0, |worst: f64, difference| {
