@@ -7,6 +7,7 @@ use lizard_kinematics::Check;
 use lizard_robot::{Robot, Row, Sensitivity, servo};
 use serde::Serialize;
 
+use crate::pose_args::ANGLES;
 use crate::{Failure, RobotFile};
 
 /// Check every gait of robot.toml and predict where it goes.
@@ -20,13 +21,15 @@ use crate::{Failure, RobotFile};
 #[command(after_help = "Examples:
   lizard gaits
   lizard gaits --robot my/robot.toml --json
-  lizard gaits --trace walk > walk.csv")]
+  lizard gaits --trace walk > walk.csv
+  lizard gaits --trace walk | lizard solve")]
 pub struct Args {
     /// One JSON object a gait and line
     #[arg(long)]
     json: bool,
-    /// Instead, the servo angles of one gait over a cycle as CSV: frames of
-    /// 20 ms at full speed, degrees in the chassis frame
+    /// Instead, the servo angles of one gait over a cycle as CSV, with the header
+    /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees
+    /// in the chassis frame, as `lizard solve` reads them
     #[arg(long, value_name = "GAIT", conflicts_with = "json")]
     trace: Option<String>,
     /// Instead, where each gait leads on other pads (friction backward over
@@ -64,7 +67,7 @@ fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
             known.join(", ")
         )));
     };
-    let mut text = "seconds,A1,A2,A3,A4\n".to_string();
+    let mut text = format!("seconds,{}\n", ANGLES.join(","));
     for (seconds, phase) in robot.tables.frames(gait, index) {
         let [a1, a2, a3, a4] = robot.tables.angles(gait, index, phase);
         text += &format!("{seconds:.2},{a1:.3},{a2:.3},{a3:.3},{a4:.3}\n");
@@ -89,7 +92,8 @@ struct Record<'a> {
     leg: Least,
     /// mm from nominal, smallest and largest
     stroke: [f64; 2],
-    /// Displacement of one cycle: mm and deg, counter-clockwise
+    /// Displacement of one cycle: mm and deg, counter-clockwise; null is
+    /// what hangs on a tie of two feet against two
     predicted: Predicted,
 }
 
@@ -102,9 +106,9 @@ struct Least {
 
 #[derive(Serialize)]
 struct Predicted {
-    forward: f64,
-    left: f64,
-    turn: f64,
+    forward: Option<f64>,
+    left: Option<f64>,
+    turn: Option<f64>,
 }
 
 impl<'a> Record<'a> {
@@ -127,9 +131,9 @@ impl<'a> Record<'a> {
             leg: least(audit.leg),
             stroke: [audit.stroke.0, audit.stroke.1],
             predicted: Predicted {
-                forward: row.travel.forward,
-                left: row.travel.left,
-                turn: row.travel.turn,
+                forward: row.way.forward,
+                left: row.way.left,
+                turn: row.way.turn,
             },
         }
     }

@@ -53,14 +53,27 @@ impl Workspace {
         lens(s, s, apart) - 2.0 * lens(r, s, apart) + lens(r, r, apart)
     }
 
-    /// The maximal inscribed circle of the upper half, which touches all four
-    /// circles; `None` if the rings' middles do not meet (l0/2 > l1, l2).
+    /// The largest circle within the workspace; of two that mirror each other,
+    /// the upper one. `None` if the two rings have no area in common.
+    ///
+    /// No circle within a ring has more than half its width as its radius. Where
+    /// the middles of both rings meet (l0/2 is at most the larger of l1 and l2),
+    /// a circle there has that radius and touches all four circles: the paper's.
+    /// With a wider base the outer circles alone bound it: it lies in the middle
+    /// of the base, and the paper's y is not real. Two equal bars leave a ring no
+    /// inner circle, but a shaft in the midst, where the arm is folded and
+    /// singular; it stays outside the circle, too.
     pub fn inscribed_circle(&self) -> Option<Circle> {
         let middle = (self.outer + self.inner) / 2.0;
         let rise = (middle - self.half_base) * (middle + self.half_base);
-        (rise >= 0.0).then(|| Circle {
-            centre: Vector::new(0.0, libm::sqrt(rise)),
-            radius: (self.outer - self.inner) / 2.0,
+        let (height, radius) = if rise >= 0.0 {
+            (libm::sqrt(rise), (self.outer - self.inner) / 2.0)
+        } else {
+            (0.0, self.outer - self.half_base)
+        };
+        (radius > 0.0).then(|| Circle {
+            centre: Vector::new(0.0, height),
+            radius,
         })
     }
 }

@@ -80,6 +80,12 @@ pub enum Problem {
     /// The file cannot be opened.
     #[error("cannot be read: {0}")]
     Unreadable(String),
+    /// The file is larger than any robot file.
+    #[error("is longer than {} MiB, so it is no robot file", crate::LONGEST >> 20)]
+    Huge,
+    /// The file is not UTF-8 text, from this line on.
+    #[error("is not UTF-8 text: line {0} holds other bytes")]
+    NotText(usize),
     /// The text is not TOML.
     #[error("not TOML: {0}")]
     Syntax(String),

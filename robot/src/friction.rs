@@ -8,7 +8,7 @@
 //! left is at most eps for each pad above the true minimum, which the dual
 //! problem proves in the tests. Where the minimum is not unique (two pads
 //! against two), this ends at the point that the rounding favours, which is the
-//! symmetric one.
+//! symmetric one; [`crate::Ground::predict`] finds out where that matters.
 
 /// Position or slide of a pad: forward, left.
 pub(crate) type Point = [f64; 2];
@@ -31,6 +31,8 @@ pub(crate) struct Pads {
     pub swing: [Point; 4],
     /// Friction backward over forward.
     pub ratio: f64,
+    /// Weight that each pad carries, over the mean.
+    pub load: [f64; 4],
 }
 
 impl Pads {
@@ -97,7 +99,8 @@ impl Pads {
     /// unknowns.
     fn expand(&self, twist: Twist, eps: f64, scale: Twist) -> (f64, [f64; 3], [[f64; 3]; 3]) {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
-        for (slide, [x, y]) in self.slides(twist).into_iter().zip(self.at) {
+        for (i, slide) in self.slides(twist).into_iter().enumerate() {
+            let ([x, y], load) = (self.at[i], self.load[i]);
             let [wx, wy] = self.weight(slide);
             let [ux, uy] = [wx * slide[0], wy * slide[1]];
             let length = (ux * ux + uy * uy + eps * eps).sqrt();
@@ -108,12 +111,12 @@ impl Pads {
                 [-wx * y * scale[2], wy * x * scale[2]],
             ];
             let along = rows.map(|[a, b]| (a * ux + b * uy) / length);
-            cost += length;
+            cost += load * length;
             for i in 0..3 {
-                gradient[i] += along[i];
+                gradient[i] += load * along[i];
                 for j in 0..3 {
                     let dot = rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1];
-                    hessian[i][j] += (dot - along[i] * along[j]) / length;
+                    hessian[i][j] += load * (dot - along[i] * along[j]) / length;
                 }
             }
         }
@@ -156,6 +159,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    const EVEN: [f64; 4] = [1.0; 4];
     const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
     fn cost(pads: &Pads, twist: Twist) -> f64 {
@@ -163,7 +167,11 @@ mod tests {
             let w = pads.weight(slide);
             (w[0] * slide[0]).hypot(w[1] * slide[1])
         };
-        pads.slides(twist).into_iter().map(length).sum()
+        let lengths = pads.slides(twist).into_iter().map(length);
+        lengths
+            .zip(pads.load)
+            .map(|(length, load)| load * length)
+            .sum()
     }
 
     /// The lower bound of duality: forces within the pads' friction that balance
@@ -186,6 +194,7 @@ mod tests {
                 (force[0] / w[0]).hypot(force[1]) <= 1.0 + 1e-12,
                 "a pad cannot hold that"
             );
+            let force = force.map(|part| pads.load[i] * part);
             work += force[0] * pads.swing[i][0] + force[1] * pads.swing[i][1];
             net[0] += force[0];
             net[1] += force[1];
@@ -232,6 +241,7 @@ mod tests {
                 at,
                 swing,
                 ratio: 1.0,
+                load: EVEN,
             });
         }
     }
@@ -245,6 +255,7 @@ mod tests {
                 at: AT,
                 swing,
                 ratio: 1.0,
+                load: EVEN,
             }
             .least();
             assert!(
@@ -260,6 +271,7 @@ mod tests {
             at: AT,
             swing: [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]],
             ratio: 1.0,
+            load: EVEN,
         }
         .least();
         assert!(twist.iter().all(|part| part.abs() < 1e-7), "{twist:?}");
@@ -273,6 +285,7 @@ mod tests {
             at: AT,
             swing,
             ratio: 1.0,
+            load: EVEN,
         }
         .least();
         assert!((twist[2] - 0.01).abs() < 1e-9 && twist[0].abs() < 1e-7 && twist[1].abs() < 1e-7);
@@ -288,9 +301,10 @@ mod tests {
             jitter in prop::array::uniform4(point(20.0)),
             swing in prop::array::uniform4(point(5.0)),
             ratio in 0.5f64..2.0,
+            load in prop::array::uniform4(0.8f64..1.2),
         ) {
             let at = std::array::from_fn(|i| [AT[i][0] + jitter[i][0], AT[i][1] + jitter[i][1]]);
-            assert_least(&Pads { at, swing, ratio });
+            assert_least(&Pads { at, swing, ratio, load });
         }
 
         #[test]
@@ -298,8 +312,9 @@ mod tests {
             swing in prop::array::uniform4(point(5.0)),
             nudge in prop::array::uniform3(-1.0f64..1.0),
             size in -6i32..1,
+            load in prop::array::uniform4(0.8f64..1.2),
         ) {
-            let pads = Pads { at: AT, swing, ratio: 1.3 };
+            let pads = Pads { at: AT, swing, ratio: 1.3, load };
             let twist = pads.least();
             let scale = 10f64.powi(size);
             let other = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];

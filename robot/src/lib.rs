@@ -27,6 +27,7 @@ pub mod servo;
 mod table;
 mod waveform;
 
+use std::io::Read;
 use std::path::Path as FilePath;
 
 use lizard_kinematics::{Limits, Lizard, Pose, wrap};
@@ -36,7 +37,7 @@ pub use audit::{Audit, Least, Peak};
 pub use error::{Error, Hint, Problem};
 pub use firmware::Firmware;
 pub use gait::{Gait, Stride};
-pub use ground::{Feet, Ground, Travel};
+pub use ground::{Feet, Ground, Prediction, Travel};
 pub use path::{Path, PathLeg};
 pub use report::{Report, Row};
 pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
@@ -81,22 +82,31 @@ pub struct Robot {
 
 impl Robot {
     /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is longer than [`LONGEST`], is not UTF-8 text, or
+    /// holds a mistake.
     pub fn load(path: impl AsRef<FilePath>) -> Result<Self, Error> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match read_limited(path) {
             Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
-            Err(fault) => Err(Error {
+            Err(problem) => Err(Error {
                 file,
                 line: None,
                 key: String::new(),
-                problem: Problem::Unreadable(fault.to_string()),
+                problem,
             }),
         }
     }
 
-    /// Reads and checks the text of a robot.toml.
+    /// Reads and checks the text of a robot.toml. A byte order mark at its start
+    /// is passed over.
+    ///
+    /// # Errors
+    /// If the text holds a mistake.
     pub fn parse(text: &str) -> Result<Self, Error> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file = "robot.toml".to_string();
         let document = DeTable::parse(text).map_err(|fault| Error {
             file: file.clone(),
@@ -194,19 +204,30 @@ impl Robot {
     }
 
     /// Where the robot gets to when its servos take these angles (deg, chassis
-    /// frame, servo order) one after another, by the contact model.
+    /// frame, servo order) one after another, by the contact model, whether or
+    /// not that hangs on ties.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground
             .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
     }
 
     /// Where one cycle of a gait takes the robot, in the time order of a gait
-    /// that starts at phase 0.
-    pub fn predict(&self, gait: &Gait) -> Travel {
+    /// that starts at phase 0, by the contact model.
+    pub fn predict(&self, gait: &Gait) -> Prediction {
         /// Steps in a cycle; twice as many change no result by 0.01 mm.
         const STEPS: usize = 1000;
-        let at = |i| gait.sweeps(gait.phase(gait.period * i as f64 / STEPS as f64));
-        self.ground.travel((0..=STEPS).map(at))
+        /// Enough to tell what hangs on a tie, which takes longer.
+        const COARSE: usize = 250;
+        let cycle = |steps: usize| {
+            (0..=steps).map(move |i| gait.sweeps(gait.phase(gait.period * i as f64 / steps as f64)))
+        };
+        let known = self.ground.predict(cycle(COARSE));
+        let travel = self.ground.travel(cycle(STEPS));
+        Prediction {
+            forward: known.forward.and(Some(travel.forward)),
+            left: known.left.and(Some(travel.left)),
+            turn: known.turn.and(Some(travel.turn)),
+        }
     }
 
     /// The gaits as the firmware holds them.
@@ -228,6 +249,27 @@ impl Robot {
     pub fn tables_hash(&self) -> u32 {
         self.firmware.hash()
     }
+}
+
+/// Bytes that a robot file may have. A real one has some thousands; more is not
+/// read, because a device or a pipe may never end.
+pub const LONGEST: u64 = 1 << 20;
+
+/// The text of a file, of which no more than [`LONGEST`] bytes are read.
+fn read_limited(path: &FilePath) -> Result<String, Problem> {
+    let unreadable = |fault: std::io::Error| Problem::Unreadable(fault.to_string());
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)
+        .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > LONGEST {
+        return Err(Problem::Huge);
+    }
+    String::from_utf8(bytes).map_err(|fault| {
+        let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
+        let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        Problem::NotText(line)
+    })
 }
 
 /// Refuses a robot that could not even stand.

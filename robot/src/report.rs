@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::accuracy::{self, TableError};
 use crate::audit::Audit;
-use crate::ground::Travel;
+use crate::ground::Prediction;
 use crate::servo::NAMES;
 use lizard_core::gait::SAMPLES;
 use crate::{Gait, Robot, accuracy::ALL_PHASES};
@@ -22,7 +22,7 @@ pub struct Row {
     /// Of its tables, over all 65 536 phases.
     pub error: TableError,
     /// Where one cycle takes the robot, by the contact model.
-    pub travel: Travel,
+    pub way: Prediction,
 }
 
 /// The figures of all gaits.
@@ -38,6 +38,10 @@ pub struct Report {
     pub flash: usize,
 }
 
+/// What a dash in place of a prediction means.
+pub(crate) const UNDECIDED: &str =
+    "- undecided: two feet against two, where the smallest difference between the pads decides\n";
+
 /// Bytes of a waveform and of a gait in flash: 128 samples of two; the place of its
 /// name 3, a step of 4, and four channels of 5 (padded to 6 on the host, not there).
 const WAVE_BYTES: usize = 2 * SAMPLES;
@@ -51,7 +55,7 @@ impl Report {
             period: gait.period,
             audit: robot.audits[index],
             error: accuracy::worst(robot, index, ALL_PHASES),
-            travel: robot.predict(gait),
+            way: robot.predict(gait),
         };
         let (waves, gaits) = (robot.tables().waves.len(), robot.gaits.len());
         Self {
@@ -81,11 +85,11 @@ impl fmt::Display for Report {
                 period,
                 audit,
                 error,
-                travel,
+                way,
             } = row;
-            writeln!(
+            write!(
                 f,
-                "{name:<12} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  {:>+7.2} {:>+6.2} {:>+7.2}",
+                "{name:<12} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
                 audit.peak.speed,
                 NAMES[audit.peak.servo],
                 error.max,
@@ -95,12 +99,27 @@ impl fmt::Display for Report {
                 audit.leg.value,
                 tidy(audit.stroke.0, 1),
                 tidy(audit.stroke.1, 1),
-                tidy(travel.forward, 2),
-                tidy(travel.left, 2),
-                tidy(travel.turn, 2),
+            )?;
+            writeln!(
+                f,
+                "{:>7} {:>6} {:>7}",
+                known(way.forward, 2),
+                known(way.left, 2),
+                known(way.turn, 2)
             )?;
         }
+        if self.rows.iter().any(|row| !row.way.is_decided()) {
+            write!(f, "\n{UNDECIDED}")?;
+        }
         Ok(())
+    }
+}
+
+/// A part of a prediction with its sign; a dash where it is undecided.
+pub(crate) fn known(part: Option<f64>, decimals: usize) -> String {
+    match part {
+        Some(value) => format!("{:+.decimals$}", tidy(value, decimals as i32)),
+        None => "-".to_string(),
     }
 }
 

@@ -4,7 +4,8 @@
 use std::fmt;
 
 use crate::Robot;
-use crate::ground::{Ground, Travel};
+use crate::ground::{Ground, Prediction};
+use crate::report::{UNDECIDED, known};
 
 /// Friction backward over forward: even pads, pads that grip when pushed back,
 /// and pads that are on the wrong way round.
@@ -19,9 +20,9 @@ pub struct Sensitive {
     /// The gait's name.
     pub name: String,
     /// A cycle for each of [`RATIOS`], legs mounted as robot.toml says.
-    pub ratios: [Travel; RATIOS.len()],
+    pub ratios: [Prediction; RATIOS.len()],
     /// A cycle for each of [`MOUNTS`], pads as robot.toml says.
-    pub mounts: [Travel; MOUNTS.len()],
+    pub mounts: [Prediction; MOUNTS.len()],
 }
 
 /// Predictions for all gaits that move.
@@ -82,23 +83,25 @@ impl fmt::Display for Sensitivity {
         for row in &self.rows {
             line(f, &row.name, &row.mounts)?;
         }
+        let mut all = self
+            .rows
+            .iter()
+            .flat_map(|row| row.ratios.iter().chain(&row.mounts));
+        if all.any(|way| way.forward.is_none() || way.turn.is_none()) {
+            write!(f, "\n{UNDECIDED}")?;
+        }
         Ok(())
     }
 }
 
-fn line(f: &mut fmt::Formatter, name: &str, travels: &[Travel]) -> fmt::Result {
+fn line(f: &mut fmt::Formatter, name: &str, ways: &[Prediction]) -> fmt::Result {
     let mut line = format!("{name:<12}");
-    for travel in travels {
-        let turn = if travel.turn.abs() < 0.05 {
-            String::new()
-        } else {
-            format!("{:+.1}", travel.turn)
+    for way in ways {
+        let turn = match way.turn {
+            Some(turn) if turn.abs() < 0.05 => String::new(),
+            turn => known(turn, 1),
         };
-        // Adding positive zero turns a negative one positive.
-        line += &format!(
-            "{:>+9.1}{turn:>6}",
-            (travel.forward * 10.0).round() / 10.0 + 0.0
-        );
+        line += &format!("{:>9}{turn:>6}", known(way.forward, 1));
     }
     writeln!(f, "{}", line.trim_end())
 }

@@ -3,17 +3,20 @@
 use std::io::{self, Write};
 
 use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector, wrap};
-use lizard_robot::{Robot, servo};
+use lizard_robot::Robot;
 use serde::Serialize;
 
-use crate::pose_args::finite;
+use crate::paper::tidy::tidy;
+use crate::paper::verdict;
+use crate::pose_args::length;
 use crate::{Failure, RobotFile};
 
 /// Servo angles for a head point, a tail point, or both.
 ///
-/// Lists all four ways in which the arms can bend, and for each whether this
-/// robot can take it: its servos must reach the angles, its apex must be on the
-/// side on which it was assembled, and its margins must hold.
+/// Lists all four working modes (each arm bent outward or inward), and for each
+/// whether this robot can take it: its servos must reach the angles, its assembly
+/// mode must be the robot's (end point ahead of the crank tips), and its margins
+/// must hold. Then the whole robot's pose is judged, as `lizard solve` does.
 #[derive(clap::Args)]
 #[command(
     allow_negative_numbers = true,
@@ -22,11 +25,11 @@ use crate::{Failure, RobotFile};
 )]
 pub struct Args {
     /// Head point in mm, chassis frame
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = finite,
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
           required_unless_present = "tail")]
     head: Option<Vec<f64>>,
     /// Tail point in mm, chassis frame
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = finite)]
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length)]
     tail: Option<Vec<f64>>,
     /// One JSON object
     #[arg(long)]
@@ -40,7 +43,7 @@ pub struct Args {
 struct Report {
     head: Option<Loop>,
     tail: Option<Loop>,
-    /// The pose with outward elbows, the other end at neutral if not asked for.
+    /// The pose with both elbows outward, the other end at neutral if not asked for.
     pose: Option<Angles>,
     safe: bool,
     why: Vec<String>,
@@ -58,16 +61,17 @@ struct Angles {
 #[derive(Serialize)]
 struct Loop {
     point: [f64; 2],
-    assemblies: Vec<Way>,
+    working_modes: Vec<Way>,
     why: Option<String>,
 }
 
-/// One of the four ways to bend the arms, left arm first.
+/// One of the four working modes, left arm first.
 #[derive(Serialize)]
 struct Way {
     left: &'static str,
     right: &'static str,
-    apex: &'static str,
+    /// Where the end point is, seen from the line between the crank tips.
+    assembly_mode: &'static str,
     /// Left servo (A1 or A4), degrees, chassis frame.
     theta_left: f64,
     /// Right servo (A2 or A3).
@@ -108,7 +112,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     let local = robot.lizard.to_end(end, point);
-    let (assemblies, why) = match robot.lizard.end(end).inverse(local) {
+    let (working_modes, why) = match robot.lizard.end(end).inverse(local) {
         Ok(all) => {
             let ways = all.into_iter().map(|a| way(robot, end, local, a));
             (ways.collect(), None)
@@ -117,7 +121,7 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     };
     Loop {
         point: [point.x, point.y],
-        assemblies,
+        working_modes,
         why,
     }
 }
@@ -134,11 +138,11 @@ fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
         .servos()
         .into_iter()
         .zip(angles)
-        .filter_map(|(servo, angle)| beyond(robot, servo, angle))
+        .filter_map(|(servo, angle)| verdict::beyond(robot, servo, angle))
         .collect();
     let behind = a.assembly_mode == AssemblyMode::Behind;
     if behind {
-        why.push("the end point would be on the other side of the crank tips".to_string());
+        why.push("another assembly mode: the end point would be behind the crank tips".to_string());
     }
     if let Ok(pose) = &there {
         // In the other assembly mode the type-2 margin is negative, which is said.
@@ -149,7 +153,7 @@ fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
     Way {
         left: bend(a.working_mode.left),
         right: bend(a.working_mode.right),
-        apex: if behind { "behind" } else { "ahead" },
+        assembly_mode: if behind { "behind" } else { "ahead" },
         theta_left: angles[0],
         theta_right: angles[1],
         error_mm,
@@ -166,24 +170,12 @@ fn bend(elbow: Elbow) -> &'static str {
     }
 }
 
-/// A sentence if a servo cannot turn to an angle.
-fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
-    let sweep = wrap(angle - robot.servos[servo].neutral);
-    let (least, most) = robot.servos[servo].travel();
-    (sweep < least || sweep > most).then(|| {
-        format!(
-            "{} would turn {sweep:+.1} deg from neutral, its travel is {least:+.1} to {most:+.1}",
-            servo::NAMES[servo]
-        )
-    })
-}
-
 /// Puts both ends together and checks the whole robot.
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos.map(|servo| servo.neutral);
     let mut whole = true;
     for (part, end) in [(&head, End::Head), (&tail, End::Tail)] {
-        match part.as_ref().map(|part| part.assemblies.first()) {
+        match part.as_ref().map(|part| part.working_modes.first()) {
             Some(Some(outward)) => {
                 let [left, right] = end.servos();
                 angles[left] = outward.theta_left;
@@ -198,9 +190,8 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
         why.extend(part.why.clone());
     }
     if whole {
-        why.extend((0..4).filter_map(|servo| beyond(robot, servo, angles[servo])));
         match robot.lizard.solve(&Pose::from(angles)) {
-            Ok(solution) => why.extend(robot.limits.violations(&solution).map(|v| v.to_string())),
+            Ok(solution) => why.extend(verdict::reasons(robot, &solution)),
             Err(infeasible) => why.push(infeasible.to_string()),
         }
     }
@@ -223,33 +214,44 @@ fn text(report: &Report) -> String {
     let mut page = String::new();
     for (name, part, servos) in [
         ("head", &report.head, ["A1 theta1", "A2 theta4"]),
-        ("tail", &report.tail, ["A4 theta5", "A3 theta8"]),
+        ("tail", &report.tail, ["A3 theta8", "A4 theta5"]),
     ] {
         let Some(part) = part else { continue };
         let [x, y] = part.point;
-        page += &format!("{name} at ({x:.3}, {y:.3}) mm\n");
+        page += &format!("{name} at ({:.3}, {:.3}) mm\n", tidy(x, 3), tidy(y, 3));
         if let Some(why) = &part.why {
             page += &format!("  {why}\n\n");
             continue;
         }
+        // Both in servo order; the tail's left servo is A4.
+        let swapped = name == "tail";
         page += &format!(
-            "  left     right    {:>10} {:>10}  apex     margin   error mm   this robot\n",
-            servos[0], servos[1]
+            "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
+            &servos[0][..2],
+            &servos[1][..2],
+            servos[0],
+            servos[1]
         );
-        for way in &part.assemblies {
+        for way in &part.working_modes {
             let verdict = match way.why.as_slice() {
                 [] => "yes".to_string(),
                 [only] => format!("no: {only}"),
                 [first, rest @ ..] => format!("no: {first}; and {} more", rest.len()),
             };
+            let mut bends = [way.left, way.right];
+            let mut angles = [way.theta_left, way.theta_right];
+            if swapped {
+                bends.reverse();
+                angles.reverse();
+            }
             page += &format!(
-                "  {:8} {:8} {:10.3} {:10.3}  {:7} {:+7.3}    {:>7}   {verdict}\n",
-                way.left,
-                way.right,
-                way.theta_left,
-                way.theta_right,
-                way.apex,
-                way.margin,
+                "  {:8} {:8} {:10.3} {:10.3}  {:8} {:+7.3}    {:>7}   {verdict}\n",
+                bends[0],
+                bends[1],
+                tidy(angles[0], 3),
+                tidy(angles[1], 3),
+                way.assembly_mode,
+                tidy(way.margin, 3),
                 rounding(way.error_mm)
             );
         }

@@ -4,17 +4,26 @@
 //! constraints at a pose does not. Here every moving link has three velocities
 //! (vx, vy of its point at the origin, and omega), every joint gives two rows,
 //! and what the rank leaves over are the freedoms.
+//!
+//! That the drives hold these freedoms is a second question: at a type-2
+//! singularity there are as many freedoms as ever, but one of them is no longer
+//! the servos'. So the rank is taken again with the driven cranks locked, a row
+//! more for each, and whatever can still move then is loose.
 
 use std::io::{self, Write};
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Singular values below this share of the largest are zero.
-const RANK_TOLERANCE: f64 = 1e-9;
+/// Singular values below this share of the largest are zero: a pose typed with
+/// seven digits is met.
+const RANK_TOLERANCE: f64 = 1e-7;
+
+/// Links that move by less than this share of the fastest stand still.
+const STILL: f64 = 1e-3;
 
 /// A unit of length that makes rows in mm and in radians comparable.
 const LENGTH: f64 = 50.0;
@@ -22,8 +31,9 @@ const LENGTH: f64 = 50.0;
 /// Degrees of freedom of body and legs, by Gruebler's count and by the rank of
 /// the constraint Jacobian at a pose.
 ///
-/// The pose is the neutral one unless given. Where a pose is singular, the rank
-/// drops and a freedom appears that no servo holds.
+/// The rank is taken twice, with the driven cranks free and with them locked:
+/// what can move in spite of locked servos is loose, as the end point is at a
+/// type-2 singularity, and is named. The pose is the neutral one unless given.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -40,6 +50,10 @@ struct Mechanism {
     name: &'static str,
     links: usize,
     joints: Vec<Joint>,
+    /// The driven links.
+    driven: Vec<usize>,
+    /// What it means if a link moves although the driven ones are locked.
+    parts: &'static [(&'static [usize], &'static str)],
 }
 
 struct Joint {
@@ -50,7 +64,7 @@ struct Joint {
 enum Kind {
     /// A pin at a point, mm.
     Revolute(Vector),
-    /// A slide through a point along a direction of length one.
+    /// A prismatic joint through a point along a direction of length one.
     Prismatic(Vector, Vector),
 }
 
@@ -67,7 +81,12 @@ struct Report {
     rank: usize,
     /// Columns less rank.
     freedoms: usize,
-    /// Smallest singular value over the largest: near 0, near a singularity.
+    /// The same with the driven cranks locked; 0 where they hold everything.
+    locked_freedoms: usize,
+    /// What moves then.
+    loose: Vec<&'static str>,
+    /// Smallest singular value over the largest, cranks locked: near 0, near a
+    /// singularity.
     conditioning: f64,
 }
 
@@ -79,12 +98,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .lizard
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
-    let legs = [
-        "leg front left",
-        "leg front right",
-        "leg back right",
-        "leg back left",
-    ];
+    let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
     let mut all = vec![body(&robot.lizard, &solution)];
     all.extend((0..4).map(|i| leg(&robot.lizard, &solution, i, legs[i])));
     let reports: Vec<Report> = all.iter().map(measure).collect();
@@ -96,12 +110,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     writeln!(
         out,
-        "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  conditioning"
+        "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  locked  conditioning"
     )?;
     for r in &reports {
         writeln!(
             out,
-            "{:16} {:6} {:7} {:9}   {:>5}x{:<2} {:5} {:9}  {:12.1e}",
+            "{:16} {:6} {:7} {:9}   {:>5}x{:<2} {:5} {:9} {:7}  {:12.1e}",
             r.mechanism,
             r.links,
             r.joints,
@@ -110,25 +124,36 @@ pub fn run(args: Args) -> Result<(), Failure> {
             r.velocities,
             r.rank,
             r.freedoms,
+            r.locked_freedoms,
             r.conditioning
         )?;
     }
-    let loose: Vec<&Report> = reports
-        .iter()
-        .filter(|r| r.freedoms as i64 != r.gruebler)
-        .collect();
-    if loose.is_empty() {
+    writeln!(
+        out,
+        "locked: freedoms left with the driven cranks locked; conditioning: of that Jacobian\n"
+    )?;
+    let singular = |r: &&Report| r.freedoms as i64 != r.gruebler || r.locked_freedoms > 0;
+    if !reports.iter().any(|r| singular(&r)) {
         writeln!(
             out,
-            "\nCount and rank agree: four servos hold the body, one spring each leg."
+            "Count and rank agree: four servos hold the body, one spring each leg."
         )?;
     }
-    for r in loose {
-        writeln!(
+    for r in reports.iter().filter(singular) {
+        write!(
             out,
-            "\n{}: this pose is singular, the rank leaves {} freedoms.",
+            "{}: this pose is singular, the rank leaves {} freedoms",
             r.mechanism, r.freedoms
         )?;
+        match r.loose.as_slice() {
+            [] => writeln!(out, ".")?,
+            loose => writeln!(
+                out,
+                "; with the cranks locked {} can still move: {}.",
+                r.locked_freedoms,
+                loose.join(", ")
+            )?,
+        }
     }
     Ok(())
 }
@@ -170,6 +195,13 @@ fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
         name: "body",
         links: 13,
         joints,
+        driven: CRANK.to_vec(),
+        parts: &[
+            (&[5, 6], "the head's end point is loose (type 2)"),
+            (&[7, 8], "the tail's end point is loose (type 2)"),
+            (&[9, 10], "the left slider is loose"),
+            (&[11, 12], "the right slider is loose"),
+        ],
     }
 }
 
@@ -192,6 +224,11 @@ fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mecha
         name,
         links: 4,
         joints: joints.into(),
+        driven: vec![1],
+        parts: &[(
+            &[2, 3],
+            "coupler and follower may go either way (change point)",
+        )],
     }
 }
 
@@ -207,8 +244,57 @@ pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
 
 fn measure(mechanism: &Mechanism) -> Report {
     let joints = mechanism.joints.len();
+    let free = jacobian(mechanism, &[]);
+    let (constraints, velocities) = free.shape();
+    let rank = rank(&free.singular_values());
+    let locked = SVD::new(jacobian(mechanism, &mechanism.driven), false, true);
+    let values = &locked.singular_values;
+    let zero = RANK_TOLERANCE * values.max();
+    let mut loose = Vec::new();
+    if let Some(directions) = &locked.v_t {
+        for (value, direction) in values.iter().zip(directions.row_iter()) {
+            if *value <= zero {
+                // How fast each moving link is in this direction.
+                let speeds: Vec<f64> = (0..mechanism.links - 1)
+                    .map(|link| direction.columns(3 * link, 3).norm())
+                    .collect();
+                let fastest = speeds.iter().copied().fold(0.0, f64::max);
+                loose.extend(mechanism.parts.iter().filter_map(|(links, what)| {
+                    let moves = |link: &usize| speeds[link - 1] > STILL * fastest;
+                    links.iter().any(moves).then_some(*what)
+                }));
+            }
+        }
+    }
+    loose.sort_unstable();
+    loose.dedup();
+    Report {
+        mechanism: mechanism.name,
+        links: mechanism.links,
+        joints,
+        gruebler: 3 * (mechanism.links as i64 - 1 - joints as i64) + joints as i64,
+        constraints,
+        velocities,
+        rank,
+        freedoms: velocities - rank,
+        locked_freedoms: velocities - self::rank(values),
+        loose,
+        conditioning: values.min() / values.max(),
+    }
+}
+
+/// How many singular values are not zero.
+fn rank(values: &DVector<f64>) -> usize {
+    let zero = RANK_TOLERANCE * values.max();
+    values.iter().filter(|value| **value > zero).count()
+}
+
+/// The constraints on the velocities of the moving links: two rows for each
+/// joint, and one for each link that is locked against turning.
+fn jacobian(mechanism: &Mechanism, locked: &[usize]) -> DMatrix<f64> {
+    let joints = mechanism.joints.len();
     let velocities = 3 * (mechanism.links - 1);
-    let mut rows = DMatrix::<f64>::zeros(2 * joints, velocities);
+    let mut rows = DMatrix::<f64>::zeros(2 * joints + locked.len(), velocities);
     let mut add = |row: usize, link: usize, entries: [f64; 3]| {
         if link > 0 {
             for (i, entry) in entries.into_iter().enumerate() {
@@ -237,21 +323,8 @@ fn measure(mechanism: &Mechanism) -> Report {
             }
         }
     }
-    let values = rows.singular_values();
-    let (largest, smallest) = (values.max(), values.min());
-    let rank = values
-        .iter()
-        .filter(|value| **value > RANK_TOLERANCE * largest)
-        .count();
-    Report {
-        mechanism: mechanism.name,
-        links: mechanism.links,
-        joints,
-        gruebler: 3 * (mechanism.links as i64 - 1 - joints as i64) + joints as i64,
-        constraints: 2 * joints,
-        velocities,
-        rank,
-        freedoms: velocities - rank,
-        conditioning: smallest / largest,
+    for (i, &link) in locked.iter().enumerate() {
+        add(2 * joints + i, link, [0.0, 0.0, 1.0]);
     }
+    rows
 }

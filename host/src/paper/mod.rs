@@ -11,4 +11,6 @@ pub mod record;
 pub mod singularity;
 pub mod solve;
 pub mod speed;
+pub mod tidy;
 pub mod velocity;
+pub mod verdict;

@@ -6,66 +6,123 @@ use std::io::{BufRead, Read};
 use lizard_kinematics::Pose;
 
 use crate::Failure;
+use crate::pose_args::{ANGLES, NumberFault, Quantity};
 
-/// The columns, in the order of the paper's Algorithm 1; a file may have them in
-/// any order.
-pub const COLUMNS: [&str; 4] = ["theta1", "theta4", "theta5", "theta8"];
+/// A column that may stand beside the angles, as in `lizard gaits --trace`.
+const SECONDS: &str = "seconds";
+
+/// What a field of a line is: one of the four angles, or a time.
+#[derive(Clone, Copy, PartialEq)]
+enum Column {
+    Angle(usize),
+    Seconds,
+}
+
+impl Column {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Angle(servo) => ANGLES[servo],
+            Self::Seconds => SECONDS,
+        }
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        if name == SECONDS {
+            return Some(Self::Seconds);
+        }
+        let servo = ANGLES.iter().position(|angle| *angle == name)?;
+        Some(Self::Angle(servo))
+    }
+}
+
+/// The columns of a stream without a header.
+const SERVO_ORDER: [Column; 4] = [
+    Column::Angle(0),
+    Column::Angle(1),
+    Column::Angle(2),
+    Column::Angle(3),
+];
 
 /// Longer lines are not poses, and are not read to their end.
 const LONGEST_LINE: u64 = 1024;
 
-/// Poses of a CSV text with a header line. Blank lines are skipped, lines end
-/// in LF or CRLF, numbers may stand in double quotes.
+/// A line of the stream.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timed {
+    /// s, where the stream has such a column.
+    pub seconds: Option<f64>,
+    /// The servo angles.
+    pub pose: Pose,
+}
+
+/// Poses of a CSV text. Its first line may name the columns, in any order;
+/// without such a header they are A1, A2, A3, A4. Blank lines are skipped, lines
+/// end in LF or CRLF, names and numbers may stand in double quotes, a byte order
+/// mark is passed over.
 pub struct Poses<R> {
     input: R,
     line: Vec<u8>,
     number: usize,
-    /// What each field of a line is: an index into `COLUMNS`.
-    order: [usize; 4],
+    /// What each field of a line is.
+    columns: Vec<Column>,
+    /// True while the line that was read first is still to be answered.
+    waiting: bool,
 }
 
 impl<R: BufRead> Poses<R> {
-    /// Reads the header.
+    /// Reads the header, if there is one.
+    ///
+    /// # Errors
+    /// If the input is empty, cannot be read, or its header is wrong.
     pub fn new(input: R) -> Result<Self, Failure> {
         let mut poses = Self {
             input,
             line: Vec::new(),
             number: 0,
-            order: [0; 4],
+            columns: SERVO_ORDER.to_vec(),
+            waiting: false,
         };
-        let wanted = COLUMNS.join(",");
+        let wanted = ANGLES.join(",");
         if !poses.advance()? {
             return Err(Failure::Input(format!(
                 "line 1, column 1: the input is empty, expected the header {wanted}"
             )));
         }
+        let text = poses.text()?;
+        let names: Vec<&str> = text.split(',').map(bare).collect();
+        // A header has no numbers; the first line of bare poses has.
+        if names.iter().any(|name| name.parse::<f64>().is_ok()) {
+            poses.waiting = true;
+            return Ok(poses);
+        }
         let number = poses.number;
         let wrong = |column: usize, what: String| {
             Failure::Input(format!(
-                "line {number}, column {column}: {what}; the header is {wanted}, in any order"
+                "line {number}, column {column}: {what}; the header is {wanted}, in any order, \
+                 and {SECONDS} if you like"
             ))
         };
-        let text = poses.text()?;
-        let names: Vec<&str> = text
-            .trim_start_matches('\u{feff}')
-            .split(',')
-            .map(bare)
-            .collect();
-        let mut order = [0; 4];
+        let mut columns = Vec::with_capacity(names.len());
         for (i, name) in names.iter().enumerate() {
-            let Some(column) = COLUMNS.iter().position(|column| column == name) else {
+            let Some(column) = Column::named(name) else {
                 return Err(wrong(i + 1, format!("\"{name}\" is not a column")));
             };
-            if names[..i].contains(name) {
+            if columns.contains(&column) {
                 return Err(wrong(i + 1, format!("\"{name}\" comes twice")));
             }
-            order[i] = column;
+            columns.push(column);
         }
-        if let Some(missing) = COLUMNS.iter().find(|column| !names.contains(column)) {
+        if let Some(missing) = SERVO_ORDER.iter().find(|angle| !columns.contains(angle)) {
+            let missing = missing.name();
             return Err(wrong(names.len() + 1, format!("{missing} is missing")));
         }
-        poses.order = order;
+        poses.columns = columns;
         Ok(poses)
+    }
+
+    /// True if the lines have a time.
+    pub fn timed(&self) -> bool {
+        self.columns.contains(&Column::Seconds)
     }
 
     /// Reads the next line that is not blank; false at the end.
@@ -93,7 +150,14 @@ impl<R: BufRead> Poses<R> {
 
     fn text(&self) -> Result<&str, Failure> {
         std::str::from_utf8(&self.line)
-            .map(|text| text.trim_end_matches(['\n', '\r']))
+            .map(|text| {
+                let first = self.number == 1;
+                let text = text
+                    .strip_prefix('\u{feff}')
+                    .filter(|_| first)
+                    .unwrap_or(text);
+                text.trim_end_matches(['\n', '\r'])
+            })
             .map_err(|fault| {
                 let before = &self.line[..fault.valid_up_to()];
                 let column = before.iter().filter(|&&byte| byte == b',').count() + 1;
@@ -104,12 +168,13 @@ impl<R: BufRead> Poses<R> {
             })
     }
 
-    fn parse(&self) -> Result<Pose, Failure> {
-        let mut values = [0.0; 4];
+    fn parse(&self) -> Result<Timed, Failure> {
+        let mut angles = [0.0; 4];
+        let mut seconds = None;
         let mut count = 0;
         let at = |field: usize, what: String| {
-            let name = match self.order.get(field) {
-                Some(&column) => format!(" ({})", COLUMNS[column]),
+            let name = match self.columns.get(field) {
+                Some(column) => format!(" ({})", column.name()),
                 None => String::new(),
             };
             Failure::Input(format!(
@@ -120,34 +185,40 @@ impl<R: BufRead> Poses<R> {
         };
         for (field, text) in self.text()?.split(',').enumerate() {
             let text = bare(text);
-            let Some(&column) = self.order.get(field) else {
+            let Some(&column) = self.columns.get(field) else {
                 return Err(at(field, format!("\"{text}\" is one value too many")));
             };
-            values[column] = match text.parse::<f64>() {
-                Ok(value) if value.is_finite() => value,
-                Ok(_) => return Err(at(field, format!("\"{text}\" is not a finite number"))),
-                Err(_) if text.is_empty() => return Err(at(field, "no value".to_string())),
-                Err(_) => return Err(at(field, format!("\"{text}\" is not a number"))),
-            };
+            if text.is_empty() {
+                return Err(at(field, "no value".to_string()));
+            }
+            let refused = |fault: NumberFault| at(field, format!("\"{text}\" {fault}"));
+            match column {
+                Column::Angle(servo) => {
+                    angles[servo] = Quantity::ANGLE.parse(text).map_err(refused)?;
+                }
+                Column::Seconds => {
+                    seconds = Some(Quantity::TIME.parse(text).map_err(refused)?);
+                }
+            }
             count = field + 1;
         }
-        if count < 4 {
+        if count < self.columns.len() {
             return Err(at(count, "no value".to_string()));
         }
-        let [theta1, theta4, theta5, theta8] = values;
-        Ok(Pose {
-            theta1,
-            theta4,
-            theta8,
-            theta5,
+        Ok(Timed {
+            seconds,
+            pose: Pose::from(angles),
         })
     }
 }
 
 impl<R: BufRead> Iterator for Poses<R> {
-    type Item = Result<Pose, Failure>;
+    type Item = Result<Timed, Failure>;
 
     fn next(&mut self) -> Option<Self::Item> {
+        if std::mem::take(&mut self.waiting) {
+            return Some(self.parse());
+        }
         match self.advance() {
             Ok(true) => Some(self.parse()),
             Ok(false) => None,

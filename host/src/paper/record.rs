@@ -2,13 +2,20 @@
 
 use std::fmt::Write as _;
 
-use lizard_kinematics::{Infeasible, Limits, Margins, Pose, Solution, Vector};
-use serde::Serialize;
+use lizard_kinematics::{Infeasible, Margins, Pose, Solution};
+use lizard_robot::Robot;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::paper::poses::Timed;
+use crate::paper::tidy::tidy;
+use crate::paper::verdict;
 
 /// One object of `lizard solve --json`. Everything that a pose without a
-/// solution lacks is null.
-#[derive(Serialize)]
+/// solution lacks is null; seconds are there only where the stream has them.
+#[derive(serde::Serialize)]
 pub struct Record {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seconds: Option<f64>,
     theta2: Option<f64>,
     theta3: Option<f64>,
     theta6: Option<f64>,
@@ -23,13 +30,13 @@ pub struct Record {
     why: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(serde::Serialize)]
 struct Side {
     phi: f64,
     s: f64,
 }
 
-#[derive(Serialize)]
+#[derive(serde::Serialize)]
 struct Legs {
     lf: Leg,
     rf: Leg,
@@ -37,54 +44,33 @@ struct Legs {
     lh: Leg,
 }
 
-#[derive(Serialize)]
+#[derive(serde::Serialize)]
 struct Leg {
     follower: f64,
     coupler: f64,
 }
 
-#[derive(Serialize)]
-struct Sines {
-    type2_head: f64,
-    type2_tail: f64,
-    type1_a1: f64,
-    type1_a2: f64,
-    type1_a3: f64,
-    type1_a4: f64,
-    leg_lf: f64,
-    leg_rf: f64,
-    leg_rh: f64,
-    leg_lh: f64,
-}
+/// All margins by their names.
+struct Sines(Margins);
 
-impl From<&Margins> for Sines {
-    fn from(m: &Margins) -> Self {
-        let [type2_head, type2_tail] = m.type2;
-        let [type1_a1, type1_a2, type1_a3, type1_a4] = m.type1;
-        let [leg_lf, leg_rf, leg_rh, leg_lh] = m.leg;
-        Self {
-            type2_head,
-            type2_tail,
-            type1_a1,
-            type1_a2,
-            type1_a3,
-            type1_a4,
-            leg_lf,
-            leg_rf,
-            leg_rh,
-            leg_lh,
+impl Serialize for Sines {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (what, value) in self.0.iter() {
+            map.serialize_entry(what.name(), &value)?;
         }
+        map.end()
     }
 }
 
 impl Record {
     /// The record of a pose, solved or not.
-    pub fn new(solved: &Result<Solution, Infeasible>, limits: &Limits) -> Self {
+    pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
         let s = match solved {
             Ok(solution) => solution,
-            Err(infeasible) => return Self::without(infeasible),
+            Err(infeasible) => return Self::without(seconds, infeasible),
         };
-        let why: Vec<String> = limits.violations(s).map(|v| v.to_string()).collect();
+        let why = verdict::reasons(robot, s);
         let (head, tail) = (s.head_point(), s.tail_point());
         let p = s.passive();
         let [lf, rf, rh, lh] = s.legs.map(|leg| Leg {
@@ -92,6 +78,7 @@ impl Record {
             coupler: leg.coupler(),
         });
         Self {
+            seconds,
             theta2: Some(p.theta2),
             theta3: Some(p.theta3),
             theta6: Some(p.theta6),
@@ -107,14 +94,15 @@ impl Record {
                 s: s.right.s,
             }),
             legs: Some(Legs { lf, rf, rh, lh }),
-            margins: Some(Sines::from(&s.margins)),
+            margins: Some(Sines(s.margins)),
             safe: why.is_empty(),
             why,
         }
     }
 
-    fn without(infeasible: &Infeasible) -> Self {
+    fn without(seconds: Option<f64>, infeasible: &Infeasible) -> Self {
         Self {
+            seconds,
             theta2: None,
             theta3: None,
             theta6: None,
@@ -132,9 +120,10 @@ impl Record {
 }
 
 /// The heading of [`row`], in the same columns.
-pub fn heading() -> String {
+pub fn heading(timed: bool) -> String {
+    let seconds = if timed { " seconds |" } else { "" };
     format!(
-        " {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or why not",
+        "{seconds} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or why not",
         "theta1",
         "theta4",
         "theta8",
@@ -152,11 +141,14 @@ pub fn heading() -> String {
 }
 
 /// A solved pose in one line of a table.
-pub fn row(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits) -> String {
-    let angles = <[f64; 4]>::from(*pose);
+pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) -> String {
+    let angles = <[f64; 4]>::from(timed.pose);
     let mut line = String::with_capacity(192);
+    if let Some(seconds) = timed.seconds {
+        let _ = write!(line, "{seconds:8.2} |");
+    }
     for angle in angles {
-        let _ = write!(line, " {angle:8.3}");
+        let _ = write!(line, " {:8.3}", tidy(angle, 3));
     }
     let s = match solved {
         Err(infeasible) => {
@@ -165,34 +157,36 @@ pub fn row(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits) 
         }
         Ok(solution) => solution,
     };
-    let (head, tail) = (tidy(s.head_point()), tidy(s.tail_point()));
+    let (head, tail) = (s.head_point(), s.tail_point());
     let (least, value) = s.margins.min();
+    for block in [
+        [s.theta2(), s.theta3(), s.theta6(), s.theta7()],
+        [head.x, head.y, tail.x, tail.y],
+    ] {
+        line.push_str(" |");
+        for value in block {
+            let _ = write!(line, " {:8.3}", tidy(value, 3));
+        }
+    }
     let _ = write!(
         line,
-        " | {:8.3} {:8.3} {:8.3} {:8.3} | {:8.3} {:8.3} {:8.3} {:8.3} | {:+7.2} {:+7.2} | {least:9} {value:+7.4} | ",
-        s.theta2(),
-        s.theta3(),
-        s.theta6(),
-        s.theta7(),
-        head.x,
-        head.y,
-        tail.x,
-        tail.y,
-        s.left.s,
-        s.right.s,
+        " | {:+7.2} {:+7.2} | {least:9} {:+7.4} | ",
+        tidy(s.left.s, 2),
+        tidy(s.right.s, 2),
+        tidy(value, 4),
     );
-    match limits.violations(s).next() {
+    match verdict::reasons(robot, s).first() {
         None => line.push_str("safe"),
-        Some(violation) => {
-            let _ = write!(line, "{violation}");
-        }
+        Some(reason) => line.push_str(reason),
     }
     line
 }
 
 /// A solved pose as a page.
-pub fn page(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits) -> String {
-    let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose);
+pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
+    let limits = &robot.limits;
+    let milli = |value: f64| tidy(value, 3);
+    let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(milli);
     let mut page = format!(
         "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
     );
@@ -203,8 +197,9 @@ pub fn page(pose: &Pose, solved: &Result<Solution, Infeasible>, limits: &Limits)
         }
         Ok(solution) => solution,
     };
-    let (head, tail) = (tidy(s.head_point()), tidy(s.tail_point()));
-    let legs = s.legs.map(|leg| leg.follower());
+    let (head, tail) = (s.head_point(), s.tail_point());
+    let legs = s.legs.map(|leg| milli(leg.follower()));
+    let fine = |margin: f64| tidy(margin, 4);
     let m = &s.margins;
     let _ = write!(
         page,
@@ -213,7 +208,7 @@ head     ({:8.3}, {:8.3}) mm   theta2 {:8.3}   theta3 {:8.3} deg
 tail     ({:8.3}, {:8.3}) mm   theta6 {:8.3}   theta7 {:8.3} deg
 left     s {:+8.3} mm   phi {:8.3} deg
 right    s {:+8.3} mm   phi {:8.3} deg
-legs     followers  front left {:8.3}   front right {:8.3}   back right {:8.3}   back left {:8.3} deg
+legs     followers  LF {:8.3}   RF {:8.3}   RH {:8.3}   LH {:8.3} deg
 
 margins  (0 is singular, 1 is best)  limits {} {} {}
          type-2    head {:+.4}   tail {:+.4}
@@ -221,35 +216,49 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
          legs      LF   {:+.4}   RF   {:+.4}   RH {:+.4}   LH {:+.4}
 
 ",
-        head.x, head.y, s.theta2(), s.theta3(),
-        tail.x, tail.y, s.theta6(), s.theta7(),
-        s.left.s, s.left.phi(),
-        s.right.s, s.right.phi(),
-        legs[0], legs[1], legs[2], legs[3],
-        limits.type2, limits.type1, limits.leg,
-        m.type2[0], m.type2[1],
-        m.type1[0], m.type1[1], m.type1[2], m.type1[3],
-        m.leg[0], m.leg[1], m.leg[2], m.leg[3],
+        milli(head.x),
+        milli(head.y),
+        milli(s.theta2()),
+        milli(s.theta3()),
+        milli(tail.x),
+        milli(tail.y),
+        milli(s.theta6()),
+        milli(s.theta7()),
+        milli(s.left.s),
+        milli(s.left.phi()),
+        milli(s.right.s),
+        milli(s.right.phi()),
+        legs[0],
+        legs[1],
+        legs[2],
+        legs[3],
+        limits.type2,
+        limits.type1,
+        limits.leg,
+        fine(m.type2[0]),
+        fine(m.type2[1]),
+        fine(m.type1[0]),
+        fine(m.type1[1]),
+        fine(m.type1[2]),
+        fine(m.type1[3]),
+        fine(m.leg[0]),
+        fine(m.leg[1]),
+        fine(m.leg[2]),
+        fine(m.leg[3]),
     );
-    let broken: Vec<_> = limits.violations(s).collect();
+    let broken = verdict::reasons(robot, s);
     if broken.is_empty() {
         let (least, value) = m.min();
         let _ = writeln!(page, "safe     yes, the least margin is {least} {value:.4}");
     } else {
-        for (i, violation) in broken.iter().enumerate() {
+        for (i, reason) in broken.iter().enumerate() {
             let lead = if i == 0 {
                 "safe     no, "
             } else {
                 "             "
             };
-            let _ = writeln!(page, "{lead}{violation}");
+            let _ = writeln!(page, "{lead}{reason}");
         }
     }
     page
-}
-
-/// A point to the micrometre, without a negative zero.
-fn tidy(point: Vector) -> Vector {
-    let round = |value: f64| (value * 1e3).round() / 1e3 + 0.0;
-    Vector::new(round(point.x), round(point.y))
 }

@@ -8,14 +8,17 @@ use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;
 
+use crate::paper::tidy::tidy;
+use crate::paper::verdict;
+use crate::pose_args::ANGLES;
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// The velocity matrices of a pose and the nearest singularities, or a map of
 /// the head's (theta1, theta4) plane.
 ///
-/// K (8x4) holds the derivatives of the loop equations by the servo angles, K*
-/// (8x8) those by the passive joints; rows are head, tail, left, right. The pose
-/// is the neutral one unless given.
+/// K (8x4) holds the derivatives of the loop equations by the servo angles theta1,
+/// theta4, theta8, theta5, K* (8x8) those by the passive joints; rows and columns
+/// are named in text and JSON. The pose is the neutral one unless given.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard singularity
@@ -41,10 +44,68 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The unknown rates, in the order of the columns of K*.
+const PASSIVE: [&str; 8] = [
+    "theta2",
+    "theta3",
+    "theta6",
+    "theta7",
+    "phi_left",
+    "s_left",
+    "phi_right",
+    "s_right",
+];
+
+/// The loop equations, in the order of the rows of both matrices.
+const LOOPS: [&str; 8] = [
+    "head x", "head y", "tail x", "tail y", "left x", "left y", "right x", "right y",
+];
+
+/// A matrix with the names of its rows and columns.
+#[derive(Serialize)]
+struct Matrix {
+    rows: [&'static str; 8],
+    columns: &'static [&'static str],
+    values: Vec<Vec<f64>>,
+}
+
+impl Matrix {
+    fn new<const N: usize>(columns: &'static [&'static str; N], values: [[f64; N]; 8]) -> Self {
+        Self {
+            rows: LOOPS,
+            columns,
+            // Without negative zeros.
+            values: values
+                .map(|row| row.map(|value| value + 0.0).to_vec())
+                .into(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut text = format!("{:9}", "");
+        for column in self.columns {
+            text += &format!(" {column:>9}");
+        }
+        for (name, row) in self.rows.iter().zip(&self.values) {
+            text += &format!("\n  {name:7}");
+            for value in row {
+                // What is nothing but rounding is left out.
+                text += &match value.abs() < 5e-7 {
+                    true => format!(" {:>9}", "."),
+                    false => format!(" {:9.2}", tidy(*value, 2)),
+                };
+            }
+        }
+        text + "\n"
+    }
+}
+
 #[derive(Serialize)]
 struct Report {
-    k: [[f64; 4]; 8],
-    k_star: [[f64; 8]; 8],
+    /// Derivatives by the servo angles, mm per radian.
+    k: Matrix,
+    /// Derivatives by the passive joints: mm per radian, and by s mm per mm.
+    k_star: Matrix,
     determinant: f64,
     factored: f64,
     blocks: Factors,
@@ -145,8 +206,8 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     }
     nearest.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     Report {
-        k: solution.active_matrix(),
-        k_star,
+        k: Matrix::new(&ANGLES, solution.active_matrix()),
+        k_star: Matrix::new(&PASSIVE, k_star),
         determinant: matrix.determinant(),
         factored: blocks.determinant(),
         blocks: Factors {
@@ -202,29 +263,10 @@ pub fn nearest_of(
 }
 
 fn text(report: &Report) -> String {
-    let matrix = |rows: &[&[f64]]| -> String {
-        rows.iter()
-            .map(|row| {
-                let row: Vec<String> = row
-                    .iter()
-                    .map(|v| {
-                        if v.abs() < 5e-7 {
-                            "      .".to_string()
-                        } else {
-                            format!("{v:7.2}")
-                        }
-                    })
-                    .collect();
-                format!("  {}\n", row.join(" "))
-            })
-            .collect()
-    };
-    let k: Vec<&[f64]> = report.k.iter().map(|row| &row[..]).collect();
-    let k_star: Vec<&[f64]> = report.k_star.iter().map(|row| &row[..]).collect();
     let b = &report.blocks;
     let mut page = format!(
-        "K, by theta1, theta4, theta8, theta5 (mm per radian)\n{}\n\
-         K*, by theta2, theta3, theta6, theta7, phi and s left, phi and s right\n{}\n\
+        "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
+         K*: the same rows, columns are the passive joints (mm per radian; by s, mm per mm)\n{}\n\
          det K* by elimination        {:+.9e}\n\
          det K* as a product          {:+.9e}\n\
          \x20 head   l2 l3 sin(theta2 - theta3)  {:+10.2} mm^2\n\
@@ -232,24 +274,24 @@ fn text(report: &Report) -> String {
          \x20 left   -d                          {:+10.2} mm\n\
          \x20 right  -d                          {:+10.2} mm\n\
          legs, lg12 lg13 sin(theta_lg12 - theta_lg13), A1 to A4: {}\n\n",
-        matrix(&k),
-        matrix(&k_star),
+        report.k.text(),
+        report.k_star.text(),
         report.determinant,
         report.factored,
-        b.head,
-        b.tail,
-        b.left,
-        b.right,
+        tidy(b.head, 2),
+        tidy(b.tail, 2),
+        tidy(b.left, 2),
+        tidy(b.right, 2),
         report
             .leg_determinants
-            .map(|det| format!("{det:+.1}"))
+            .map(|det| format!("{:+.1}", tidy(det, 1)))
             .join(" "),
     );
     page += "nearest singularities, and how A1, A2, A3, A4 would have to turn to them\n";
     for near in &report.nearest {
         let turn = near
             .turn
-            .map(|angle| format!("{:+8.2}", angle + 0.0))
+            .map(|angle| format!("{:+8.2}", tidy(angle, 2)))
             .join(" ");
         page += &format!("  {:7.2} deg  {turn}   {}\n", near.distance, near.what);
     }
@@ -283,7 +325,7 @@ fn map(robot: &Robot, step: f64, json: bool, out: &mut impl Write) -> Result<(),
     }
     writeln!(
         out,
-        "least margin of the head in tenths (9 is .9 or more), . below the robot's limits; type-2, type-1, legs"
+        "least margin of the head in tenths (9 is .9 or more), . below the robot's limits or out of a servo's travel; type-2, type-1, legs"
     )?;
     for row in cells.iter().rev() {
         let theta4 = row[0].theta4;
@@ -329,7 +371,7 @@ fn cell(robot: &Robot, theta1: f64, theta4: f64) -> Cell {
         robot.limits.violations(&s).all(|v| {
             use lizard_kinematics::Check::{StrokeLeft, StrokeRight};
             matches!(v.what, StrokeLeft | StrokeRight)
-        })
+        }) && verdict::out_of_travel(robot, &pose).next().is_none()
     });
     Cell {
         theta1,

@@ -9,7 +9,7 @@ use lizard_kinematics::Pose;
 use lizard_robot::Robot;
 use rayon::prelude::*;
 
-use crate::paper::poses::Poses;
+use crate::paper::poses::{Poses, Timed};
 use crate::paper::record::{self, Record};
 use crate::{Failure, PoseArgs, RobotFile};
 
@@ -21,14 +21,18 @@ const AHEAD: usize = 32;
 
 /// Where every joint is, for one pose or a stream of them.
 ///
-/// Give one pose with the four flags, or many as CSV on standard input with the
-/// header theta1,theta4,theta5,theta8 (degrees, chassis frame, any order). A
-/// pose that is singular or cannot be reached gets its reason; a malformed line
-/// ends the run with its line and column and exit code 2.
+/// Give one pose with the four flags, or many as CSV on standard input: with the
+/// header theta1,theta4,theta8,theta5 (degrees, chassis frame, any order), or
+/// without a header in that order. A column named seconds is passed through, so
+/// that the output of `lizard gaits --trace` can be solved. A pose is safe if it
+/// keeps the robot's limits and each servo's travel. A pose that is singular or
+/// cannot be reached gets its reason; a malformed line ends the run with its line
+/// and column and exit code 2.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  lizard solve --theta1 138.59 --theta4 41.41 --theta5 221.41 --theta8 318.59
-  lizard solve --json < poses.csv > solutions.jsonl")]
+  lizard solve --theta1 138.59 --theta4 41.41 --theta8 318.59 --theta5 221.41
+  lizard solve --json < poses.csv > solutions.jsonl
+  lizard gaits --trace walk | lizard solve")]
 pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
@@ -45,7 +49,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     match args.pose.get() {
         Some(pose) => Ok(io::stdout().write_all(&one(&robot, &pose, args.json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
-            "give a pose with --theta1 --theta4 --theta5 --theta8, or poses as CSV on standard input"
+            "give a pose with --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
                 .to_string(),
         )),
         None => stream(&robot, args.json),
@@ -56,9 +60,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
     let solved = robot.lizard.solve(pose);
     if !json {
-        return Ok(record::page(pose, &solved, &robot.limits).into_bytes());
+        return Ok(record::page(robot, pose, &solved).into_bytes());
     }
-    let mut line = serde_json::to_vec(&Record::new(&solved, &robot.limits))?;
+    let mut line = serde_json::to_vec(&Record::new(robot, None, &solved))?;
     line.push(b'\n');
     Ok(line)
 }
@@ -70,7 +74,8 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
     thread::scope(|scope| {
-        let writer = scope.spawn(move || write(to_write, json));
+        let heading = (!json).then(|| record::heading(poses.timed()));
+        let writer = scope.spawn(move || write(to_write, heading));
         let read = solve_all(robot, json, &mut poses, &solved);
         drop(solved);
         // What could not be written matters more than what could not be read.
@@ -80,10 +85,10 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
 }
 
 /// Writes what comes, until no more can come.
-fn write(lines: mpsc::Receiver<Vec<u8>>, json: bool) -> Result<(), Failure> {
+fn write(lines: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    if !json {
-        writeln!(out, "{}", record::heading())?;
+    if let Some(heading) = heading {
+        writeln!(out, "{heading}")?;
     }
     for block in lines {
         out.write_all(&block)?;
@@ -130,14 +135,14 @@ fn solve_all(
     }
 }
 
-fn lines(robot: &Robot, poses: &[Pose], json: bool) -> Result<Vec<u8>, Failure> {
+fn lines(robot: &Robot, poses: &[Timed], json: bool) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::with_capacity(poses.len() * if json { 1024 } else { 192 });
-    for pose in poses {
-        let solved = robot.lizard.solve(pose);
+    for timed in poses {
+        let solved = robot.lizard.solve(&timed.pose);
         if json {
-            serde_json::to_writer(&mut text, &Record::new(&solved, &robot.limits))?;
+            serde_json::to_writer(&mut text, &Record::new(robot, timed.seconds, &solved))?;
         } else {
-            text.extend_from_slice(record::row(pose, &solved, &robot.limits).as_bytes());
+            text.extend_from_slice(record::row(robot, timed, &solved).as_bytes());
         }
         text.push(b'\n');
     }

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use lizard_kinematics::{Drive, Lizard, Motion, Pose, Solution, wrap};
 use serde::Serialize;
 
-use crate::pose_args::finite;
+use crate::paper::tidy::tidy;
+use crate::pose_args::{acceleration, rate};
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Step of the finite differences that the result is shown beside, s.
@@ -39,29 +40,29 @@ pub struct Args {
 #[command(next_help_heading = "Servos, all 0 unless given")]
 struct DriveArgs {
     /// Rate of theta1, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
     omega1: f64,
     /// Rate of theta4, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
     omega4: f64,
-    /// Rate of theta5, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
-    omega5: f64,
     /// Rate of theta8, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
     omega8: f64,
+    /// Rate of theta5, deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
+    omega5: f64,
     /// Acceleration of theta1, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
     alpha1: f64,
     /// Acceleration of theta4, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
     alpha4: f64,
-    /// Acceleration of theta5, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
-    alpha5: f64,
     /// Acceleration of theta8, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = finite)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
     alpha8: f64,
+    /// Acceleration of theta5, deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
+    alpha5: f64,
 }
 
 /// A row of the result.
@@ -119,16 +120,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
             (Some(rate), Some(acceleration)) => format!("off by {rate:+.0e}, {acceleration:+.0e}"),
             _ => "no neighbours".to_string(),
         };
-        // To a ten-thousandth, without a negative zero.
-        let tidy = |value: f64| (value * 1e4).round() / 1e4 + 0.0;
         writeln!(
             out,
             "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}",
             row.joint,
-            tidy(row.value),
+            tidy(row.value, 4),
             row.unit,
-            tidy(row.rate),
-            tidy(row.acceleration)
+            tidy(row.rate, 4),
+            tidy(row.acceleration, 4)
         )?;
     }
     Ok(())
@@ -205,9 +204,10 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
             Row {
                 joint,
                 unit,
-                value,
-                rate,
-                acceleration,
+                // Without negative zeros.
+                value: value + 0.0,
+                rate: rate + 0.0,
+                acceleration: acceleration + 0.0,
                 rate_deviation: differences.map(|(first, _)| first - rate),
                 acceleration_deviation: differences.map(|(_, second)| second - acceleration),
             }

@@ -2,36 +2,40 @@
 
 use crate::program::lizard;
 
-const HEADER: &str = "theta1,theta4,theta5,theta8\n";
+const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
 #[test]
 fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
     let cases: &[(&str, &str)] = &[
         (
-            "138,42,x,318\n",
-            "line 2, column 3 (theta5): \"x\" is not a number",
+            "138,42,x,221\n",
+            "line 2, column 3 (theta8): \"x\" is not a number",
         ),
-        ("138,42,221\n", "line 2, column 4 (theta8): no value"),
+        ("138,42,221\n", "line 2, column 4 (theta5): no value"),
         ("138,,221,318\n", "line 2, column 2 (theta4): no value"),
         (
-            "138,42,221,318,5\n",
+            "138,42,318,221,5\n",
             "line 2, column 5: \"5\" is one value too many",
         ),
         (
-            "nan,42,221,318\n",
+            "nan,42,318,221\n",
             "line 2, column 1 (theta1): \"nan\" is not a finite number",
         ),
         (
-            "138,inf,221,318\n",
+            "138,inf,318,221\n",
             "line 2, column 2 (theta4): \"inf\" is not a finite number",
         ),
         (
-            "138,42,221,1e999\n",
-            "line 2, column 4 (theta8): \"1e999\" is not a finite number",
+            "138,42,318,1e999\n",
+            "line 2, column 4 (theta5): \"1e999\" is not a finite number",
         ),
         (
-            "138,42,221,318\n\n138;42;221;318\n",
-            "line 4, column 1 (theta1): \"138;42;221;318\" is not a number",
+            "138,42,318,1e308\n",
+            "line 2, column 4 (theta5): \"1e308\" is not within -1000000 to 1000000 degrees",
+        ),
+        (
+            "138,42,318,221\n\n138;42;318;221\n",
+            "line 4, column 1 (theta1): \"138;42;318;221\" is not a number",
         ),
     ];
     for (rows, message) in cases {
@@ -48,7 +52,7 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
 fn rows_before_the_malformed_one_are_answered_whole() {
     let outcome = lizard(
         "solve --json",
-        format!("{HEADER}138,42,221,318\n138,42,221,318\n?,42,221,318\n"),
+        format!("{HEADER}138,42,318,221\n138,42,318,221\n?,42,318,221\n"),
     );
     assert_eq!((outcome.code, outcome.out.lines().count()), (2, 2));
     for line in outcome.out.lines() {
@@ -58,20 +62,21 @@ fn rows_before_the_malformed_one_are_answered_whole() {
 
 #[test]
 fn a_wrong_header_is_refused() {
-    let header = "; the header is theta1,theta4,theta5,theta8, in any order";
+    let header =
+        "; the header is theta1,theta4,theta8,theta5, in any order, and seconds if you like";
     let cases: &[(&[u8], String)] = &[
         (
             b"",
-            "line 1, column 1: the input is empty, expected the header theta1,theta4,theta5,theta8"
+            "line 1, column 1: the input is empty, expected the header theta1,theta4,theta8,theta5"
                 .into(),
         ),
         (
-            b"138,42,221,318\n",
-            format!("line 1, column 1: \"138\" is not a column{header}"),
+            b"A1,A2,A3,A4\n",
+            format!("line 1, column 1: \"A1\" is not a column{header}"),
         ),
         (
-            b"theta1,theta4,theta5\n",
-            format!("line 1, column 4: theta8 is missing{header}"),
+            b"theta1,theta4,theta5,seconds\n",
+            format!("line 1, column 5: theta8 is missing{header}"),
         ),
         (
             b"theta1,theta4,theta5,theta5\n",
@@ -106,11 +111,40 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
         ),
         (
             "solve --theta1 138 --theta4 42 --theta5 inf --theta8 318",
-            "it must be finite",
+            "it is not a finite number",
         ),
         ("inverse", "--head"),
         ("inverse --head 5", "2 values"),
-        ("inverse --head 5 nan", "it must be finite"),
+        ("inverse --head 5 nan", "it is not a finite number"),
+        (
+            "inverse --head 5 1e308",
+            "it is not within -1000000 to 1000000 mm",
+        ),
+        (
+            "solve --theta1 1e308 --theta4 42 --theta8 318 --theta5 221",
+            "it is not within -1000000 to 1000000 degrees",
+        ),
+        (
+            "velocity --omega8 1e200",
+            "it is not within -1000000 to 1000000 deg/s",
+        ),
+        (
+            "velocity --alpha5 -1e200",
+            "it is not within -1000000000 to 1000000000 deg/s^2",
+        ),
+        (
+            "design --l0 1e308",
+            "it is not within -1000000 to 1000000 mm",
+        ),
+        (
+            "design --r1 0.4 --r3 1e-300",
+            "r3 is 1.0e-300, too short to build: it must be at least 0.001",
+        ),
+        (
+            "gaits --robot /dev/zero",
+            "/dev/zero: is longer than 1 MiB, so it is no robot file",
+        ),
+        ("gaits --robot /", "cannot be read"),
         ("velocity --omega1 fast", "it is not a number"),
         ("singularity --map 0", "it must be 0.1 to 45 degrees"),
         ("design --r1 0.3", "give two or three of --r1, --r2, --r3"),
@@ -122,7 +156,8 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
             "design --r1 0.1 --r2 0.2 --r3 0.6",
             "r3 is 0.6, it must lie between 0 and 0.45",
         ),
-        ("design --l0 -5", "it must be above 0"),
+        ("design --l0 -5", "it must be at least 0.001 mm"),
+        ("design --l0 0", "it must be at least 0.001 mm"),
         ("design --chart --step 0", "it must be 0.002 to 0.2"),
         ("errata --samples 0", "0 is not in"),
         ("solve --robot no/such/robot.toml", "no/such/robot.toml"),
@@ -163,7 +198,7 @@ fn what_does_not_exist_ends_with_code_1() {
 #[test]
 fn a_pipe_that_closes_is_no_failure() {
     let mut input = HEADER.to_string();
-    input += &"138,42,221,318\n".repeat(50_000);
+    input += &"138,42,318,221\n".repeat(50_000);
     std::fs::write(std::env::temp_dir().join("lizard-poses.csv"), input).unwrap();
     let script = format!(
         "'{}' solve --json < {}/lizard-poses.csv | head -n 1; exit ${{PIPESTATUS[0]}}",

@@ -6,7 +6,7 @@ use lizard_host::paper::charts::charts;
 use lizard_host::paper::errata::{SAMPLES, markdown, measure};
 use lizard_robot::Robot;
 
-use crate::program::lizard;
+use crate::program::{lizard, paper};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -20,6 +20,19 @@ fn read(path: &str) -> String {
 fn the_errata_are_what_is_measured_and_every_correction_holds() {
     let entries = measure(SAMPLES);
     assert!(entries.iter().all(|entry| entry.is_settled()));
+    // One entry for each printed form: none is counted twice.
+    let listed = lizard("errata --samples 1 --json", "").json();
+    let mut forms: Vec<String> = listed
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|entry| entry["printed"].as_str().unwrap().to_string())
+        .filter(|form| form.contains('='))
+        .collect();
+    let count = forms.len();
+    forms.sort_unstable();
+    forms.dedup();
+    assert_eq!(forms.len(), count, "a condition is counted twice");
     assert!(
         read("docs/errata.md") == markdown(&entries, SAMPLES),
         "docs/errata.md is out of date: lizard errata --markdown > docs/errata.md"
@@ -27,14 +40,14 @@ fn the_errata_are_what_is_measured_and_every_correction_holds() {
 }
 
 #[test]
-fn every_command_in_the_walk_through_prints_what_the_page_shows() {
+fn every_command_in_the_walk_through_of_the_paper_prints_what_the_page_shows() {
     let page = read("docs/paper.md");
     let mut commands = 0;
     for block in page.split("```console\n").skip(1) {
         let block = block.split("```").next().expect("a closed block");
         let (command, shown) = block.split_once('\n').expect("a command and its answer");
         let args = command.strip_prefix("$ lizard ").expect("a lizard command");
-        let outcome = lizard(args, "");
+        let outcome = lizard(&paper(args), "");
         assert_eq!(outcome.code, 0, "{args}: {}", outcome.err);
         assert!(
             outcome.out.trim_end() == shown.trim_end(),
@@ -47,13 +60,13 @@ fn every_command_in_the_walk_through_prints_what_the_page_shows() {
 }
 
 #[test]
-fn the_charts_are_the_ones_that_the_program_draws() {
-    let robot = Robot::load(root().join("robot.toml")).expect("robot.toml");
+fn the_charts_of_the_paper_are_the_ones_that_the_program_draws() {
+    let robot = Robot::load(root().join("robots/paper.toml")).expect("robots/paper.toml");
     for (name, svg) in charts(&robot) {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
         assert!(
             read(&format!("docs/charts/{name}.svg")) == svg,
-            "docs/charts/{name}.svg is out of date: lizard charts docs/charts --svg-only"
+            "docs/charts/{name}.svg is out of date: lizard charts docs/charts --svg-only --robot robots/paper.toml"
         );
     }
 }

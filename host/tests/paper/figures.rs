@@ -1,9 +1,9 @@
 //! The paper's figures and those measured for this project, from the commands
-//! that print them.
+//! that print them, by the paper's robot.
 
 use serde_json::Value;
 
-use crate::program::lizard;
+use crate::program::{RobotFile, lizard, paper, paper_text};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -64,7 +64,7 @@ fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
 
 #[test]
 fn the_search_keeps_its_promises() {
-    let designs = lizard("design --search --json --step 0.05 --top 50", "").json();
+    let designs = lizard(&paper("design --search --json --step 0.05 --top 50"), "").json();
     let designs = designs.as_array().unwrap();
     assert!(!designs.is_empty());
     let mut last = f64::INFINITY;
@@ -81,7 +81,7 @@ fn the_search_keeps_its_promises() {
 
 #[test]
 fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
-    let all = lizard("mobility --json", "").json();
+    let all = lizard(&paper("mobility --json"), "").json();
     let freedoms: Vec<(i64, i64)> = all
         .as_array()
         .unwrap()
@@ -97,7 +97,7 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
     assert_eq!(all[0]["rank"], 32);
     // A flat leg gains a freedom, which counting cannot see.
     let flat = lizard(
-        "mobility --json --theta1 138 --theta4 0 --theta5 221 --theta8 318",
+        &paper("mobility --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
         "",
     )
     .json();
@@ -110,7 +110,7 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
 #[test]
 fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_one() {
     let report = lizard(
-        "singularity --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
+        &paper("singularity --json --theta1 120 --theta4 70 --theta5 230 --theta8 310"),
         "",
     )
     .json();
@@ -129,7 +129,7 @@ fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_o
             "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
             there[0], there[1], there[2], there[3]
         );
-        let solved = lizard("solve --json", pose).json();
+        let solved = lizard(&paper("solve --json"), pose).json();
         let margins: Vec<f64> = match solved["margins"].as_object() {
             Some(margins) => margins.values().map(number).collect(),
             None => vec![0.0],
@@ -141,7 +141,7 @@ fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_o
 
 #[test]
 fn rates_agree_with_differences_of_positions() {
-    let rows = lizard("velocity --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700", "").json();
+    let rows = lizard(&paper("velocity --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700"), "").json();
     for row in rows.as_array().unwrap() {
         assert!(number(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number(&row["rate"]).abs()));
         assert!(
@@ -161,8 +161,8 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
         ("-22 110", false),
         ("20 105.5", false),
     ] {
-        let report = lizard(&format!("inverse --json --head {point}"), "").json();
-        let ways = report["head"]["assemblies"].as_array().unwrap();
+        let report = lizard(&paper(&format!("inverse --json --head {point}")), "").json();
+        let ways = report["head"]["working_modes"].as_array().unwrap();
         assert_eq!(ways.len(), 4);
         for way in ways {
             assert!(number(&way["error_mm"]) < 1e-9, "{point}");
@@ -174,9 +174,8 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
 }
 
 #[test]
-fn the_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../robot.toml");
-    let robot = lizard_robot::Robot::load(root).expect("robot.toml");
+fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
+    let robot = lizard_robot::Robot::parse(&paper_text()).expect("robots/paper.toml");
     let (_, look) = robot.gait("look").expect("look");
     for i in 0..1000 {
         let solution = robot
@@ -189,11 +188,108 @@ fn the_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
 
 #[test]
 fn numpy_and_the_program_find_the_same_joints() {
-    let outcome = lizard("speed --json --poses 20000", "");
-    let report = outcome.json();
-    assert!(number(&report["poses_per_second"]) > 0.0);
-    // Without numpy on the machine there is nothing to compare with.
-    if let Some(numpy) = report["numpy"].as_object() {
-        assert!(number(&numpy["worst_difference"]) < 1e-9);
+    // Whatever robot.toml says, and a robot without symmetry.
+    let odd = RobotFile::with(
+        "odd",
+        &[
+            ("l5 = 20.0", "l5 = 26.0"),
+            ("l0 = 20.0", "l0 = 18.0"),
+            ("l14 = 30.0", "l14 = 28.0"),
+            ("l19 = 30.0", "l19 = 27.0"),
+            ("l16 = 30.0", "l16 = 31.0"),
+            ("l12 = 45.0", "l12 = 46.0"),
+            ("l17 = 45.0", "l17 = 44.0"),
+        ],
+    );
+    for args in [
+        "speed --json --poses 20000".to_string(),
+        odd.of("speed --json --poses 20000"),
+    ] {
+        let report = lizard(&args, "").json();
+        assert!(number(&report["poses_per_second"]) > 0.0);
+        // Without numpy on the machine there is nothing to compare with.
+        if let Some(numpy) = report["numpy"].as_object() {
+            assert!(number(&numpy["worst_difference"]) < 1e-9, "{args}");
+        }
+    }
+}
+
+#[test]
+fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
+    let at = |pose: &str| lizard(&paper(&format!("mobility --json {pose}")), "").json();
+    let home = at("");
+    for mechanism in home.as_array().unwrap() {
+        assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
+    }
+    // Crank tips that coincide but for the seventh digit.
+    let head = at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
+    assert_eq!(
+        (&head[0]["freedoms"], &head[0]["locked_freedoms"]),
+        (&Value::from(4), &Value::from(1))
+    );
+    assert_eq!(
+        head[0]["loose"][0],
+        "the head's end point is loose (type 2)"
+    );
+    let tail = at("--theta1 138.59 --theta4 41.41 --theta8 -109.471221 --theta5 -70.528779");
+    assert_eq!(
+        tail[0]["loose"][0],
+        "the tail's end point is loose (type 2)"
+    );
+    let text = lizard(
+        &paper("mobility --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41"),
+        "",
+    );
+    assert!(
+        !text.out.contains("four servos hold the body"),
+        "{}",
+        text.out
+    );
+    assert!(
+        text.out.contains("the head's end point is loose"),
+        "{}",
+        text.out
+    );
+    // A flat leg is loose even with its crank locked.
+    let flat = at("--theta1 138 --theta4 0 --theta8 318 --theta5 221");
+    assert_eq!(flat[2]["locked_freedoms"], 1);
+}
+
+#[test]
+fn a_wide_base_has_a_circle() {
+    let design = lizard("design --json --r1 0.2 --r2 0.3", "").json();
+    assert!((number(&design["r_mic"]) - 2.5).abs() < 1e-9);
+    assert_eq!(number(&design["y_mic"]), 0.0);
+    let points = lizard("design --chart --json --step 0.05", "").json();
+    for point in points.as_array().unwrap() {
+        assert!(number(&point["r_mic"]) > 0.0, "{point}");
+    }
+}
+
+#[test]
+fn matrices_name_their_rows_and_columns_in_servo_order() {
+    let report = lizard("singularity --json", "").json();
+    assert_eq!(
+        report["k"]["columns"],
+        serde_json::json!(["theta1", "theta4", "theta8", "theta5"])
+    );
+    for (matrix, columns) in [("k", 4), ("k_star", 8)] {
+        let matrix = &report[matrix];
+        assert_eq!(matrix["rows"].as_array().unwrap().len(), 8);
+        assert_eq!(matrix["columns"].as_array().unwrap().len(), columns);
+        for row in matrix["values"].as_array().unwrap() {
+            assert_eq!(row.as_array().unwrap().len(), columns);
+        }
+    }
+    // The head's rows know the front servos only, the tail's the back ones.
+    for (row, front) in [(0, true), (1, true), (2, false), (3, false)] {
+        for column in 0..4 {
+            let entry = number(&report["k"]["values"][row][column]);
+            assert_eq!(
+                entry != 0.0,
+                (column < 2) == front,
+                "{row} {column} {entry}"
+            );
+        }
     }
 }

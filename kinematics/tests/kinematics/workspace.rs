@@ -51,8 +51,18 @@ proptest! {
     }
 
     #[test]
-    fn the_inscribed_circle_touches_all_four_circles_and_none_is_larger(
-        bars in symmetrical(), x in -1.0..1.0f64, y in 0.0..1.0f64,
+    fn the_inscribed_circle_is_as_large_as_the_distance_to_what_cannot_be_reached_allows(
+        bars in symmetrical(),
+    ) {
+        let workspace = Workspace::of(&bars);
+        let found = workspace.inscribed_circle().map_or(0.0, |circle| circle.radius);
+        let (largest, cell) = largest_by_distance_field(&bars);
+        prop_assert!((found - largest).abs() <= 1.5 * cell, "{found} {largest} cell {cell}");
+    }
+
+    #[test]
+    fn the_inscribed_circle_stays_inside_and_none_is_larger(
+        bars in symmetrical(), x in -1.0..1.0f64, y in -1.0..1.0f64,
     ) {
         let workspace = Workspace::of(&bars);
         let clearance = |point: Vector| {
@@ -61,10 +71,14 @@ proptest! {
                 (distance - workspace.inner).min(workspace.outer - distance)
             }).fold(f64::INFINITY, f64::min)
         };
-        if let Some(circle) = workspace.inscribed_circle() {
-            prop_assert!((clearance(circle.centre) - circle.radius).abs() < 1e-9);
-            let other = Vector::new(x, y) * workspace.outer;
-            prop_assert!(clearance(other) <= circle.radius + 1e-9);
+        let other = clearance(Vector::new(x, y) * workspace.outer);
+        match workspace.inscribed_circle() {
+            Some(circle) => {
+                prop_assert!(circle.centre.y >= 0.0);
+                prop_assert!((clearance(circle.centre) - circle.radius).abs() < 1e-9);
+                prop_assert!(other <= circle.radius + 1e-9);
+            }
+            None => prop_assert!(other <= 0.0),
         }
     }
 
@@ -91,6 +105,58 @@ proptest! {
             }
         }
     }
+}
+
+/// The largest distance of a reachable cell of a grid from what cannot be
+/// reached, and the width of a cell. A shaft counts as out of reach even where
+/// an arm of equal bars can be folded onto it.
+fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
+    const CELLS: usize = 120;
+    let reach = bars.crank_left + bars.coupler_left;
+    let cell = 2.2 * reach / CELLS as f64;
+    let at = |k: usize| (k as f64 + 0.5) * cell - 1.1 * reach;
+    let point = |i: usize, j: usize| Vector::new(at(i), at(j));
+    let inside: Vec<Vec<bool>> = (0..CELLS)
+        .map(|i| {
+            (0..CELLS)
+                .map(|j| bars.inverse(point(i, j)).is_ok())
+                .collect()
+        })
+        .collect();
+    let mut rim = vec![bars.left_shaft(), bars.right_shaft()];
+    for i in 1..CELLS - 1 {
+        for j in 1..CELLS - 1 {
+            let beside = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
+            if !inside[i][j] && beside.into_iter().any(|(i, j)| inside[i][j]) {
+                rim.push(point(i, j));
+            }
+        }
+    }
+    let mut largest = 0.0_f64;
+    for (i, column) in inside.iter().enumerate() {
+        for j in (0..CELLS).filter(|&j| column[j]) {
+            let nearest = rim
+                .iter()
+                .map(|&outside| (point(i, j) - outside).square())
+                .fold(f64::INFINITY, f64::min);
+            largest = largest.max(nearest);
+        }
+    }
+    (largest.sqrt(), cell)
+}
+
+#[test]
+fn a_wide_base_leaves_a_circle_between_the_shafts() {
+    // r1 .2, r2 .3, r3 .4 at a base of 20 mm.
+    let bars = FiveBar {
+        base: 20.0,
+        crank_left: 5.0,
+        coupler_left: 7.5,
+        coupler_right: 7.5,
+        crank_right: 5.0,
+    };
+    let circle = Workspace::of(&bars).inscribed_circle().unwrap();
+    assert_eq!((circle.centre, circle.radius), (Vector::new(0.0, 0.0), 2.5));
 }
 
 #[test]

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use lizard_robot::Sensitivity;
 
-use crate::predictions::EXPECTED;
-use crate::{gait, robot};
+use crate::predictions::{EXPECTED, predict};
+use crate::robot;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gaits.md");
 const END: &str = "<!-- end -->";
@@ -14,7 +14,7 @@ fn predictions() -> String {
     let mut rows =
         "| gait | predicted here | chosen by | rigid bodies |\n|---|---|---|---|\n".to_string();
     for (name, forward, turn, far_forward, far_turn) in EXPECTED {
-        let here = robot().predict(gait(robot(), name));
+        let here = predict(robot(), name);
         let cell = |forward: f64, turn: f64, decimals: usize| match (
             forward.abs() > 0.01,
             turn.abs() > 0.01,

@@ -54,6 +54,49 @@ fn a_file_that_is_not_there_is_named() {
     );
 }
 
+/// A file of its own for a test, with these bytes.
+fn file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
+    let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
+    std::fs::write(&path, bytes).expect("a temporary file");
+    path
+}
+
+fn refused(path: &std::path::Path) -> String {
+    Robot::load(path)
+        .expect_err("it is no robot")
+        .to_string()
+        .replacen(&path.display().to_string(), "FILE", 1)
+}
+
+#[test]
+fn what_is_no_text_file_is_refused_without_reading_it_to_its_end() {
+    // Without a bound this would read until memory is full.
+    assert_eq!(
+        refused("/dev/zero".as_ref()),
+        "FILE: is longer than 1 MiB, so it is no robot file"
+    );
+    let folder = refused(&std::env::temp_dir());
+    assert!(folder.starts_with("FILE: cannot be read: "), "{folder}");
+    let latin = file("latin", b"# one\n# caf\xe9\n");
+    assert_eq!(
+        refused(&latin),
+        "FILE: is not UTF-8 text: line 2 holds other bytes"
+    );
+    let mut long = text().into_bytes();
+    long.resize(lizard_robot::LONGEST as usize, b'\n');
+    let long = file("long", &long);
+    assert!(Robot::load(&long).is_ok(), "1 MiB is allowed");
+    for path in [latin, long] {
+        std::fs::remove_file(path).expect("it was there");
+    }
+}
+
+#[test]
+fn a_byte_order_mark_changes_nothing() {
+    let marked = format!("\u{feff}{}", text());
+    assert_eq!(Robot::parse(&marked), Robot::parse(&text()));
+}
+
 #[test]
 fn an_empty_file_asks_for_its_first_table() {
     let error = Robot::parse("").expect_err("it is empty").to_string();

@@ -40,7 +40,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
         Group::new(),
         90.0,
         "Performance charts of the five-bar",
-        "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no circle, or no design; ring: the paper's design",
+        "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
     for (i, (name, value, most, digits)) in panels.into_iter().enumerate() {
         let plot = Plot {

@@ -11,7 +11,7 @@ use std::io::{self, BufWriter, Write};
 use lizard_robot::Robot;
 use serde::Serialize;
 
-use crate::pose_args::finite;
+use crate::pose_args::length;
 use crate::{Failure, RobotFile};
 
 pub use chart::{Point, bar, chart};
@@ -41,16 +41,16 @@ pub const COARSE: usize = 32;
 )]
 pub struct Args {
     /// Distance between the two servo shafts, mm [default: 20]
-    #[arg(long, value_name = "MM", value_parser = finite)]
+    #[arg(long, value_name = "MM", value_parser = base)]
     l0: Option<f64>,
     /// Crank; of r1, r2, r3 give two or three [default: 0.3]
-    #[arg(long, value_parser = finite)]
+    #[arg(long, value_parser = share)]
     r1: Option<f64>,
     /// Coupler [default: 0.5]
-    #[arg(long, value_parser = finite)]
+    #[arg(long, value_parser = share)]
     r2: Option<f64>,
     /// Half the base [default: 0.1]
-    #[arg(long, value_parser = finite)]
+    #[arg(long, value_parser = share)]
     r3: Option<f64>,
     /// Print the performance charts over the whole triangle, as CSV
     #[arg(long, conflicts_with = "search")]
@@ -65,7 +65,7 @@ pub struct Args {
     #[arg(long, default_value_t = 20.0, value_parser = sweep)]
     sweep: f64,
     /// Shortest link that --search admits, mm; two M3 joints need about this
-    #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = finite)]
+    #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = length)]
     shortest: f64,
     /// How many designs --search prints
     #[arg(long, default_value_t = 12)]
@@ -84,6 +84,21 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
+fn base(text: &str) -> Result<f64, String> {
+    match length(text) {
+        Ok(l0) if l0 < 0.001 => Err("it must be at least 0.001 mm".to_string()),
+        other => other,
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if share.is_finite() => Ok(share),
+        Ok(_) => Err("it is not a finite number".to_string()),
+        Err(_) => Err("it is not a number".to_string()),
+    }
+}
+
 fn sweep(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(sweep) if (1.0..=60.0).contains(&sweep) => Ok(sweep),
@@ -95,9 +110,6 @@ fn sweep(text: &str) -> Result<f64, String> {
 pub fn run(args: Args) -> Result<(), Failure> {
     let proportions = args.proportions().map_err(Failure::Input)?;
     let l0 = args.l0.unwrap_or(20.0);
-    if l0 <= 0.0 {
-        return Err(Failure::Input(format!("l0 is {l0} mm, it must be above 0")));
-    }
     let robot = args.robot.load()?;
     let mut out = BufWriter::new(io::stdout().lock());
     if args.chart {
@@ -174,7 +186,10 @@ workspace      {:.1} mm^2, upper half {:.1} mm^2; rings of {:.2} to {:.2} mm abo
             self.l1 + self.l2,
         );
         match &p.lci {
-            None => page += "MIC            none: half the base is longer than crank and coupler\n",
+            None => {
+                page +=
+                    "MIC            none: half the base is longer than crank and coupler together\n"
+            }
             Some(lci) => {
                 page += &format!(
                     "MIC            radius {:.3} mm ({:.3} D), centre (0, {:.3}) mm

@@ -12,7 +12,7 @@ pub const CLAIM: f64 = 0.7;
 pub struct Performance {
     /// Area of the theoretical workspace, both halves.
     pub area: f64,
-    /// Radius of the maximal inscribed circle of the upper half; 0 if none.
+    /// Radius of the maximal inscribed circle; 0 if none.
     pub r_mic: f64,
     /// Height of its centre over the base.
     pub y_mic: f64,

@@ -7,6 +7,9 @@ use serde::Serialize;
 /// r1 + r2 + r3.
 pub const SUM: f64 = 0.9;
 
+/// The shortest link that a design may have; shorter ones make D overflow.
+const SHORTEST: f64 = 0.001;
+
 /// A point of the design space.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Proportions {
@@ -33,6 +36,11 @@ impl Proportions {
             if !(value > 0.0 && value < most) {
                 return Err(format!(
                     "{name} is {value}, it must lie between 0 and {most}"
+                ));
+            }
+            if value < SHORTEST {
+                return Err(format!(
+                    "{name} is {value:.1e}, too short to build: it must be at least {SHORTEST}"
                 ));
             }
         }

@@ -21,6 +21,17 @@ pub struct Equation {
     pub clockwise: Option<Miss>,
     /// What holds instead, and how far it misses.
     pub corrected: Option<(&'static str, Miss)>,
+    /// A closer look at one place, in the same unit; no verdict of its own.
+    pub aside: Option<Aside>,
+}
+
+/// The printed form at a special place.
+#[derive(Clone, Copy)]
+pub struct Aside {
+    /// Which place.
+    pub place: &'static str,
+    /// How far the printed form misses there.
+    pub miss: Miss,
 }
 
 /// A form's record over all samples.

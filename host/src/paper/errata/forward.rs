@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use lizard_kinematics::{End, Links, Vector};
 
-use super::equation::Equation;
+use super::equation::{Aside, Equation};
 use super::sample::{Sample, apart, cis};
 
 /// In the paper's order.
@@ -20,6 +20,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
         unit: "mm",
+        aside: None,
         clockwise: Some(|s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
             Some(loop_gap(
@@ -42,14 +43,10 @@ pub const EQUATIONS: &[Equation] = &[
             Some(apart(2.0 * root(a, b, c, -1.0)?.atan(), s.angles().t[3]))
         },
         unit: "deg",
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 head, θ3 where A passes 0",
-        printed: "the same formula, θ4 within 1e-9° of A = 0",
-        miss: |s| near_vanishing_a(s),
-        unit: "deg",
+        aside: Some(Aside {
+            place: "θ4 within 1e-9° of A = 0",
+            miss: near_vanishing_a,
+        }),
         clockwise: None,
         corrected: Some((
             "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
@@ -85,6 +82,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(apart(2.0 * real.atan(), s.angles().t[2]))
         },
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
@@ -107,6 +105,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -122,6 +121,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(sum.length())
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -137,6 +137,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(sum.length())
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -145,6 +146,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ10 + θ11 = 0",
         miss: |s| Some(apart(s.angles().t[10] + s.angles().t[11], 0.0)),
         unit: "deg",
+        aside: None,
         clockwise: Some(|s| Some(apart(s.angles().t[10] + (PI - s.angles().t[11]), 0.0))),
         corrected: Some(("θ11 = θ10 + 180°", |s| {
             Some(apart(s.angles().t[11], s.angles().t[10] + PI))
@@ -155,6 +157,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ14 + θ15 = 0",
         miss: |s| Some(apart(s.angles().t[14] + s.angles().t[15], 0.0)),
         unit: "deg",
+        aside: None,
         clockwise: Some(|s| Some(apart(s.angles().t[14] + (PI - s.angles().t[15]), 0.0))),
         corrected: Some(("θ15 = θ14 + 180°", |s| {
             Some(apart(s.angles().t[15], s.angles().t[14] + PI))
@@ -165,6 +168,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ1 - θ12 + C1 = 0",
         miss: |s| Some(apart(s.angles().t[1] + FRAC_PI_2, s.angles().t[12])),
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -173,6 +177,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ4 - θ16 + C2 = 0",
         miss: |s| Some(apart(s.angles().t[4] + FRAC_PI_2, s.angles().t[16])),
         unit: "deg",
+        aside: None,
         clockwise: Some(|s| {
             Some(apart(
                 PI - s.angles().t[4] + FRAC_PI_2,
@@ -188,6 +193,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ9 - θ5 + C3 = 0",
         miss: |s| Some(apart(s.angles().t[9] + FRAC_PI_2, s.angles().t[5])),
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -196,6 +202,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ13 - θ8 + C4 = 0",
         miss: |s| Some(apart(s.angles().t[13] + FRAC_PI_2, s.angles().t[8])),
         unit: "deg",
+        aside: None,
         clockwise: Some(|s| {
             Some(apart(
                 PI - s.angles().t[13] + FRAC_PI_2,

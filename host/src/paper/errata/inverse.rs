@@ -17,6 +17,7 @@ pub const EQUATIONS: &[Equation] = &[
             arm(s.s.head.end_point, -l.l0 / 2.0, l.l1, s.angles().t[1], l.l2)
         },
         unit: "mm in length",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -28,6 +29,7 @@ pub const EQUATIONS: &[Equation] = &[
             arm(s.s.head.end_point, l.l0 / 2.0, l.l1, s.angles().t[2], l.l2)
         },
         unit: "mm in length",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
@@ -45,6 +47,7 @@ pub const EQUATIONS: &[Equation] = &[
             arm(tail(s), -l.l5 / 2.0, l.l9, s.angles().t[8], l.l8)
         },
         unit: "mm in length",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "the same in a frame turned by 180°: x21, y21 negated, θ8 - 180°",
@@ -62,6 +65,7 @@ pub const EQUATIONS: &[Equation] = &[
             arm(tail(s), l.l5 / 2.0, l.l9, s.angles().t[7], l.l8)
         },
         unit: "mm in length",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "in the turned frame (x21 - l6 cos θ5 - l5/2)² + (y21 - l6 sin θ5)² = l7²",
@@ -79,6 +83,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((middle(s, 0) - (cis(l.l13, t[11]) + cis(l.l14, t[12])) * 0.5).length())
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
@@ -96,6 +101,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((middle(s, 1) - (cis(l.l19, t[16]) + cis(l.l18, t[15])) * 0.5).length())
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",

@@ -19,6 +19,7 @@ pub const EQUATIONS: &[Equation] = &[
             })
         },
         unit: "mm; LG20, LG30, LG40 are meant",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -27,6 +28,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
         miss: |s| follower(s, FRONT, 1.0, None),
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: Some(("the root with - for 0 < θ_lg < 180°", |s| {
             follower(s, FRONT, -1.0, None)
@@ -37,6 +39,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "the same, with the + root",
         miss: |s| follower(s, BACK, 1.0, None),
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -50,6 +53,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(front?.max(back?))
         },
         unit: "deg in θ_lg13, root already corrected",
+        aside: None,
         clockwise: None,
         corrected: Some(("H = -2 sin θ_lgi", |s| {
             Some(follower(s, &[4], -1.0, None)?.max(follower(s, BACK, 1.0, None)?))
@@ -60,6 +64,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
         miss: |s| coupler(s, FRONT, -1.0, -1.0),
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: Some(("J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ", |s| {
             coupler(s, FRONT, 1.0, -1.0)
@@ -70,6 +75,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "the same",
         miss: |s| coupler(s, BACK, -1.0, -1.0),
         unit: "deg",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "J and L as above, and the + root for 180° < θ_lg < 360°",

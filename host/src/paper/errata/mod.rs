@@ -54,6 +54,8 @@ pub struct Entry {
     /// Share of the samples at which the printed form has no real value.
     unreal: f64,
     unit: &'static str,
+    /// The worst miss at a place that deserves a closer look, and that place.
+    aside: Option<(f64, &'static str)>,
     /// With right-hand angles clockwise from -x; null where that reading does
     /// not arise.
     holds_clockwise: Option<bool>,
@@ -103,6 +105,9 @@ pub fn measure(samples: u32) -> Vec<Entry> {
                 worst: printed.worst,
                 unreal: printed.unreal,
                 unit: equation.unit,
+                aside: equation
+                    .aside
+                    .map(|aside| (Record::of(aside.miss, &samples).worst, aside.place)),
                 holds_clockwise: equation
                     .clockwise
                     .map(|miss| Record::of(miss, &samples).holds()),
@@ -127,6 +132,15 @@ impl Entry {
 
     /// The worst miss in words; rounding is not told apart from rounding.
     fn miss(&self) -> String {
+        let mut words = self.plain_miss();
+        if let Some((worst, place)) = self.aside {
+            let unit = self.unit;
+            let _ = write!(words, "; {} {unit} at {place}", figures(worst));
+        }
+        words
+    }
+
+    fn plain_miss(&self) -> String {
         if self.holds {
             return "rounding".to_string();
         }
@@ -169,7 +183,7 @@ fn text(entries: &[Entry], samples: u32) -> String {
             "\n{mark}  {}\n       printed    {}\n",
             entry.place, entry.printed
         );
-        if !entry.holds {
+        if !entry.holds || entry.aside.is_some() {
             let _ = writeln!(page, "       worst      {}", entry.miss());
         }
         match entry.holds_clockwise {

@@ -2,9 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use lizard_kinematics::End;
-
-use super::equation::Equation;
+use super::equation::{Aside, Equation};
 use super::sample::Sample;
 
 /// In the paper's order.
@@ -14,6 +12,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "K is 8x8, its determinant must not vanish",
         miss: |s| Some(8.0 - s.s.active_matrix()[0].len() as f64),
         unit: "columns more than servos",
+        aside: None,
         clockwise: None,
         corrected: Some(("K is 8x4: four active rates, no determinant", |s| {
             Some(4.0 - s.s.active_matrix()[0].len() as f64)
@@ -24,6 +23,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "[-l1 sin θ1, -l4 sin θ4; l1 cos θ1, -l4 cos θ4]",
         miss: |s| Some(against(&k(s, 0, 0, 1), &k_head(s, s.angles().t[4]))),
         unit: "mm/rad",
+        aside: None,
         // d/dθ4 changes sign with the sense of θ4.
         clockwise: Some(|s| {
             let mut truth = k(s, 0, 0, 1);
@@ -47,6 +47,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "[-l6 sin θ5, -l9 sin θ8; l6 cos θ5, -l9 cos θ8]",
         miss: |s| Some(against(&k(s, 2, 3, 2), &k_tail(s, s.angles().t[8]))),
         unit: "mm/rad",
+        aside: None,
         clockwise: Some(|s| {
             let mut truth = k(s, 2, 3, 2);
             truth[1] = -truth[1];
@@ -73,6 +74,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(against(&k(s, 4, 3, 0).map(|v| -v), &block))
         },
         unit: "mm/rad",
+        aside: None,
         clockwise: None,
         corrected: Some(("+l14 sin(C1 + θ1)", |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
@@ -89,6 +91,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(against(&k(s, 6, 2, 1).map(|v| -v), &block))
         },
         unit: "mm/rad",
+        aside: None,
         clockwise: None,
         corrected: Some(("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
@@ -106,6 +109,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
         unit: "mm/rad",
+        aside: None,
         clockwise: Some(|s| {
             let mut truth = passive(s, 0);
             truth[1] = -truth[1];
@@ -132,6 +136,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
         unit: "mm/rad",
+        aside: None,
         clockwise: Some(|s| {
             let mut truth = passive(s, 2);
             truth[1] = -truth[1];
@@ -159,6 +164,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((product - printed).abs())
         },
         unit: "per product of lengths; it follows from the printed matrix",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -170,6 +176,13 @@ pub const EQUATIONS: &[Equation] = &[
             Some(((t[2] + t[3]).sin().abs() - s.s.margins.type2[0]).abs())
         },
         unit: "in the sine",
+        aside: Some(Aside {
+            place: "the neutral pose, which it flags",
+            miss: |s| {
+                let (home, sum) = neutral(s)?;
+                Some((sum.sin().abs() - home).abs())
+            },
+        }),
         clockwise: Some(|s| {
             let t = s.angles().t;
             Some(((t[2] + PI - t[3]).sin().abs() - s.s.margins.type2[0]).abs())
@@ -180,23 +193,6 @@ pub const EQUATIONS: &[Equation] = &[
         })),
     },
     Equation {
-        place: "5.1 singular head, at the neutral pose",
-        printed: "sin(θ2 + θ3) = 0",
-        miss: |s| {
-            let (home, sum) = neutral(s)?;
-            Some((sum.sin().abs() - home).abs())
-        },
-        unit: "in the sine: it flags home",
-        clockwise: None,
-        corrected: Some(("sin(θ3 - θ2) = 0", |s| {
-            let head = s.lizard.end(End::Head);
-            let theta1 = home_angle(s);
-            let pose = head.forward(theta1, 180.0 - theta1).ok()?;
-            let difference = pose.theta_right_coupler() - pose.theta_left_coupler();
-            Some((difference.to_radians().sin() - pose.type2).abs())
-        })),
-    },
-    Equation {
         place: "5.1 singular tail",
         printed: "sin(θ6 + θ7) = 0",
         miss: |s| {
@@ -204,6 +200,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(((t[6] + t[7]).sin().abs() - s.s.margins.type2[1]).abs())
         },
         unit: "in the sine",
+        aside: None,
         clockwise: Some(|s| {
             let t = s.angles().t;
             Some(((t[6] + PI - t[7]).sin().abs() - s.s.margins.type2[1]).abs())
@@ -218,6 +215,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "sin 2θ11 = 0",
         miss: |s| Some(1.0 - (2.0 * s.angles().t[11]).sin().abs()),
         unit: "in the sine, of a block that is never singular",
+        aside: None,
         clockwise: None,
         corrected: Some(("never: the block's determinant is -d", |s| {
             let [a, b, c, d] = passive(s, 4);
@@ -229,6 +227,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "sin 2θ14 = 0",
         miss: |s| Some(1.0 - (2.0 * s.angles().t[14]).sin().abs()),
         unit: "in the sine, of a block that is never singular",
+        aside: None,
         clockwise: None,
         corrected: Some(("never: the block's determinant is -d", |s| {
             let [a, b, c, d] = passive(s, 6);
@@ -240,6 +239,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "K is 2x2 and holds θ_lg12, which is passive",
         miss: |s| Some(2.0 - mobility_of_leg(s)),
         unit: "columns more than drives",
+        aside: None,
         clockwise: None,
         corrected: Some(("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |s| {
             Some(1.0 - mobility_of_leg(s))
@@ -253,6 +253,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(((theta + 0.0 - theta).sin().abs() - theta.sin().abs()).abs())
         },
         unit: "in the sine",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",

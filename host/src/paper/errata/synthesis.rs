@@ -16,6 +16,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
         miss: |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs()),
         unit: "freedoms against the rank of the constraints",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -24,6 +25,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "M = 1",
         miss: |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs()),
         unit: "freedoms against the rank of the constraints",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -41,6 +43,7 @@ pub const EQUATIONS: &[Equation] = &[
             )
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -52,6 +55,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((r3 - (SUM - r3)).max(0.0))
         },
         unit: "D",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -60,6 +64,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
         miss: |s| circles(s, |y| y),
         unit: "mm in radius",
+        aside: None,
         clockwise: None,
         corrected: Some(("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
             circles(s, |y| y * y)
@@ -89,6 +94,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((clearance(0.0, y) - r).abs().max(other - r))
         },
         unit: "mm",
+        aside: None,
         clockwise: None,
         corrected: None,
     },
@@ -97,6 +103,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "LCI > 0.7 inside the inscribed circle",
         miss: |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0)),
         unit: "of LCI short",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "LCI > 0.7 inside the concentric circle of half the radius; over the whole circle as a mean only",
@@ -108,6 +115,7 @@ pub const EQUATIONS: &[Equation] = &[
         printed: "l12, l13, l16, l18 = 45 (l16 = 30 before)",
         miss: |_| Some(missing(|i, _| i)),
         unit: "links without a length",
+        aside: None,
         clockwise: None,
         corrected: Some(("l12, l13, l17, l18 = 45", |_| {
             Some(missing(
@@ -123,6 +131,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((least - flat.to_radians().sin().abs()).max(0.0))
         },
         unit: "of the margin 0.3 short",
+        aside: None,
         clockwise: None,
         corrected: Some((
             "change points at theta_lg = 0 and 180; the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",

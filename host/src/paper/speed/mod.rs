@@ -17,15 +17,18 @@ const SCRIPT: &str = include_str!("numpy_solve.py");
 /// What each pose yields, in this order in the script too.
 const RESULTS: usize = 22;
 
+/// Largest difference that is rounding, deg, mm or margin.
+const ROUNDING: f64 = 1e-9;
+
 /// Passes over all poses; the fastest counts.
 const PASSES: usize = 5;
 
 /// Measure poses solved per second on one core, beside numpy and the floor.
 ///
 /// The same poses are solved here and by the same closed form in numpy (python3
-/// with numpy, if there is one), and the results are compared. The floor is the
-/// time of the four sine-cosine pairs and six arc tangents of each pose, computed
-/// in the same way.
+/// with numpy, if there is one), and the results are compared; a difference above
+/// 1e-9 ends with exit code 1. The floor is the time of the four sine-cosine pairs
+/// and six arc tangents of each pose, computed in the same way.
 #[derive(clap::Args)]
 pub struct Args {
     /// Number of poses
@@ -68,7 +71,7 @@ struct Numpy {
 /// Measures and prints.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let poses = poses(args.poses as usize);
+    let poses = poses(args.poses as usize, robot.neutral().into());
     let mut results = vec![[0.0; RESULTS]; poses.len()];
     let vectors = Arch::new();
     let seconds = fastest(|| {
@@ -100,7 +103,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if args.json {
         serde_json::to_writer_pretty(&mut out, &report)?;
         writeln!(out)?;
-        return Ok(());
+        return agree(&report);
     }
     writeln!(
         out,
@@ -137,21 +140,38 @@ pub fn run(args: Args) -> Result<(), Failure> {
         "  floor         {:8.0} % of the time is sines, cosines and arc tangents",
         100.0 * report.floor_share
     )?;
-    Ok(())
+    agree(&report)
 }
 
-/// Poses all over the safe box, in servo order, by additive recurrence.
-fn poses(count: usize) -> Vec<[f64; 4]> {
+/// Fails where numpy found something else.
+fn agree(report: &Report) -> Result<(), Failure> {
+    match &report.numpy {
+        // Not a number is no agreement.
+        Some(numpy) if !(numpy.worst_difference <= ROUNDING) => Err(Failure::Impossible(format!(
+            "the results of numpy differ by {:.1e}, more than {ROUNDING:.0e}",
+            numpy.worst_difference
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Sweep from neutral to either side that the poses cover, deg: the paper's safe
+/// box.
+const SWEEP: f64 = 34.0;
+
+/// Poses all around neutral, in servo order, by additive recurrence.
+fn poses(count: usize, neutral: [f64; 4]) -> Vec<[f64; 4]> {
     let steps = [
         0.856_674_883_854_502_9,
         0.733_891_856_627_125_9,
         0.628_706_720_880_788_5,
         0.538_597_257_223_611_4,
     ];
-    let starts = [94.0, 18.0, 274.0, 198.0];
     (1..=count)
         .map(|i| {
-            std::array::from_fn(|servo| starts[servo] + 68.0 * (i as f64 * steps[servo]).fract())
+            std::array::from_fn(|servo| {
+                neutral[servo] + SWEEP * (2.0 * (i as f64 * steps[servo]).fract() - 1.0)
+            })
         })
         .collect()
 }
@@ -331,6 +351,8 @@ fn numpy(
         .as_flattened()
         .iter()
         .zip(theirs)
+        // A pose without a solution here has nothing to compare.
+        .filter(|(a, _)| !a.is_nan())
         .map(|(a, b)| (a - f64::from_ne_bytes(*b)).abs())
         // NaN must not pass for agreement.
         .fold(0.0, |worst: f64, difference| {

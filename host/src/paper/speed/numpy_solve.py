@@ -35,9 +35,9 @@ def five_bar(base, l1, l2, l3, l4, c1, s1, c4, s4):
     return fx / l2, fy / l2, rx / l3, ry / l3, ax + fx, ay + fy, area / (l2 * l3)
 
 
-def slider(base, front, rear, nominal, fc, fs, rc, rs):
-    """Direction in degrees and travel."""
-    x, y = front * fc - rear * rc, base + front * fs - rear * rs
+def slider(offset, base, front, rear, nominal, fc, fs, rc, rs):
+    """Direction in degrees and travel; the front shaft is at (offset, base)."""
+    x, y = offset + front * fc - rear * rc, base + front * fs - rear * rs
     return np.arctan2(y, x) * DEG, np.sqrt(x * x + y * y) - nominal
 
 
@@ -47,8 +47,9 @@ def solve(poses):
     s8, c8, s5, c5 = np.sin(t8), np.cos(t8), np.sin(t5), np.cos(t5)
     hx, hy, kx, ky, px, py, head = five_bar(L[0], L[1], L[2], L[3], L[4], c1, s1, c4, s4)
     tx, ty, ux, uy, qx, qy, tail = five_bar(L[5], L[6], L[7], L[8], L[9], c5, -s5, c8, -s8)
-    phi_left, s_left = slider(L[10], L[14], L[11], L[12] + L[13], -s1, c1, s5, -c5)
-    phi_right, s_right = slider(L[15], L[19], L[16], L[17] + L[18], s4, -c4, -s8, c8)
+    aside = (L[5] - L[0]) / 2
+    phi_left, s_left = slider(aside, L[10], L[14], L[11], L[12] + L[13], -s1, c1, s5, -c5)
+    phi_right, s_right = slider(-aside, L[15], L[19], L[16], L[17] + L[18], s4, -c4, -s8, c8)
     return np.stack(
         [
             np.arctan2(hy, hx) * DEG,

@@ -1,0 +1,40 @@
+//! Whether this robot may take a pose, and every reason why not: its limits,
+//! and its servos' travel.
+
+use lizard_kinematics::{Pose, Solution, wrap};
+use lizard_robot::{Robot, servo};
+
+/// Angles that miss the end of a travel by less, deg, miss it by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Every reason why the robot may not take a solved pose, each as a sentence;
+/// none if the pose is safe.
+pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
+    let limits = robot.limits.violations(solution);
+    limits
+        .map(|violation| violation.to_string())
+        .chain(out_of_travel(robot, &solution.pose))
+        .collect()
+}
+
+/// A sentence for each servo that cannot reach its angle of a pose.
+pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String> {
+    let angles = <[f64; 4]>::from(*pose);
+    (0..4).filter_map(move |i| beyond(robot, i, angles[i]))
+}
+
+/// A sentence if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
+pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
+    let neutral = robot.servos[servo].neutral;
+    let sweep = wrap(angle - neutral);
+    let (least, most) = robot.servos[servo].travel();
+    (sweep < least - ROUNDING || sweep > most + ROUNDING).then(|| {
+        format!(
+            "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg, its travel is {:.1} to {:.1} deg",
+            servo::NAMES[servo],
+            neutral + sweep,
+            neutral + least,
+            neutral + most,
+        )
+    })
+}
