@@ -63,11 +63,11 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
 fn what_a_flood_loses_is_counted() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        let (before, lines) = (bench.uno.heard().len(), bench.lines().len());
+        let (before, lines) = (bench.uno.received_by_uno().len(), bench.lines().len());
         bench.uno.flood(b"a\n");
         bench.run_ms(5000);
         end_flood(&mut bench);
-        let heard = (bench.uno.heard().len() - before) as f64;
+        let heard = (bench.uno.received_by_uno().len() - before) as f64;
         let answers = (bench.lines().len() - lines) as f64;
         let lost = Status::of(&mut bench).number("rx_lost");
         println!("{fidelity:?}: {heard} heard, {lost} lost, {answers} answers");

@@ -94,7 +94,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         bench.uno.run_until_cycle(END);
         let count = (bench.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
-        let commands = twin::play(&bench.uno.heard(), first, sent.len());
+        let commands = twin::play(&bench.uno.received_by_uno(), first, sent.len());
         let mut poses = std::collections::HashSet::new();
         for (n, (frame, asked)) in sent.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));

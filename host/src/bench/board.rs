@@ -115,7 +115,11 @@ impl Board {
     /// bytes have been commands.
     pub fn exactness(&self, heard: usize) -> Result<Exactness, Failure> {
         let sent = self.frames()?;
-        let commands = twin::play(&self.uno.heard()[..heard], sent[0].start, sent.len());
+        let commands = twin::play(
+            &self.uno.received_by_uno()[..heard],
+            sent[0].start,
+            sent.len(),
+        );
         let mut exactness = Exactness {
             error: [i64::MAX, i64::MIN],
             period: 0,

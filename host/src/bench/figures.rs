@@ -79,7 +79,7 @@ impl Figures {
         let awake = || Board::awake(elf, robot);
         progress("pulses on an idle line");
         let idle = Walk::of(awake()?, 20_000)?;
-        let heard = idle.board.uno.heard().len();
+        let heard = idle.board.uno.received_by_uno().len();
         let idle_exact = idle.board.exactness(heard)?;
         progress("pulses on a saturated line");
         let (mut flooded, heard) = flood(awake()?)?;
@@ -180,7 +180,7 @@ fn flood(mut board: Board) -> Result<(Board, usize), Failure> {
 fn saturate(board: &mut Board) -> Result<usize, Failure> {
     board.say("watch 1")?;
     board.say("left")?;
-    let heard = board.uno.heard().len();
+    let heard = board.uno.received_by_uno().len();
     board.uno.flood(b"status\n");
     Ok(heard)
 }

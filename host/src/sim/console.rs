@@ -30,7 +30,7 @@ pub struct Console {
 impl Console {
     /// Takes over what the robot has sent since the last call.
     pub fn collect(&mut self, uno: &mut Uno) {
-        for byte in uno.take_received() {
+        for byte in uno.take_transmitted() {
             self.bytes.push(byte);
             match byte.byte {
                 b'\n' => self.lines.push(Line {

@@ -104,7 +104,7 @@ pub fn play(
     Recording {
         dialogue,
         frames,
-        heard: uno.heard(),
+        heard: uno.received_by_uno(),
         most_pins_high: most_pins_high(&edges),
         cycles: uno.cycle(),
         state: uno.state().clone(),
