@@ -307,4 +307,9 @@ fn only_an_avr_elf_is_loaded() {
     assert!(simulated_uno::Image::read(own).is_err());
     let error = simulated_uno::Image::read("no/such.elf").expect_err("it does not exist");
     assert!(error.to_string().starts_with("cannot read no/such.elf"));
+    let endless = simulated_uno::Image::read("/dev/zero").expect_err("it never ends");
+    assert_eq!(
+        endless.to_string(),
+        "not an ELF file of an AVR: it is longer than 4 MiB"
+    );
 }
