@@ -1,7 +1,8 @@
 # Every target sets up what it needs (scripts/setup) and is quick the second time.
 MAKEFLAGS += --no-print-directory
 ELF := target/avr-atmega328p/release/lizard.elf
-HOST = host/target/$(shell rustc --print host-tuple)
+# Cargo puts what it builds for the host under the host's name.
+HOST := host/target/$$(rustc --print host-tuple)
 LIZARD := host/target/release/lizard
 -include target/toolchain.mk
 
@@ -62,8 +63,7 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@RUSTC_BOOTSTRAP=1 cargo run --release
 
-# cargo puts what it builds for the host under the host's name; this is where
-# the documentation says the program is.
+# The second line puts the program where the documentation says it is.
 .cli:
 	@cd host && cargo build --release
 	@mkdir -p $(dir $(LIZARD))
