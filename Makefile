@@ -1,8 +1,21 @@
 # Every target sets up what it needs (scripts/setup) and is quick the second time.
 MAKEFLAGS += --no-print-directory
 ELF := target/avr-atmega328p/release/lizard.elf
+# Cargo puts what it builds for the host under the host's name.
+HOST := host/target/$$(rustc --print host-tuple)
 LIZARD := host/target/release/lizard
 -include target/toolchain.mk
+
+# Another robot than robot.toml: make firmware ROBOT=robots/x.toml. LIZARD_ROBOT
+# tells the firmware's build script and the tests.
+ROBOT ?= $(LIZARD_ROBOT)
+ifneq ($(ROBOT),)
+ifeq ($(wildcard $(ROBOT)),)
+$(error There is no robot at ROBOT=$(ROBOT); give a file like robots/paper.toml)
+endif
+export LIZARD_ROBOT := $(abspath $(ROBOT))
+FOR_ROBOT := --robot $(LIZARD_ROBOT)
+endif
 
 # Set-up decides which compiler is used, so it runs before anything else and
 # hands over to a make that has read its answer.
@@ -11,10 +24,11 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash lint cli bench docs clean .firmware .gaits .flash .lint .cli .sim .test .bench .docs
+.PHONY: help sim test firmware flash lint cli bench docs clean .firmware .gaits .flash .lint .cli .simulator .sim .test .bench .docs
 
 help: ## this list
 	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
+	@echo "firmware, sim, test, bench and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
@@ -49,29 +63,34 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@RUSTC_BOOTSTRAP=1 cargo run --release
 
-# cargo puts what it builds for the host under the host's name; this is where
-# the documentation says the program is.
+# The second line puts the program where the documentation says it is.
 .cli:
 	@cd host && cargo build --release
-	@cd host && ln -f target/$$(rustc --print host-tuple)/release/lizard target/release/lizard 2>/dev/null || \
-		{ mkdir -p target/release && ln -f target/$$(rustc --print host-tuple)/release/lizard target/release/lizard; }
+	@mkdir -p $(dir $(LIZARD))
+	@ln -f $(HOST)/release/lizard $(LIZARD)
 
-.sim: .firmware .cli
-	@$(LIZARD) sim --elf $(ELF)
+# What a simulation needs of the host program, in a profile that compiles fast.
+.simulator:
+	@cd host && cargo build --profile sim --no-default-features --features simulator
+
+# Both builds at once: each has phases that keep only one core busy.
+.sim:
+	@$(MAKE) -j2 .firmware .simulator
+	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
 .test: .firmware
-	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test --workspace --quiet
+	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test --workspace --no-fail-fast --quiet
 
 .bench: .firmware .cli
 	@scripts/setup-bench
-	@$(LIZARD) bench
+	@$(LIZARD) bench --elf $(ELF) $(FOR_ROBOT)
 	@echo
 	@$(LIZARD) speed
 
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md
-	@$(LIZARD) draw --output docs/lizard.svg
+	@$(LIZARD) draw --robot robots/paper.toml --output docs/lizard.svg
 	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
 

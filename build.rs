@@ -1,4 +1,5 @@
-//! Turns robot.toml into the numbers that the firmware carries. A value or a
+//! Turns robot.toml, or the file that LIZARD_ROBOT names, into the numbers that
+//! the firmware carries. A value or a
 //! gait that will not do ends the build with the sentence that says why; what
 //! the check of the gaits found is left in `gaits.txt` beside the firmware.
 
@@ -11,8 +12,9 @@ use lizard_robot::Robot;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
-    let file = env::var("LIZARD_ROBOT").unwrap_or_else(|_| "robot.toml".to_string());
-    println!("cargo::rerun-if-changed={file}");
+    let given = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    let file = given.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
+    println!("cargo::rerun-if-changed={}", file.display());
     let robot = Robot::load(&file).unwrap_or_else(|error| stop(&error.to_string()));
     // Cargo sets OUT_DIR for every build script.
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));

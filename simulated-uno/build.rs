@@ -1,17 +1,25 @@
 //! Compiles the C shim against Debian's libsimavr and links both.
 
 fn main() {
-    let sources = [
-        "shim/uno.c",
-        "shim/sender.c",
-        "shim/usart.c",
-        "shim/datasheet.c",
+    let parts = [
+        "call_timer",
+        "handlers",
+        "hook",
+        "instruction",
+        "interrupts",
+        "list",
+        "pin_toggle",
+        "recorder",
+        "sender",
+        "serial_bytes",
+        "stock_uart",
+        "timer1",
+        "uno",
+        "usart",
     ];
-    for source in sources.iter().chain(&["shim/uno.h"]) {
-        println!("cargo:rerun-if-changed={source}");
-    }
+    println!("cargo:rerun-if-changed=shim");
     let compiled = cc::Build::new()
-        .files(sources)
+        .files(parts.map(|part| format!("shim/{part}.c")))
         .opt_level(2)
         .std("gnu11")
         .warnings(true)

@@ -4,6 +4,6 @@
 pub mod avr_gcc;
 mod bench;
 
-pub use bench::{FirmwareBench, robot};
-pub use lizard_host::sim::console::Line;
+pub use bench::{FirmwareBench, bench_of, robot};
 pub use lizard_host::sim::frame::{FRAME, Frame};
+pub use lizard_host::sim::lines::Line;

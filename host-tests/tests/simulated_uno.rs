@@ -90,6 +90,63 @@ fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
 }
 
 #[test]
+fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
+    // Port by port, each bit up and down: sbi and cbi take 2 cycles each.
+    let mut source =
+        String::from("ldi r16, 0xff $ out DDRD, r16 $ out DDRB, r16 $ out DDRC, r16\n");
+    let ports = [("PORTD", 2..8, 0), ("PORTB", 0..6, 8), ("PORTC", 0..6, 14)];
+    let mut expected = Vec::new();
+    for (port, bits, first) in ports {
+        for bit in bits {
+            source += &format!("sbi {port}, {bit} $ cbi {port}, {bit}\n");
+            let start = 4 + 4 * expected.len() as u64 + 2;
+            expected.push((Pin::arduino(first + bit), start, 2));
+        }
+    }
+    source += "end: rjmp end";
+    let image = assembler(&source);
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_cycles(200);
+        for (pin, start, width) in &expected {
+            let pulses = uno.pulses(*pin);
+            assert_eq!(pulses.len(), 1, "{pin}");
+            assert_eq!(
+                (pulses[0].start, pulses[0].width),
+                (*start, *width),
+                "{pin}"
+            );
+        }
+        assert_eq!(uno.edges().len(), 2 * 18, "D2 to D13, A0 to A5");
+        assert_eq!(most_pins_high(&uno.edges()), 1);
+    }
+}
+
+#[test]
+fn an_analogue_pin_has_an_arduino_number_and_a_name() {
+    assert_eq!(Pin::a(0), Pin::arduino(14));
+    assert_eq!(Pin::a(5).number(), 19);
+    assert_eq!(Pin::arduino(13), Pin::d(13));
+    let names: Vec<String> = [2, 13, 14, 19].map(|n| Pin::arduino(n).to_string()).into();
+    assert_eq!(names, ["D2", "D13", "A0", "A5"]);
+}
+
+#[test]
+fn the_level_of_an_analogue_pin_is_seen_and_toggled_alone() {
+    let image = assembler(
+        "ldi r16, 0xff $ out DDRC, r16
+         sbi PORTC, 0
+         sbi PINC, 5
+    end: rjmp end",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    assert!(!uno.is_high(Pin::a(0)));
+    uno.run_cycles(100);
+    let high: Vec<u8> = (2..20).filter(|n| uno.is_high(Pin::arduino(*n))).collect();
+    assert_eq!(high, [14, 19]);
+}
+
+#[test]
 fn sbi_on_a_pin_register_toggles_one_pin() {
     let image = assembler(
         "ldi r16, 0xff $ out DDRB, r16
@@ -250,4 +307,9 @@ fn only_an_avr_elf_is_loaded() {
     assert!(simulated_uno::Image::read(own).is_err());
     let error = simulated_uno::Image::read("no/such.elf").expect_err("it does not exist");
     assert!(error.to_string().starts_with("cannot read no/such.elf"));
+    let endless = simulated_uno::Image::read("/dev/zero").expect_err("it never ends");
+    assert_eq!(
+        endless.to_string(),
+        "not an ELF file of an AVR: it is longer than 4 MiB"
+    );
 }

@@ -1,14 +1,14 @@
 //! The bench itself, on a small program that answers lines and drives four
 //! servos as the firmware does.
 
-use lizard_host_tests::{FRAME, FirmwareBench, avr_gcc::c};
+use lizard_host_tests::{FRAME, FirmwareBench, avr_gcc::c, bench_of};
 use simulated_uno::{Fidelity, Uno};
 
 /// Slots of 4 ms by a busy loop; A1..A4 get 1000, 1200, 1400, 1600 us, one
 /// microsecond longer each frame. `r` rests, `q` asks. No interrupts.
 const SERVOS: &str = r##"
     #include <avr/io.h>
-    static void say(const char *text) {
+    static void write(const char *text) {
         while (*text) { while (!(UCSR0A & 0x20)) {} UDR0 = *text++; }
     }
     static void wait_until(unsigned ticks) { while (TCNT1 < ticks) {} }
@@ -16,14 +16,14 @@ const SERVOS: &str = r##"
     static void look(void) {
         if (!(UCSR0A & 0x80)) return;
         unsigned char byte = UDR0;
-        if (byte == '?') say("# about\r\n# me\r\nok asked\r\n");
-        if (byte == 'r') { rests = 1; say("ok resting\r\n"); }
+        if (byte == '?') write("# about\r\n# me\r\nok asked\r\n");
+        if (byte == 'r') { rests = 1; write("ok resting\r\n"); }
     }
     int main(void) {
         UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
         DDRB = 0x0e; DDRD = 0x08;
         OCR1A = 7999; TCCR1B = 0x0a;            /* CTC, 0.5 us, 4 ms */
-        say("# lizard test\r\n");
+        write("# lizard test\r\n");
         for (unsigned frame = 0;; frame++) {
             for (unsigned char slot = 0; slot < 5; slot++) {
                 while (!(TIFR1 & 2)) {}
@@ -41,7 +41,7 @@ const SERVOS: &str = r##"
     }"##;
 
 fn bench() -> FirmwareBench {
-    FirmwareBench::with_board(Uno::with_image(c(SERVOS), Fidelity::DataSheet))
+    bench_of(Uno::with_image(c(SERVOS), Fidelity::DataSheet))
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn frames_hold_one_pulse_of_each_servo() {
 
 #[test]
 fn a_function_of_the_program_is_timed_by_its_name() {
-    let mut bench = FirmwareBench::with_board(Uno::with_image(
+    let mut bench = bench_of(Uno::with_image(
         c("#include <avr/io.h>
             __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }
             int main(void) { for (;;) work(); }"),

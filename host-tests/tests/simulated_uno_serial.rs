@@ -25,7 +25,7 @@ fn program(body: &str) -> Image {
 }
 
 fn text(uno: &Uno) -> Vec<u8> {
-    uno.received().iter().map(|byte| byte.byte).collect()
+    uno.transmitted().iter().map(|byte| byte.byte).collect()
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn an_echo_comes_a_frame_after_its_byte() {
     let start = uno.cycle();
     uno.send(b"x");
     uno.run_ms(1);
-    let echo = uno.received()[0].cycle - start;
+    let echo = uno.transmitted()[0].cycle - start;
     // Received in the middle of the stop bit, polled within some 20 cycles.
     let earliest = (0.95 * FRAME) as u64 + UNO_FRAME;
     assert!(
@@ -60,7 +60,7 @@ fn an_echo_comes_a_frame_after_its_byte() {
 fn bytes_go_out_back_to_back_at_ten_bits_each() {
     let mut uno = Uno::with_image(program("put('a');"), Fidelity::DataSheet);
     uno.run_ms(10);
-    let stamps: Vec<u64> = uno.received().iter().map(|byte| byte.cycle).collect();
+    let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
     assert!(stamps.len() > 100);
     for pair in stamps.windows(2) {
         // The timer may find the CPU in mid-instruction; nothing adds up.
@@ -161,7 +161,7 @@ fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
         int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.run_ms(20);
-    let received = uno.received();
+    let received = uno.transmitted();
     assert_eq!(text(&uno), (0..100).collect::<Vec<u8>>());
     assert!(
         received

@@ -2,7 +2,7 @@
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
-use lizard_host::sim::session::{Recording, play};
+use lizard_host::sim::session::{Event, Recording, Sender, play};
 use lizard_host::sim::twin;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
@@ -45,31 +45,42 @@ fn everything(apart: u64) -> Script {
     }
 }
 
-fn run(script: &Script, fidelity: Fidelity) -> Recording {
+/// Runs a script; also returns the lines that the robot sent.
+fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
     let mut uno = Uno::load(FirmwareBench::elf(), fidelity).expect("`make firmware` builds it");
-    play(&mut uno, servo_pins(robot()), script, false, |_| {})
+    let mut lines = Vec::new();
+    let recording = play(&mut uno, servo_pins(robot()), script, false, |event| {
+        if let Event::Line(line) = event
+            && line.from == Sender::Robot
+        {
+            lines.push(line.text.clone());
+        }
+        Ok(())
+    });
+    (recording.expect("nothing is written"), lines)
 }
 
 #[test]
 fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() {
     for (fidelity, apart) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
-        let recording = run(&everything(apart), fidelity);
+        let script = everything(apart);
+        let (recording, lines) = run(&script, fidelity);
         assert_eq!(recording.state, State::Alive);
-        let frames = &recording.frames;
-        assert!(frames.len() > 29_900, "{} frames", frames.len());
-        let commands = twin::play(&recording.heard, frames[0].start, frames.len());
-        for (n, (frame, command)) in frames.iter().zip(&commands.widths).enumerate() {
-            let measured = frame.widths.map(|width| width.unwrap_or(0));
-            assert_eq!(measured, command.map(u64::from), "{fidelity:?}, frame {n}");
+        let log = &recording.frames;
+        assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
+        let commands = twin::play(&recording.received_by_uno, log.first, log.widths.len());
+        for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
+            assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        let said: Vec<&str> = commands.said.lines().collect();
-        let heard: Vec<&str> = recording
-            .dialogue
-            .iter()
-            .filter(|said| said.by == lizard_host::sim::session::Speaker::Robot)
-            .map(|said| said.line.as_str())
-            .collect();
+        let here: Vec<&str> = commands.said.lines().collect();
         // The last line may still be on its way.
-        assert!(said.len() - heard.len() <= 1 && said.starts_with(&heard));
+        assert!(here.len() - lines.len() <= 1);
+        assert!(here.iter().zip(&lines).all(|(here, there)| here == there));
+        let answers = recording.answers.iter().flatten();
+        assert_eq!(
+            answers.count(),
+            script.steps.len(),
+            "every command is answered"
+        );
     }
 }

@@ -68,8 +68,8 @@ fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
         )));
     };
     let mut text = format!("seconds,{}\n", ANGLES.join(","));
-    for (seconds, phase) in robot.tables.frames(gait, index) {
-        let [a1, a2, a3, a4] = robot.tables.angles(gait, index, phase);
+    for (seconds, phase) in robot.tables().frames(gait, index) {
+        let [a1, a2, a3, a4] = robot.tables().angles(gait, index, phase);
         text += &format!("{seconds:.2},{a1:.3},{a2:.3},{a3:.3},{a4:.3}\n");
     }
     Ok(text)

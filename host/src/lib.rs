@@ -3,13 +3,19 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+pub mod absent;
+#[cfg(feature = "simulator")]
 pub mod bench;
+#[cfg(feature = "simulator")]
+pub mod board;
 pub mod draw;
 mod failure;
 pub mod gaits;
+#[cfg(feature = "paper")]
 pub mod paper;
 mod pose_args;
 mod robot_file;
+#[cfg(feature = "simulator")]
 pub mod sim;
 
 pub use failure::Failure;

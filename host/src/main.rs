@@ -1,10 +1,18 @@
 //! `lizard`: the robot's mathematics and its simulation on the command line.
 #![forbid(unsafe_code)]
 
+#[cfg(not(all(feature = "simulator", feature = "paper")))]
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use lizard_host::{bench, draw, gaits, paper, sim};
+#[cfg(not(all(feature = "simulator", feature = "paper")))]
+use lizard_host::absent;
+#[cfg(feature = "paper")]
+use lizard_host::paper;
+#[cfg(feature = "simulator")]
+use lizard_host::{bench, sim};
+use lizard_host::{draw, gaits};
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
 ///
@@ -24,35 +32,63 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Gaits(gaits::Args),
+    #[cfg(feature = "paper")]
     Solve(paper::solve::Args),
+    #[cfg(feature = "paper")]
     Inverse(paper::inverse::Args),
+    #[cfg(feature = "paper")]
     Velocity(paper::velocity::Args),
+    #[cfg(feature = "paper")]
     Singularity(paper::singularity::Args),
+    #[cfg(feature = "paper")]
     Mobility(paper::mobility::Args),
+    #[cfg(feature = "paper")]
     Design(paper::design::Args),
+    #[cfg(feature = "paper")]
     Errata(paper::errata::Args),
+    #[cfg(feature = "paper")]
     Charts(paper::charts::Args),
+    #[cfg(feature = "paper")]
     Speed(paper::speed::Args),
+    #[cfg(feature = "simulator")]
     Sim(sim::Args),
     Draw(draw::Args),
+    #[cfg(feature = "simulator")]
     Bench(bench::Args),
+    /// A command that this build may lack.
+    #[cfg(not(all(feature = "simulator", feature = "paper")))]
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
 }
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Gaits(args) => gaits::run(args),
+        #[cfg(feature = "paper")]
         Command::Solve(args) => paper::solve::run(args),
+        #[cfg(feature = "paper")]
         Command::Inverse(args) => paper::inverse::run(args),
+        #[cfg(feature = "paper")]
         Command::Velocity(args) => paper::velocity::run(args),
+        #[cfg(feature = "paper")]
         Command::Singularity(args) => paper::singularity::run(args),
+        #[cfg(feature = "paper")]
         Command::Mobility(args) => paper::mobility::run(args),
+        #[cfg(feature = "paper")]
         Command::Design(args) => paper::design::run(args),
+        #[cfg(feature = "paper")]
         Command::Errata(args) => paper::errata::run(args),
+        #[cfg(feature = "paper")]
         Command::Charts(args) => paper::charts::run(args),
+        #[cfg(feature = "paper")]
         Command::Speed(args) => paper::speed::run(args),
+        #[cfg(feature = "simulator")]
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),
+        #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),
+        #[cfg(not(all(feature = "simulator", feature = "paper")))]
+        Command::Other(words) => Err(absent::explain(&words)),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,13 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+/// The paper's robot: what these tests say of gaits and of the picture is its.
+const PAPER: &str = concat!(
+    "--robot=",
+    env!("CARGO_MANIFEST_DIR"),
+    "/../robots/paper.toml"
+);
+
 fn lizard(arguments: &[&str]) -> Output {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     Command::new(env!("CARGO_BIN_EXE_lizard"))
@@ -59,8 +66,18 @@ fn a_wrong_script_names_file_and_line() {
 }
 
 #[test]
-fn an_unknown_gait_lists_those_there_are() {
-    let (words, code) = complaint(&["sim", "--gait", "gallop"]);
+fn a_script_that_never_ends_is_refused() {
+    let (words, code) = complaint(&["sim", "--script", "/dev/zero"]);
+    assert_eq!(
+        words,
+        "lizard: cannot read /dev/zero: it is longer than 1 MiB"
+    );
+    assert_eq!(code, Some(2));
+}
+
+#[test]
+fn an_unknown_gait_lists_those_of_the_paper_robot() {
+    let (words, code) = complaint(&["sim", PAPER, "--gait", "gallop"]);
     assert!(
         words.contains("no gait `gallop`; it has stand, walk, trot"),
         "{words}"
@@ -81,10 +98,10 @@ fn times_out_of_range_are_refused() {
 }
 
 #[test]
-fn the_picture_in_docs_is_the_one_that_is_drawn_now() {
-    let drawn = lizard(&["draw"]);
+fn the_picture_in_docs_is_the_paper_robot_as_it_is_drawn_now() {
+    let drawn = lizard(&["draw", PAPER]);
     assert!(drawn.status.success());
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/lizard.svg");
     let kept = std::fs::read(docs).expect("docs/lizard.svg is there");
-    assert!(kept == drawn.stdout, "run `lizard draw -o docs/lizard.svg`");
+    assert!(kept == drawn.stdout, "run `make docs`");
 }

@@ -1,29 +1,16 @@
-/* The other end of the serial cable.
- *
- * A PC's UART sends one byte after another with nothing between the stop bit
- * and the next start bit. It does not know whether the UNO keeps up.
- *
- * SPDX-License-Identifier: GPL-3.0-or-later
- */
-#include "uno.h"
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sender.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "chip.h"
+
 #define FRAME_BITS 10.0   /* start, eight data, stop */
 #define SAMPLED_BITS 9.5  /* a receiver is done in the middle of the stop bit */
 
 static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *param);
-
-/* Stock simavr takes 11 bits for a frame: sent at the true rate, a long stream
- * would overflow its 64 bytes, which no UNO has. So it gets what it can take. */
-static double frame_cycles(const struct uno *uno)
-{
-	double frame = FRAME_BITS * uno->sender.cycles_per_bit;
-	double stock = uno->stock_uart->cycles_per_byte;
-	return uno->data_sheet || stock < frame ? frame : stock;
-}
 
 static bool next_byte(struct sender *sender, uint8_t *byte)
 {
@@ -44,67 +31,77 @@ static bool next_byte(struct sender *sender, uint8_t *byte)
 static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	(void)when;
-	struct uno *uno = param;
-	struct sender *sender = &uno->sender;
+	struct sender *sender = param;
 	sender->busy = false;
-	struct stamped_byte *heard = list_push(&uno->heard);
-	*heard = (struct stamped_byte){ avr->cycle, sender->byte };
-	if (uno->data_sheet)
-		usart_receive(uno, sender->byte, sender->cycles_per_bit);
-	else
-		avr_raise_irq(uno->stock_uart->io.irq + UART_IRQ_INPUT, sender->byte);
+	serial_bytes_push(&sender->delivered, avr->cycle, sender->byte);
+	sender->receiver.byte(sender->receiver.param, sender->byte, sender->cycles_per_bit);
 	/* Always look again when the line is free: a byte queued meanwhile starts
 	 * then. */
 	uint64_t start = ceil(sender->line_free);
 	uint64_t wait = start > avr->cycle ? start - avr->cycle : 1;
-	avr_cycle_timer_register(avr, wait, begin_byte, uno);
+	avr_cycle_timer_register(avr, wait, begin_byte, sender);
 	return 0;
 }
 
 static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	struct uno *uno = param;
-	struct sender *sender = &uno->sender;
+	struct sender *sender = param;
+	const struct receiver *receiver = &sender->receiver;
 	if (sender->busy || !next_byte(sender, &sender->byte))
 		return 0;
 	/* Fractions of a cycle carry over, so the rate is right in the long run. */
 	double start = sender->line_free > when - 1.0 ? sender->line_free : when;
+	double frame = FRAME_BITS * sender->cycles_per_bit;
 	sender->busy = true;
 	sender->sent++;
-	sender->line_free = start + frame_cycles(uno);
-	if (uno->data_sheet)
-		usart_start_bit(uno);
+	sender->line_free = start + receiver->frame_cycles(receiver->param, frame);
+	receiver->start_bit(receiver->param);
 	uint64_t end = ceil(start + SAMPLED_BITS * sender->cycles_per_bit);
-	avr_cycle_timer_register(avr, end > avr->cycle ? end - avr->cycle : 1, end_byte, uno);
+	avr_cycle_timer_register(avr, end > avr->cycle ? end - avr->cycle : 1, end_byte, sender);
 	return 0;
 }
 
 /* Starts to send if there is something to send and the line is free. */
-void sender_wake(struct uno *uno)
+static void start(struct sender *sender, uint64_t now)
 {
-	struct sender *sender = &uno->sender;
-	avr_t *avr = uno->avr;
+	avr_t *avr = sender->avr;
 	bool empty = sender->next == sender->queue.count && !sender->flood_length;
-	if (empty || sender->busy || avr_cycle_timer_status(avr, begin_byte, uno))
+	if (empty || sender->busy || avr_cycle_timer_status(avr, begin_byte, sender))
 		return;
-	/* Asleep, simavr's clock may lag behind ours. */
-	uint64_t now = uno->now > avr->cycle ? uno->now : avr->cycle;
-	uint64_t free = ceil(sender->line_free);
-	uint64_t start = free > now ? free : now;
-	avr_cycle_timer_register(avr, start - avr->cycle, begin_byte, uno);
+	uint64_t free_at = ceil(sender->line_free);
+	uint64_t begin = now > avr->cycle ? now : avr->cycle;
+	if (free_at > begin)
+		begin = free_at;
+	avr_cycle_timer_register(avr, begin - avr->cycle, begin_byte, sender);
 }
 
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length)
+void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud)
+{
+	*sender = (struct sender){ .avr = avr, .receiver = receiver, .queue.size = 1 };
+	serial_bytes_init(&sender->delivered);
+	sender_set_baud(sender, baud);
+}
+
+void sender_reset(struct sender *sender, uint64_t now)
+{
+	sender->busy = false;
+	start(sender, now);
+}
+
+void sender_set_baud(struct sender *sender, double baud)
+{
+	sender->cycles_per_bit = CHIP_FREQUENCY / baud;
+}
+
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
 {
 	for (size_t i = 0; i < length; i++)
-		*(uint8_t *)list_push(&uno->sender.queue) = bytes[i];
-	sender_wake(uno);
+		*(uint8_t *)list_push(&sender->queue) = bytes[i];
+	start(sender, now);
 }
 
-/* Repeats `bytes` for ever after what is queued; length 0 ends it. */
-void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
+void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
 {
-	struct sender *sender = &uno->sender;
 	free(sender->flood);
 	sender->flood = NULL;
 	sender->flood_length = length;
@@ -115,13 +112,17 @@ void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 	if (!sender->flood)
 		abort();
 	memcpy(sender->flood, bytes, length);
-	sender_wake(uno);
+	start(sender, now);
 }
 
-size_t uno_unsent(const struct uno *uno)
+size_t sender_unsent(const struct sender *sender)
 {
-	return uno->sender.queue.count - uno->sender.next + uno->sender.busy;
+	return sender->queue.count - sender->next + sender->busy;
 }
 
-uint64_t uno_sent(const struct uno *uno) { return uno->sender.sent; }
-void uno_set_baud(struct uno *uno, double baud) { uno->sender.cycles_per_bit = UNO_FREQUENCY / baud; }
+void sender_free(struct sender *sender)
+{
+	list_free(&sender->queue);
+	free(sender->flood);
+	serial_bytes_free(&sender->delivered);
+}

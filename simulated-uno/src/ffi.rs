@@ -27,7 +27,7 @@ pub struct RawEdge {
     pub level: u8,
 }
 
-/// `struct stamped_byte`.
+/// `struct serial_byte`, and `struct mark`, which has the same form.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RawByte {
@@ -52,7 +52,7 @@ pub struct RawVector {
     pub cycles: u64,
 }
 
-/// `UNO_VECTORS`.
+/// `CHIP_VECTORS`.
 pub const VECTORS: usize = 26;
 
 /// `enum stop`.
@@ -68,13 +68,13 @@ pub enum Stop {
 
 unsafe extern "C" {
     pub fn uno_set_logger();
-    pub fn uno_new(data_sheet: bool, pins: u16, baud: f64) -> *mut RawUno;
+    pub fn uno_new(data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
     pub fn uno_free(uno: *mut RawUno);
     pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
     pub fn uno_power_on(uno: *mut RawUno, code_end: u32, data_end: u16);
     pub fn uno_run(uno: *mut RawUno, until: u64) -> Stop;
     pub fn uno_stop_at_line(uno: *mut RawUno, on: bool);
-    pub fn uno_watch(uno: *mut RawUno, on: bool, entry: u32);
+    pub fn uno_time_calls(uno: *mut RawUno, on: bool, entry: u32);
     pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
@@ -85,15 +85,15 @@ unsafe extern "C" {
     pub fn uno_pc(uno: *const RawUno) -> u32;
     pub fn uno_resets(uno: *const RawUno) -> u64;
     pub fn uno_overruns(uno: *const RawUno) -> u64;
-    pub fn uno_levels(uno: *const RawUno) -> u16;
+    pub fn uno_levels(uno: *const RawUno) -> u32;
     pub fn uno_stack_low(uno: *const RawUno) -> u16;
     pub fn uno_message(uno: *const RawUno) -> *const c_char;
     pub fn uno_data(uno: *const RawUno) -> *const u8;
     pub fn uno_data_size(uno: *const RawUno) -> u32;
     pub fn uno_vectors(uno: *const RawUno) -> *const RawVector;
     pub fn uno_edges(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_transmitted(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
-    pub fn uno_heard(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_marks(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_calls(uno: *mut RawUno) -> *mut RawList;
 }

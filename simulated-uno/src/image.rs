@@ -1,5 +1,6 @@
 //! A firmware image: what an ELF file puts into flash and SRAM.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
@@ -10,6 +11,10 @@ pub const FLASH_SIZE: u32 = 32 * 1024;
 pub const SRAM_START: u16 = 0x0100;
 /// Address after the last byte of SRAM.
 pub const SRAM_END: u16 = 0x0900;
+
+/// The longest file that is read, bytes: code of 32 KiB with all its debug
+/// information stays far below.
+const LONGEST_FILE: u64 = 4 << 20;
 
 /// Where avr-gcc's linker script puts SRAM in its single address space.
 const DATA_SPACE: u64 = 0x80_0000;
@@ -30,6 +35,9 @@ pub enum LoadError {
     /// The bytes are not an ELF file.
     #[error("not an ELF file of an AVR: {0}")]
     Elf(#[from] object::read::Error),
+    /// The file is longer than any firmware.
+    #[error("not an ELF file of an AVR: it is longer than {} MiB", LONGEST_FILE >> 20)]
+    TooLong,
     /// The ELF file is for another machine.
     #[error("not an ELF file of an AVR")]
     NotAvr,
@@ -91,10 +99,16 @@ impl Image {
     /// See [`LoadError`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, LoadError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|source| LoadError::Read {
+        let failure = |source| LoadError::Read {
             path: path.to_owned(),
             source,
-        })?;
+        };
+        let mut bytes = Vec::new();
+        let file = std::fs::File::open(path).map_err(failure)?;
+        let limited = file.take(LONGEST_FILE + 1).read_to_end(&mut bytes);
+        if limited.map_err(failure)? as u64 > LONGEST_FILE {
+            return Err(LoadError::TooLong);
+        }
         Self::parse(&bytes)
     }
 

@@ -1,8 +1,11 @@
 //! Pins as an oscilloscope sees them: edges, and the pulses between them.
 
-/// A digital pin by its name on the board, D0 to D13.
+/// A pin by its name on the board: D0 to D13, or A0 to A5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pin(u8);
+
+/// Arduino's number of A0.
+const A0: u8 = 14;
 
 impl Pin {
     /// Pin `Dn`.
@@ -15,7 +18,28 @@ impl Pin {
         Self(n)
     }
 
-    /// The `n` of `Dn`.
+    /// Pin `An`.
+    ///
+    /// # Panics
+    /// If the UNO has no such pin (`n` > 5).
+    #[must_use]
+    pub const fn a(n: u8) -> Self {
+        assert!(n <= 5, "an UNO has A0 to A5");
+        Self(A0 + n)
+    }
+
+    /// The pin with Arduino's number `n`: 0 to 13 are D0 to D13, 14 to 19 are A0
+    /// to A5.
+    ///
+    /// # Panics
+    /// If the UNO has no such pin (`n` > 19).
+    #[must_use]
+    pub const fn arduino(n: u8) -> Self {
+        assert!(n <= 19, "an UNO's pins are 0 to 19");
+        Self(n)
+    }
+
+    /// Arduino's number, 0 to 19; see [`Pin::arduino`].
     #[must_use]
     pub const fn number(self) -> u8 {
         self.0
@@ -24,7 +48,10 @@ impl Pin {
 
 impl std::fmt::Display for Pin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "D{}", self.0)
+        match self.0.checked_sub(A0) {
+            Some(n) => write!(f, "A{n}"),
+            None => write!(f, "D{}", self.0),
+        }
     }
 }
 
@@ -70,13 +97,13 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
 /// The largest number of pins that were high at once.
 #[must_use]
 pub fn most_pins_high(edges: &[Edge]) -> u32 {
-    let mut levels = 0u16;
+    let mut levels = 0u32;
     let mut most = 0;
     let mut edges = edges.to_vec();
     // At equal cycles a fall comes first: back-to-back pulses do not overlap.
     edges.sort_by_key(|edge| (edge.cycle, edge.high));
     for edge in edges {
-        let bit = 1 << edge.pin.number();
+        let bit = 1u32 << edge.pin.number();
         if edge.high {
             levels |= bit;
         } else {

@@ -63,11 +63,12 @@ impl Uno {
     }
 
     /// A board with this image in flash, at the moment of power-on. Its pins
-    /// D2 to D13 are recorded; D0 and D1 belong to the serial line.
+    /// D2 to D13 and A0 to A5 are recorded; D0 and D1 belong to the serial
+    /// line.
     #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
         static LOGGER: Once = Once::new();
-        let pins = 0x3ffc;
+        let pins = 0xf_fffc;
         // SAFETY: the shim's constructor aborts rather than return null; each
         // segment is inside flash, checked by `Image` and again by the shim.
         let raw = unsafe {
@@ -216,32 +217,32 @@ impl Uno {
         unsafe { ffi::uno_overruns(self.raw) }
     }
 
-    /// Every byte that the UNO has sent and nobody has taken.
+    /// Every byte that the UNO has transmitted and nobody has taken.
     #[must_use]
-    pub fn received(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_received, serial_byte)
+    pub fn transmitted(&self) -> Vec<SerialByte> {
+        self.list(ffi::uno_transmitted, serial_byte)
     }
 
-    /// Takes what the UNO has sent since the last call.
-    pub fn take_received(&mut self) -> Vec<SerialByte> {
-        let bytes = self.received();
-        self.clear(ffi::uno_received);
+    /// Takes what the UNO has transmitted since the last call.
+    pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
+        let bytes = self.transmitted();
+        self.clear(ffi::uno_transmitted);
         bytes
     }
 
     /// Every byte that has come through the line to the UNO, with the cycle at
     /// which it was complete there, lost bytes included.
     #[must_use]
-    pub fn heard(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_heard, serial_byte)
+    pub fn received_by_uno(&self) -> Vec<SerialByte> {
+        self.list(ffi::uno_received, serial_byte)
     }
 
-    /// Edges of D2 to D13 since power-on or the last [`Uno::take_edges`].
+    /// Edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
     #[must_use]
     pub fn edges(&self) -> Vec<Edge> {
         self.list(ffi::uno_edges, |raw: &RawEdge| Edge {
             cycle: raw.cycle,
-            pin: Pin::d(raw.pin),
+            pin: Pin::arduino(raw.pin),
             high: raw.level != 0,
         })
     }
@@ -259,7 +260,7 @@ impl Uno {
         crate::pin::pulses(&self.edges(), pin)
     }
 
-    /// Whether a pin (D2 to D13) is high now.
+    /// Whether a pin (D2 to D13, A0 to A5) is high now.
     #[must_use]
     pub fn is_high(&self, pin: Pin) -> bool {
         let levels = unsafe { ffi::uno_levels(self.raw) };
@@ -287,9 +288,9 @@ impl Uno {
     /// it looks at every instruction. Recursive calls count as part of the
     /// outermost.
     pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
-        unsafe { ffi::uno_watch(self.raw, true, entry) };
+        unsafe { ffi::uno_time_calls(self.raw, true, entry) };
         self.run_cycles(cycles);
-        unsafe { ffi::uno_watch(self.raw, false, 0) };
+        unsafe { ffi::uno_time_calls(self.raw, false, 0) };
         let calls = self.list(ffi::uno_calls, |raw: &RawCall| Call {
             enter: raw.enter,
             leave: raw.leave,

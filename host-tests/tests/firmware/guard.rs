@@ -1,11 +1,12 @@
 //! The guard on the chip: what it refuses, and that no frame gets past it.
 
+use fastrand::Rng;
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::robot;
 use lizard_kinematics::{Limits, Pose, Solution};
 use simulated_uno::Fidelity;
 
-use crate::{Dice, SECOND, Status, awake, for_each};
+use crate::{SECOND, Status, awake, for_each};
 
 /// The guard may differ from floating point by this much, margin and mm, for
 /// lengths of 1/256 mm and sines of 1/32768.
@@ -31,17 +32,17 @@ fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
 }
 
 /// A pose within so many degrees of neutral, as it is typed.
-fn wish(dice: &mut Dice, within: f64) -> [f64; 4] {
+fn wish(rng: &mut Rng, within: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
-        let angle = robot().servos[i].neutral + dice.between(-within, within);
+        let angle = robot().servos[i].neutral + within * (2.0 * rng.f64() - 1.0);
         (angle.rem_euclid(360.0) * 100.0).round() / 100.0
     })
 }
 
 /// A safe pose far from neutral, so that the way there may not be safe.
-fn far(dice: &mut Dice) -> [f64; 4] {
+fn far(rng: &mut Rng) -> [f64; 4] {
     loop {
-        let angles = wish(dice, 80.0);
+        let angles = wish(rng, 80.0);
         if is_safe(angles, &limits(1.0)) {
             return angles;
         }
@@ -56,11 +57,11 @@ fn typed(angles: [f64; 4]) -> String {
 #[test]
 fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
     for_each(&[20.0, 40.0, 80.0], |&within| {
-        let mut dice = Dice(within as u64);
+        let mut rng = Rng::with_seed(within as u64);
         let mut bench = awake(Fidelity::DataSheet);
         let (mut accepted, mut refused) = (0, [0; 2]);
         for _ in 0..400 {
-            let angles = wish(&mut dice, within);
+            let angles = wish(&mut rng, within);
             let answer = bench.say(&typed(angles));
             if is_safe(angles, &limits(1.0)) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
@@ -115,10 +116,10 @@ fn value(solution: &Solution, name: &str) -> Option<f64> {
 #[test]
 fn a_refusal_names_the_margin_and_its_value() {
     let mut bench = awake(Fidelity::DataSheet);
-    let mut dice = Dice(3);
+    let mut rng = Rng::with_seed(3);
     let mut named = 0;
     for _ in 0..200 {
-        let angles = wish(&mut dice, 70.0);
+        let angles = wish(&mut rng, 70.0);
         let answer = bench.say(&typed(angles));
         let Ok(solution) = robot().lizard.solve(&Pose::from(angles)) else {
             continue;
@@ -149,7 +150,7 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
         (Fidelity::DataSheet, 23),
     ];
     for_each(&cases, |&(fidelity, seed)| {
-        let mut dice = Dice(seed);
+        let mut rng = Rng::with_seed(seed);
         let mut bench = awake(fidelity);
         let lines: Vec<String> = robot()
             .gaits
@@ -158,13 +159,13 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
             .collect();
         let mut frames = Vec::new();
         for _ in 0..150 {
-            let line = if dice.below(3) == 0 {
-                dice.pick(&lines).clone()
+            let line = if rng.u64(..3) == 0 {
+                rng.choice(&lines).expect("there are some").clone()
             } else {
-                typed(far(&mut dice))
+                typed(far(&mut rng))
             };
             assert!(bench.say(&line).starts_with("ok "), "{line}");
-            frames.extend(bench.run_for_frames(dice.below(2 * SECOND)));
+            frames.extend(bench.run_for_frames(rng.u64(..2 * SECOND)));
         }
         let lax = limits(-1.0);
         let sent = instants(robot(), &frames);

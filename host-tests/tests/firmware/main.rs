@@ -113,30 +113,3 @@ fn angles(list: &str) -> [f64; 4] {
         .collect();
     angles.try_into().expect("four angles")
 }
-
-/// Random numbers that are the same in every run: splitmix64.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// 0 to `end` - 1.
-    fn below(&mut self, end: u64) -> u64 {
-        self.roll() % end
-    }
-
-    /// `from` to `to`.
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * (self.roll() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn pick<'a, T>(&mut self, of: &'a [T]) -> &'a T {
-        &of[self.below(of.len() as u64) as usize]
-    }
-}

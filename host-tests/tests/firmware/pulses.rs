@@ -39,7 +39,11 @@ fn first_pulse(bench: &FirmwareBench) -> u64 {
 /// bytes.
 fn commanded(bench: &FirmwareBench, first: u64, heard: usize, frames: &[Frame]) -> Vec<[u64; 4]> {
     let before = ((frames[0].start - first) / FRAME) as usize;
-    let commands = twin::play(&bench.uno.heard()[..heard], first, before + frames.len());
+    let commands = twin::play(
+        &bench.uno.received_by_uno()[..heard],
+        first,
+        before + frames.len(),
+    );
     commands.widths[before..]
         .iter()
         .map(|widths| widths.map(u64::from))
@@ -55,7 +59,7 @@ fn every_width_is_the_one_that_was_asked_for() {
             bench.say(&gait.name.replace('-', " "));
             let frames = bench.run_for_frames(6 * SECOND);
             assert_in_step(&bench, &frames);
-            let heard = bench.uno.heard().len();
+            let heard = bench.uno.received_by_uno().len();
             for (frame, asked) in frames.iter().zip(commanded(&bench, first, heard, &frames)) {
                 assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name);
             }
@@ -73,7 +77,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             let first = first_pulse(&bench);
             bench.say("watch 1");
             bench.say("left");
-            let heard = bench.uno.heard().len();
+            let heard = bench.uno.received_by_uno().len();
             bench.uno.flood(flood.as_bytes());
             let sent = bench.bytes().len();
             let frames = bench.run_for_frames(20 * SECOND);
@@ -89,7 +93,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             // Both lines are busy: 11 520 bytes a second come in, and unless the
             // flood is all one overlong line the answers fill the line back.
             let seconds = frames.len() as f64 / SECOND as f64;
-            let come = (bench.uno.heard().len() - heard) as f64 / seconds;
+            let come = (bench.uno.received_by_uno().len() - heard) as f64 / seconds;
             assert!(
                 come > 11_000.0 || fidelity == Fidelity::Stock && come > 10_000.0,
                 "{come} bytes a second"

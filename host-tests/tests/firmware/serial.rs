@@ -1,10 +1,11 @@
 //! The console's promise about its line: nothing is lost while the sender waits
 //! for answers, and what a flood loses is counted.
 
+use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::{Dice, Status, awake, end_flood, in_both};
+use crate::{Status, awake, end_flood, in_both};
 
 /// Says a line; the answer must be there.
 fn wait_for(bench: &mut FirmwareBench, line: &str) {
@@ -16,7 +17,7 @@ fn wait_for(bench: &mut FirmwareBench, line: &str) {
 fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        let mut dice = Dice(7);
+        let mut rng = Rng::with_seed(7);
         wait_for(&mut bench, "watch 1");
         let padded = format!("status{}", " ".repeat(57));
         let lines = [
@@ -29,7 +30,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
             &padded,
         ];
         for _ in 0..600 {
-            wait_for(&mut bench, dice.pick(&lines));
+            wait_for(&mut bench, rng.choice(&lines).expect("there are some"));
         }
         wait_for(&mut bench, "watch 0");
         let status = Status::of(&mut bench);
@@ -63,11 +64,11 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
 fn what_a_flood_loses_is_counted() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        let (before, lines) = (bench.uno.heard().len(), bench.lines().len());
+        let (before, lines) = (bench.uno.received_by_uno().len(), bench.lines().len());
         bench.uno.flood(b"a\n");
         bench.run_ms(5000);
         end_flood(&mut bench);
-        let heard = (bench.uno.heard().len() - before) as f64;
+        let heard = (bench.uno.received_by_uno().len() - before) as f64;
         let answers = (bench.lines().len() - lines) as f64;
         let lost = Status::of(&mut bench).number("rx_lost");
         println!("{fidelity:?}: {heard} heard, {lost} lost, {answers} answers");
@@ -103,12 +104,12 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 
 #[test]
 fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
-    let mut dice = Dice(11);
+    let mut rng = Rng::with_seed(11);
     let mut bench = awake(Fidelity::DataSheet);
     for _ in 0..300 {
         // No backspace or delete: they take bytes back.
-        let bytes: Vec<u8> = (0..dice.below(80))
-            .map(|_| (dice.roll() as u8).max(32))
+        let bytes: Vec<u8> = (0..rng.u64(..80))
+            .map(|_| rng.u8(..).max(32))
             .filter(|byte| *byte != 0x7f)
             .collect();
         let said = bench.lines().iter().filter(|line| line.is_answer()).count();

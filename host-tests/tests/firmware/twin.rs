@@ -1,11 +1,12 @@
 //! AVR against host: random commands for ten minutes, bit for bit.
 
+use fastrand::Rng;
 use lizard_host::sim::frame::{FRAME, frames, opens, servo_pins};
 use lizard_host::sim::twin;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Dice, Status, awake, for_each};
+use crate::{Status, awake, for_each};
 
 /// Ten minutes.
 const END: u64 = 600 * FREQUENCY;
@@ -13,30 +14,35 @@ const END: u64 = 600 * FREQUENCY;
 const BYTE: u64 = 1400;
 
 /// Any line that there is, of every command, good and bad.
-fn line(dice: &mut Dice) -> String {
-    let near = |dice: &mut Dice, within: f64| {
+fn line(rng: &mut Rng) -> String {
+    let near = |rng: &mut Rng, within: f64| {
         let angles: Vec<String> = robot()
             .servos
             .iter()
-            .map(|servo| format!("{:.2}", servo.neutral + dice.between(-within, within)))
+            .map(|servo| format!("{:.2}", servo.neutral + within * (2.0 * rng.f64() - 1.0)))
             .collect();
         format!("pose {}", angles.join(" "))
     };
-    match dice.below(20) {
-        0..7 => dice.pick(&robot().gaits).name.replace('-', " "),
-        7..9 => near(dice, 15.0),
-        9..11 => near(dice, 45.0),
-        11 => near(dice, 100.0),
-        12..14 => format!("speed {}", dice.below(120)),
+    match rng.u64(..20) {
+        0..7 => rng
+            .choice(&robot().gaits)
+            .expect("stand at least")
+            .name
+            .replace('-', " "),
+        7..9 => near(rng, 15.0),
+        9..11 => near(rng, 45.0),
+        11 => near(rng, 100.0),
+        12..14 => format!("speed {}", rng.u64(..120)),
         14 => "stop".into(),
-        15 => ["rest", "rest", "stand", "stand", "stand"][dice.below(5) as usize].into(),
-        16 => format!("watch {}", [0, 0, 1, 2, 9, 10_000][dice.below(6) as usize]),
-        17 => ["status", "help", "?", "arc", "pose", "speed", "walk on"][dice.below(7) as usize]
-            .into(),
+        15 => ["rest", "rest", "stand", "stand", "stand"][rng.u64(..5) as usize].into(),
+        16 => format!("watch {}", [0, 0, 1, 2, 9, 10_000][rng.u64(..6) as usize]),
+        17 => {
+            ["status", "help", "?", "arc", "pose", "speed", "walk on"][rng.u64(..7) as usize].into()
+        }
         18 => {
-            let length = dice.below(90) + 1;
+            let length = rng.u64(..90) + 1;
             (0..length)
-                .map(|_| char::from(33 + dice.below(94) as u8))
+                .map(|_| char::from(33 + rng.u64(..94) as u8))
                 .collect()
         }
         _ => "stand".into(),
@@ -46,17 +52,17 @@ fn line(dice: &mut Dice) -> String {
 /// Says lines for ten minutes. Each is complete at a random moment of a frame, a
 /// millisecond or more from the ticks, so that there is no doubt about the frame
 /// that it is heard before; and each waits for the answer to the one before.
-fn talk(bench: &mut FirmwareBench, first: u64, dice: &mut Dice) -> u32 {
+fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
     let mut said = 0;
     // The tick of a frame comes a slot before A1's pulse.
     let tick = first - FRAME / 5;
     while bench.uno.cycle() < END - FREQUENCY {
-        let line = line(dice);
+        let line = line(rng);
         let sending = (line.len() as u64 + 1) * BYTE;
-        let wait = dice.below(40) * dice.below(40) * CYCLES_PER_MS;
+        let wait = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
         let earliest = bench.uno.cycle() + wait + sending;
         let frame = (earliest - tick).div_ceil(FRAME);
-        let within = CYCLES_PER_MS + dice.below(18 * CYCLES_PER_MS);
+        let within = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
         bench
             .uno
             .run_until_cycle(tick + frame * FRAME + within - sending);
@@ -84,7 +90,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
             .find(up)
             .expect("the robot stands")
             .cycle;
-        let said = talk(&mut bench, first, &mut Dice(seed));
+        let said = talk(&mut bench, first, &mut Rng::with_seed(seed));
         let status = Status::of(&mut bench);
         assert_eq!(
             (status.number("late"), status.number("rx_lost")),
@@ -94,7 +100,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         bench.uno.run_until_cycle(END);
         let count = (bench.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
-        let commands = twin::play(&bench.uno.heard(), first, sent.len());
+        let commands = twin::play(&bench.uno.received_by_uno(), first, sent.len());
         let mut poses = std::collections::HashSet::new();
         for (n, (frame, asked)) in sent.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));

@@ -158,26 +158,17 @@ impl fmt::Display for Spread {
 /// Poses to try before a search is given up.
 pub const TRIES: u32 = 1_000_000;
 
-/// Evenly spread numbers that are the same in every run (splitmix64).
-pub struct Numbers(u64);
+/// Random numbers that are the same in every run.
+pub struct Numbers(fastrand::Rng);
 
 impl Numbers {
     pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(fastrand::Rng::with_seed(seed))
     }
 
     /// Within a range, its ends included.
     pub fn within(&mut self, least: i16, most: i16) -> i16 {
-        let span = (i64::from(most) - i64::from(least) + 1) as u64;
-        (i64::from(least) + (self.next() % span) as i64) as i16
+        self.0.i16(least..=most)
     }
 
     /// A pose anywhere in the servos' travel.

@@ -4,58 +4,69 @@ use std::path::Path;
 use std::time::Instant;
 
 use lizard_robot::Robot;
-use simulated_uno::Call;
+use simulated_uno::{Call, Fidelity};
 
-use super::board::Board;
+use super::exactness::Exactness;
 use crate::Failure;
-use crate::sim::frame::FRAME;
+use crate::board::{Board, BoardError};
+use crate::sim::frame::{FRAME, servo_pins};
+use crate::sim::tour;
 
-/// What the firmware costs and how exact it is. Cycles are of 62.5 ns.
+/// What the firmware costs and how exact it is. Cycles are of 62.5 ns. What is
+/// nothing could not be measured: a robot without a gait that moves has no figures
+/// of one, and a firmware of another source than this program's has no commands
+/// to compare its pulses with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
+    /// The gait that was measured: the first that moves.
+    pub gait: Option<String>,
     /// Bytes of flash: code, tables and initial values.
     pub flash: u32,
     /// Bytes of RAM that are static.
     pub static_ram: u16,
     /// Fewest bytes ever between the stack and static data.
     pub stack_spare: u16,
-    /// Mean cycles of the control tick in walk, interrupts left out.
-    pub tick_mean: f64,
+    /// Mean cycles of the control tick in the gait, interrupts left out.
+    pub tick_mean: Option<f64>,
     /// The most cycles of a control tick in any motion, interrupts left out.
     pub tick_worst: u64,
     /// The most cycles from the tick to the end of its computation while the
     /// serial line is saturated both ways, interrupts and answers included.
     pub tick_latency: u64,
-    /// Mean cycles of the guard in a tick of walk.
-    pub guard: f64,
-    /// Mean cycles of all that main does in a frame of walk, tick included.
-    pub main: f64,
-    /// Cycles that the servo interrupts take in a frame of walk.
+    /// Mean cycles of the guard in a tick of the gait.
+    pub guard: Option<f64>,
+    /// Mean cycles of all that main does in a frame of the gait, tick included.
+    pub main: Option<f64>,
+    /// Cycles that the servo interrupts take in a frame.
     pub servo_interrupts: f64,
     /// The longest that a serial interrupt keeps a servo's edge waiting, cycles.
     pub serial_interrupt: u64,
-    /// Share of walk that the CPU is asleep, percent.
-    pub asleep: f64,
+    /// Share of the gait's time that the CPU is asleep, percent.
+    pub asleep: Option<f64>,
     /// Peak to peak of measured less commanded width, cycles: idle line.
-    pub jitter_idle: u64,
+    pub jitter_idle: Option<u64>,
     /// The same with the line saturated both ways.
-    pub jitter_flooded: u64,
+    pub jitter_flooded: Option<u64>,
     /// Worst deviation of a width from its command, cycles, in both.
-    pub width_error: u64,
+    pub width_error: Option<u64>,
     /// Worst deviation of a servo's period from 20 ms, cycles, in both.
     pub period_error: u64,
     /// The most servo pins high at once, in both.
     pub pins_high: u32,
-    /// The step in which widths vary, cycles.
-    pub resolution: u64,
+    /// The step in which widths vary in the gait, cycles.
+    pub resolution: Option<u64>,
     /// Edges that the firmware counts as late.
     pub late: u64,
     /// Bytes that it counts as lost while the sender waits for answers.
     pub lost: u64,
-    /// Wall time of ten simulated minutes of walk, s.
+    /// Wall time of ten simulated minutes of the gait, s.
     pub wall: f64,
 }
 
+/// The function of the firmware that computes a frame: the control tick.
+const TICK: &str = "Console::frame";
+/// The functions that the guard consists of.
+const GUARD: [&str; 2] = ["Clearance::of", "Clearance::hazard"];
 /// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
 const SERVO_VECTORS: [u8; 2] = [11, 12];
 /// And those of USART_RX and USART_UDRE.
@@ -76,86 +87,106 @@ impl Figures {
         robot: &Robot,
         progress: impl Fn(&'static str),
     ) -> Result<Self, Failure> {
-        let awake = || Board::awake(elf, robot);
+        let gaits: Vec<String> = tour::gaits(robot).into_iter().map(command).collect();
+        // A robot that only stands is measured while it stands.
+        let gait = gaits.first().map_or("stand", String::as_str);
+        let turn = gaits.last().map_or("stand", String::as_str);
+        let moves = !gaits.is_empty();
+        let awake = || -> Result<Board, BoardError> {
+            let mut board = Board::power_on(elf, Fidelity::DataSheet, servo_pins(robot))?;
+            board.run_ms(1000)?;
+            Ok(board)
+        };
         progress("pulses on an idle line");
-        let idle = Walk::of(awake()?, 20_000)?;
-        let heard = idle.board.uno.heard().len();
-        let idle_exact = idle.board.exactness(heard)?;
+        let mut idle = Steady::of(awake()?, gait, 20_000)?;
+        let sent = idle.board.uno.received_by_uno().len();
+        let idle_exact = Exactness::of(&mut idle.board, &robot.firmware, sent)?;
         progress("pulses on a saturated line");
-        let (mut flooded, heard) = flood(awake()?)?;
-        let flooded_exact = flooded.exactness(heard)?;
+        let (mut flooded, sent) = flood(awake()?, turn)?;
+        let flooded_exact = Exactness::of(&mut flooded, &robot.firmware, sent)?;
         progress("every command");
         let mut session = session(awake()?, robot)?;
-        progress("the control tick in walk");
-        let tick = times(awake()?, "Console::frame", &["walk"])?;
+        progress("the control tick in a gait");
+        let tick = times(awake()?, TICK, &[gait])?;
         progress("the control tick in every motion");
-        let every = times(awake()?, "Console::frame", &motions(robot))?;
+        let every = times(awake()?, TICK, &motions(robot))?;
         progress("the guard");
-        let of = times(awake()?, "Clearance::of", &["walk"])?;
-        let hazard = times(awake()?, "Clearance::hazard", &["walk"])?;
+        let mut guard = 0.0;
+        for function in GUARD {
+            guard += mean(&times(awake()?, function, &[gait])?);
+        }
         progress("the control tick on a saturated line");
-        let tick_latency = latency(awake()?)?;
+        let tick_latency = latency(awake()?, turn)?;
         progress("serial interrupts");
-        let serial_interrupt = longest_serial(awake)?;
-        progress("ten minutes of walk");
+        let serial_interrupt = longest_serial(awake, turn)?;
+        progress("ten minutes of a gait");
         let begin = Instant::now();
-        let long = Walk::of(awake()?, LONG)?;
+        let long = Steady::of(awake()?, gait, LONG)?;
         let wall = begin.elapsed().as_secs_f64();
 
-        let frames = idle.walked as f64 / FRAME as f64;
+        let frames = idle.cycles as f64 / FRAME as f64;
+        let of_gait = |figure: f64| moves.then_some(figure);
+        let width_error = idle_exact.worst().zip(flooded_exact.worst());
         Ok(Self {
             flash: long.board.uno.image().flash_used(),
             static_ram: long.board.uno.image().static_ram(),
             stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
-            tick_mean: mean(&tick),
+            tick_mean: of_gait(mean(&tick)),
             tick_worst: every.iter().map(Call::own_cycles).max().unwrap_or(0),
             tick_latency,
-            guard: mean(&of) + mean(&hazard),
-            main: (idle.awake - idle.in_handlers) as f64 / frames,
+            guard: of_gait(guard),
+            main: of_gait((idle.awake - idle.in_handlers) as f64 / frames),
             servo_interrupts: idle.in_servos as f64 / frames,
             serial_interrupt,
-            asleep: 100.0 - 100.0 * idle.awake as f64 / idle.walked as f64,
+            asleep: of_gait(100.0 - 100.0 * idle.awake as f64 / idle.cycles as f64),
             jitter_idle: idle_exact.jitter(),
             jitter_flooded: flooded_exact.jitter(),
-            width_error: idle_exact.worst().max(flooded_exact.worst()),
+            width_error: width_error.map(|(idle, flooded)| idle.max(flooded)),
             period_error: idle_exact.period.max(flooded_exact.period),
             pins_high: idle_exact.pins_high.max(flooded_exact.pins_high),
             resolution: idle_exact.step,
             late: session.count("late")? + flooded.count("late")?,
             lost: session.count("rx_lost")?,
             wall,
+            gait: gaits.first().cloned(),
         })
     }
 }
 
-/// A board that has walked on an idle line, and the cycles that took.
-struct Walk {
+/// The console command of a gait.
+fn command(gait: &str) -> String {
+    gait.replace('-', " ")
+}
+
+/// A board that has done the same for a time on an idle line, and the cycles that
+/// took.
+struct Steady {
     board: Board,
-    walked: u64,
+    cycles: u64,
     awake: u64,
     in_handlers: u64,
     in_servos: u64,
 }
 
-impl Walk {
-    fn of(mut board: Board, ms: u64) -> Result<Self, Failure> {
-        board.say("walk")?;
+impl Steady {
+    fn of(mut board: Board, line: &str, ms: u64) -> Result<Self, BoardError> {
+        board.say(line)?;
         board.run_ms(1000)?;
         let counts = |board: &Board| {
             [
                 board.uno.cycle(),
                 board.uno.awake_cycles(),
-                board.in_handlers(|_| true),
-                board.in_handlers(|vector| SERVO_VECTORS.contains(&vector)),
+                board.handler_cycles(|_| true),
+                board.handler_cycles(|vector| SERVO_VECTORS.contains(&vector)),
             ]
         };
         let before = counts(&board);
         board.run_ms(ms)?;
         let after = counts(&board);
-        let [walked, awake, in_handlers, in_servos] = std::array::from_fn(|i| after[i] - before[i]);
+        let [cycles, awake, in_handlers, in_servos] = std::array::from_fn(|i| after[i] - before[i]);
         Ok(Self {
             board,
-            walked,
+            cycles,
             awake,
             in_handlers,
             in_servos,
@@ -166,62 +197,59 @@ impl Walk {
 /// Twenty seconds of commands that move nothing, as fast as they go through the
 /// line, while the robot turns, and as many bytes back. Also returns how many
 /// bytes came before.
-fn flood(mut board: Board) -> Result<(Board, usize), Failure> {
-    let heard = saturate(&mut board)?;
+fn flood(mut board: Board, gait: &str) -> Result<(Board, usize), BoardError> {
+    let before = saturate(&mut board, gait)?;
     board.run_ms(20_000)?;
     board.uno.flood(b"");
     board.run_ms(300)?;
     // What is left of the flood ends with this line.
     board.uno.send(b"\n");
     board.run_ms(100)?;
-    Ok((board, heard))
+    Ok((board, before))
 }
 
-fn saturate(board: &mut Board) -> Result<usize, Failure> {
+/// Returns how many bytes came before the flood.
+fn saturate(board: &mut Board, gait: &str) -> Result<usize, BoardError> {
     board.say("watch 1")?;
-    board.say("left")?;
-    let heard = board.uno.heard().len();
+    board.say(gait)?;
+    let before = board.uno.received_by_uno().len();
     board.uno.flood(b"status\n");
-    Ok(heard)
+    Ok(before)
 }
 
 /// Everything one can ask for that moves: each gait from the one before, a far
 /// pose, home, a stop.
 fn motions(robot: &Robot) -> Vec<String> {
-    let names = robot.gaits.iter().map(|gait| gait.name.replace('-', " "));
+    let names = robot.gaits.iter().map(|gait| command(&gait.name));
     let mut lines: Vec<String> = names.collect();
-    let [a1, a2, a3, a4] = <[f64; 4]>::from(robot.neutral());
-    let far = [a1 - 35.0, a2, a3 - 35.0, a4];
-    for [a1, a2, a3, a4] in [far, [a1, a2, a3, a4]] {
-        lines.push(format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"));
-    }
+    lines.push(pose(robot, [-35.0, 0.0, -35.0, 0.0]));
+    lines.push(pose(robot, [0.0; 4]));
     lines.push("stop".into());
     lines
 }
 
+/// The command for a pose so many degrees from neutral.
+fn pose(robot: &Robot, turns: [f64; 4]) -> String {
+    let neutral = <[f64; 4]>::from(robot.neutral());
+    let [a1, a2, a3, a4]: [f64; 4] = std::array::from_fn(|i| neutral[i] + turns[i]);
+    format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
+}
+
 /// Every command with a report of every frame, each sent when the one before has
 /// been answered.
-fn session(mut board: Board, robot: &Robot) -> Result<Board, Failure> {
+fn session(mut board: Board, robot: &Robot) -> Result<Board, BoardError> {
     board.say("watch 1")?;
-    let others = [
-        "help",
-        "?",
-        "status",
-        "speed 55",
-        "walk",
-        "rest",
-        "walk",
-        "stand",
-        "watch 0",
-        "what",
-        "speed",
-        "speed 5",
-        "pose 90 90 318.59 221.41",
-        "pose 150 41.41 318.59 200",
-        "a line that is longer than the sixty-three characters it may have",
-    ];
-    let lines = motions(robot);
-    for line in lines.iter().map(String::as_str).chain(others) {
+    let mut lines = motions(robot);
+    lines.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
+    let gait = tour::gaits(robot).first().copied().map(command);
+    lines.extend(gait.clone());
+    lines.push("rest".into());
+    lines.extend(gait);
+    lines.extend(["stand", "watch 0", "what", "speed", "speed 5"].map(str::to_owned));
+    lines.push(pose(robot, [-48.59, 48.59, 0.0, 0.0]));
+    lines.push(pose(robot, [11.41, 0.0, 0.0, -21.41]));
+    lines.push("a line that is longer than the sixty-three characters it may have".into());
+    for line in &lines {
         board.say(line)?;
         board.run_ms(700)?;
     }
@@ -233,11 +261,11 @@ fn times(
     mut board: Board,
     function: &str,
     lines: &[impl AsRef<str>],
-) -> Result<Vec<Call>, Failure> {
+) -> Result<Vec<Call>, BoardError> {
     let mut calls = Vec::new();
     for line in lines {
         board.say(line.as_ref())?;
-        calls.extend(board.time(function, 3000)?);
+        calls.extend(board.time_calls(function, 3000)?);
     }
     Ok(calls)
 }
@@ -249,9 +277,9 @@ fn mean(calls: &[Call]) -> f64 {
 
 /// The longest time from a tick to the return of the function that computes its
 /// frame, on a saturated line.
-fn latency(mut board: Board) -> Result<u64, Failure> {
-    saturate(&mut board)?;
-    let calls = board.time("Console::frame", 5000)?;
+fn latency(mut board: Board, gait: &str) -> Result<u64, BoardError> {
+    saturate(&mut board, gait)?;
+    let calls = board.time_calls(TICK, 5000)?;
     // The tick comes a slot before A1's pulse.
     let tick = board.first_pulse()? - FRAME / 5;
     let late = calls.iter().map(|call| (call.leave - tick) % FRAME);
@@ -259,12 +287,15 @@ fn latency(mut board: Board) -> Result<u64, Failure> {
 }
 
 /// The longest of the serial interrupts on a saturated line, with their entry.
-fn longest_serial(awake: impl Fn() -> Result<Board, Failure>) -> Result<u64, Failure> {
+fn longest_serial(
+    awake: impl Fn() -> Result<Board, BoardError>,
+    gait: &str,
+) -> Result<u64, BoardError> {
     let mut longest = 0;
     for vector in SERIAL_VECTORS {
         let mut board = awake()?;
-        saturate(&mut board)?;
-        let calls = board.time(&format!("__vector_{vector}"), 2000)?;
+        saturate(&mut board, gait)?;
+        let calls = board.time_calls(&format!("__vector_{vector}"), 2000)?;
         longest = calls.iter().map(Call::cycles).fold(longest, u64::max);
     }
     Ok(longest + ENTRY)

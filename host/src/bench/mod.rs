@@ -1,8 +1,8 @@
 //! `lizard bench`: what the firmware costs and how exact it is, beside what it
 //! may cost and beside the Arduino Servo library.
 
-mod board;
 mod budget;
+mod exactness;
 mod figures;
 mod table;
 
@@ -72,7 +72,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let elf = elf.display().to_string();
         writeln!(out, "{}", serde_json::json!({ "elf": elf, "rows": rows }))?;
     } else {
-        table::print(&rows, &mut out)?;
+        table::print(&rows, figures.gait.as_deref(), &mut out)?;
     }
     let broken: Vec<&str> = rows
         .iter()

@@ -8,7 +8,7 @@ use super::budget::{Bound, Row, SERVO_LIBRARY};
 ///
 /// # Errors
 /// Writing failed.
-pub fn print(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
+pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "{:<30} {:>10} {:<7} {:>16}   Arduino Servo",
@@ -28,7 +28,8 @@ pub fn print(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
         let line = format!(
             "{:<30} {:>10} {:<7} {:>16}   {}{}",
             row.what,
-            grouped(row.measured, decimals),
+            row.measured
+                .map_or("-".to_owned(), |measured| grouped(measured, decimals)),
             row.unit,
             budget,
             row.servo_library.unwrap_or(""),
@@ -36,7 +37,21 @@ pub fn print(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
         );
         writeln!(out, "{}", line.trim_end())?;
     }
-    writeln!(out, "\nA cycle is 62.5 ns. {SERVO_LIBRARY}.")
+    let gait = match gait {
+        Some(gait) => format!("The gait is {gait}."),
+        None => "-: not measured, this robot has no gait that moves.".to_owned(),
+    };
+    if rows
+        .iter()
+        .any(|row| row.what == "width less command, worst" && row.measured.is_none())
+    {
+        writeln!(
+            out,
+            "\nThis firmware was not built from the same source and robot.toml as this program: \
+             its widths were not compared."
+        )?;
+    }
+    writeln!(out, "\nA cycle is 62.5 ns. {gait} {SERVO_LIBRARY}.")
 }
 
 /// A number with its thousands apart.
@@ -74,13 +89,13 @@ mod tests {
         let row = Row {
             what: "flash",
             unit: "bytes",
-            measured: 20_000.0,
+            measured: Some(20_000.0),
             budget: Bound::AtMost(16_384.0),
             servo_library: Some("5 994"),
             wall_clock: false,
         };
         let mut text = Vec::new();
-        print(&[row], &mut text).expect("a vector takes it");
+        print(&[row], None, &mut text).expect("a vector takes it");
         let text = String::from_utf8(text).expect("it is text");
         assert!(text.contains("20 000 bytes"), "{text}");
         assert!(

@@ -7,6 +7,16 @@ use svg::node::element::Group;
 use super::ink::{Anchor, DARK, GREY, SERVO, line, text};
 use super::top_view::{Joint, PIXELS_PER_MM, SIZE, View, page};
 
+/// The name on the board of an Arduino pin number: D9, or A0 for 14.
+#[must_use]
+pub fn pin_name(number: u8) -> String {
+    const A0: u8 = 14;
+    match number.checked_sub(A0) {
+        Some(n) => format!("A{n}"),
+        None => format!("D{number}"),
+    }
+}
+
 impl View<'_> {
     /// Names, angles and measures.
     pub(super) fn labels(&self, mut group: Group) -> Group {
@@ -20,7 +30,11 @@ impl View<'_> {
             let anchor = if left { Anchor::End } else { Anchor::Start };
             let (x, y) = page(place);
             let toward = page(shaft + Vector::new(side * 3.5, up * 2.0));
-            let name = format!("{} · D{}", NAMES[servo], self.robot.servos[servo].pin);
+            let name = format!(
+                "{} · {}",
+                NAMES[servo],
+                pin_name(self.robot.servos[servo].pin)
+            );
             let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
             let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
             let begin = (x + 6.0 * -side, y - 4.0);

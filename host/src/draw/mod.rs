@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 use crate::{Failure, PoseArgs, RobotFile};
 
+pub use labels::pin_name;
 pub use top_view::top_view;
 
 /// Draw the robot from above as SVG

@@ -273,7 +273,8 @@ mod tests {
     use lizard_kinematics::Pose;
 
     fn check(pose: Option<Pose>, verdict: impl Fn(&View)) {
-        let robot = Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right");
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right");
         let pose = pose.unwrap_or_else(|| robot.neutral());
         let solution = robot.lizard.solve(&pose).expect("the pose closes");
         verdict(&View {

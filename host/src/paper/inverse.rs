@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector, wrap};
+use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector};
 use lizard_robot::Robot;
 use serde::Serialize;
 

@@ -6,7 +6,9 @@ use serde::Serialize;
 use simulated_uno::{CYCLES_PER_US, FREQUENCY};
 
 use super::frame::{FRAME, Frame};
-use super::script::Script;
+use super::frame_log::FrameLog;
+use super::spans::Span;
+use crate::draw::pin_name;
 
 /// One frame as the servos understand it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -27,8 +29,8 @@ pub struct ServoReport {
     pub servo: &'static str,
     /// Its leg: L or R, F or H for hind.
     pub leg: &'static str,
-    /// Arduino number of its pin.
-    pub pin: u8,
+    /// Its pin, `D9` or `A0`.
+    pub pin: String,
     /// Number of pulses.
     pub pulses: usize,
     /// Shortest pulse, us.
@@ -84,61 +86,98 @@ pub struct Leg {
     pub turn: f64,
 }
 
+impl Instant {
+    /// A frame that starts at a time (s) with these pulses (cycles).
+    fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
+        let us = |width: u64| width as f64 / CYCLES_PER_US as f64;
+        let turns = widths.map(|widths| -> [f64; 4] {
+            std::array::from_fn(|i| robot.servos[i].sweep(us(widths[i])))
+        });
+        Self {
+            seconds,
+            angles: turns.map(|turns| std::array::from_fn(|i| robot.servos[i].neutral + turns[i])),
+            sweeps: turns.map(|turns| std::array::from_fn(|i| turns[i] * FORWARD[i])),
+        }
+    }
+}
+
 /// Reads frames back into angles.
 #[must_use]
 pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<Instant> {
-    let us = |width: u64| width as f64 / CYCLES_PER_US as f64;
+    let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
         .iter()
-        .map(|frame| {
-            let turns = frame.all().map(|widths| -> [f64; 4] {
-                std::array::from_fn(|i| robot.servos[i].sweep(us(widths[i])))
-            });
-            Instant {
-                seconds: frame.start as f64 / FREQUENCY as f64,
-                angles: turns
-                    .map(|turns| std::array::from_fn(|i| robot.servos[i].neutral + turns[i])),
-                sweeps: turns.map(|turns| std::array::from_fn(|i| turns[i] * FORWARD[i])),
-            }
-        })
+        .map(|frame| Instant::of(robot, seconds(frame), frame.all()))
         .collect()
+}
+
+/// A run's frames with the robot whose servos got them.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The frames.
+    pub log: &'a FrameLog,
+}
+
+impl<'a> Run<'a> {
+    /// Frame by frame, those whose numbers are in `range`.
+    pub fn within(
+        self,
+        range: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = Instant> + Clone + 'a {
+        range.map(move |n| {
+            let widths = self.log.widths[n];
+            let all = widths.iter().all(|width| *width > 0);
+            let widths = all.then_some(widths.map(u64::from));
+            Instant::of(self.robot, self.log.seconds(n), widths)
+        })
+    }
+
+    /// Frame by frame.
+    pub fn instants(self) -> impl Iterator<Item = Instant> + Clone + 'a {
+        self.within(0..self.log.widths.len())
+    }
+}
+
+impl Serialize for Run<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.instants())
+    }
 }
 
 /// Each servo's row of the table. `commands` are the widths in cycles that the
 /// firmware's core asked for, frame by frame, 0 for none.
 #[must_use]
-pub fn servos(
-    robot: &Robot,
-    frames: &[Frame],
-    instants: &[Instant],
-    commands: Option<&[[u16; 4]]>,
-) -> Vec<ServoReport> {
+pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
+    let frames = &run.log.widths;
+    let mut slew = [0.0f64; 4];
+    let mut before = None;
+    for angles in run.instants().map(|at| at.angles) {
+        if let (Some(before), Some(angles)) = (before, angles) {
+            let before: [f64; 4] = before;
+            slew = std::array::from_fn(|i| slew[i].max((angles[i] - before[i]).abs()));
+        }
+        before = angles;
+    }
     let row = |i: usize| {
-        let widths = || frames.iter().filter_map(move |frame| frame.widths[i]);
-        let us = |width: Option<u64>| width.unwrap_or(0) as f64 / CYCLES_PER_US as f64;
+        let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
+        let us = |width: Option<u16>| f64::from(width.unwrap_or(0)) / CYCLES_PER_US as f64;
         let width_error = commands.map(|commands| {
             let pairs = frames.iter().zip(commands);
-            let error = |(frame, command): (&Frame, &[u16; 4])| {
-                frame.widths[i].unwrap_or(0).abs_diff(u64::from(command[i]))
-            };
-            pairs.map(error).max().unwrap_or(0)
+            let errors = pairs.map(|(frame, command)| frame[i].abs_diff(command[i]));
+            u64::from(errors.max().unwrap_or(0))
         });
-        let periods = frames
-            .windows(2)
-            .filter_map(|pair| Some((pair[1].starts[i]? - pair[0].starts[i]?).abs_diff(FRAME)));
-        let steps = instants
-            .windows(2)
-            .filter_map(|pair| Some((pair[1].angles?[i] - pair[0].angles?[i]).abs()));
         ServoReport {
             servo: NAMES[i],
             leg: LEGS[i],
-            pin: robot.servos[i].pin,
+            pin: pin_name(run.robot.servos[i].pin),
             pulses: widths().count(),
             min_us: us(widths().min()),
             max_us: us(widths().max()),
             width_error,
-            period_error: periods.max().unwrap_or(0),
-            slew: steps.fold(0.0, f64::max) * FREQUENCY as f64 / FRAME as f64,
+            period_error: run.log.period_error[i],
+            slew: slew[i] * FREQUENCY as f64 / FRAME as f64,
         }
     };
     (0..4).map(row).collect()
@@ -146,64 +185,64 @@ pub fn servos(
 
 /// Solves every pose of the run.
 #[must_use]
-pub fn safety(robot: &Robot, instants: &[Instant]) -> Safety {
+pub fn safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
         stroke: [f64::INFINITY, f64::NEG_INFINITY],
         violations: 0,
         first_violation: None,
     };
-    for instant in instants {
+    // A robot that stands repeats its pose: solved once.
+    let mut latest: Option<([f64; 4], Option<String>)> = None;
+    for instant in run.instants() {
         let Some(angles) = instant.angles else {
             continue;
         };
-        let broken = match robot.lizard.solve(&angles.into()) {
-            Err(infeasible) => Some(infeasible.to_string()),
-            Ok(solution) => {
-                let (check, value) = solution.margins.min();
-                if safety
-                    .least
-                    .as_ref()
-                    .is_none_or(|least| value < least.value)
-                {
-                    let (margin, seconds) = (check.to_string(), instant.seconds);
-                    safety.least = Some(Tightest {
-                        margin,
-                        value,
-                        seconds,
-                    });
-                }
-                for s in [solution.left.s, solution.right.s] {
-                    safety.stroke = [safety.stroke[0].min(s), safety.stroke[1].max(s)];
-                }
-                robot
-                    .limits
-                    .violations(&solution)
-                    .next()
-                    .map(|violation| violation.to_string())
-            }
+        let broken = match latest.take() {
+            Some((before, broken)) if before == angles => broken,
+            _ => safety.add(run.robot, angles, instant.seconds),
         };
-        if let Some(reason) = broken {
+        if let Some(reason) = &broken {
             safety.violations += 1;
-            safety.first_violation.get_or_insert(reason);
+            safety.first_violation.get_or_insert_with(|| reason.clone());
         }
+        latest = Some((angles, broken));
     }
     safety
 }
 
-/// The way of each command by the contact model, and of the whole run as the
-/// last one. `Feet are never lifted`: see [`lizard_robot::Ground`].
+impl Safety {
+    /// Takes a pose into account; returns why it breaks a limit.
+    fn add(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
+        let solution = match robot.lizard.solve(&angles.into()) {
+            Err(infeasible) => return Some(infeasible.to_string()),
+            Ok(solution) => solution,
+        };
+        let (check, value) = solution.margins.min();
+        if self.least.as_ref().is_none_or(|least| value < least.value) {
+            self.least = Some(Tightest {
+                margin: check.to_string(),
+                value,
+                seconds,
+            });
+        }
+        for s in [solution.left.s, solution.right.s] {
+            self.stroke = [self.stroke[0].min(s), self.stroke[1].max(s)];
+        }
+        let violation = robot.limits.violations(&solution).next();
+        violation.map(|violation| violation.to_string())
+    }
+}
+
+/// Where each command took the robot by the contact model, and the whole run as
+/// the last one. Feet are never lifted: see [`lizard_robot::Ground`].
 #[must_use]
-pub fn way(robot: &Robot, instants: &[Instant], script: &Script) -> Vec<Leg> {
-    let moves = script.steps.iter().filter(|step| step.command != "status");
-    let mut cuts: Vec<(f64, &str)> = vec![(0.0, "stand")];
-    cuts.extend(moves.map(|step| (step.ms as f64 / 1000.0, step.command.as_str())));
-    let end = script.end_ms as f64 / 1000.0;
+pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
+    let end = spans.last().map_or(0.0, |span| span.to);
     let leg = |command: &str, from: f64, to: f64| {
-        let within = instants
-            .iter()
-            .filter(|at| at.seconds >= from && at.seconds < to);
-        let travel = robot.ground.travel(within.filter_map(|at| at.sweeps));
+        let within = run.within(run.log.index(from)..run.log.index(to));
+        let sweeps = within.filter_map(|at| at.sweeps);
+        let travel = run.robot.ground.travel(sweeps);
         Leg {
             command: command.to_owned(),
             from,
@@ -213,14 +252,9 @@ pub fn way(robot: &Robot, instants: &[Instant], script: &Script) -> Vec<Leg> {
             turn: travel.turn,
         }
     };
-    let mut legs: Vec<Leg> = (0..cuts.len())
-        .map(|n| {
-            leg(
-                cuts[n].1,
-                cuts[n].0,
-                cuts.get(n + 1).map_or(end, |next| next.0),
-            )
-        })
+    let mut legs: Vec<Leg> = spans
+        .iter()
+        .map(|span| leg(&span.command, span.from, span.to))
         .collect();
     legs.push(leg("all", 0.0, end));
     legs
@@ -231,26 +265,24 @@ mod tests {
     use super::*;
 
     fn robot() -> Robot {
-        Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right")
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
     }
 
     /// The frames that servos of `angles(seconds)` would get, from second 1 on.
-    fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> Vec<Frame> {
-        (0..count)
-            .map(|n| {
-                let angles = angles(n as f64 / 50.0);
-                let width = |i: usize| (robot.servos[i].pulse(angles[i]) * 16.0).round() as u64;
-                let start = FREQUENCY + n * FRAME;
-                Frame {
-                    start,
-                    starts: std::array::from_fn(|i| Some(start + i as u64 * FRAME / 5)),
-                    widths: std::array::from_fn(|i| Some(width(i))),
-                }
-            })
-            .collect()
+    fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
+        let width = |i: usize, angle: f64| (robot.servos[i].pulse(angle) * 16.0).round() as u16;
+        let frame = |n: u64| {
+            let angles = angles(n as f64 / 50.0);
+            std::array::from_fn(|i| width(i, angles[i]))
+        };
+        FrameLog {
+            first: FREQUENCY,
+            widths: (0..count).map(frame).collect(),
+            ..FrameLog::default()
+        }
     }
 
-    fn gait_frames(robot: &Robot, name: &str, count: u64) -> Vec<Frame> {
+    fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
         let (_, gait) = robot.gait(name).expect("it is in robot.toml");
         frames_of(robot, count, |seconds| gait.angles(gait.phase(seconds)))
     }
@@ -259,8 +291,10 @@ mod tests {
     fn an_angle_survives_the_way_through_a_pulse() {
         let robot = robot();
         let pose = [120.0, 45.0, 300.0, 230.0];
-        let instants = instants(&robot, &frames_of(&robot, 2, |_| pose));
-        let angles = instants[0].angles.expect("all four have a pulse");
+        let log = frames_of(&robot, 2, |_| pose);
+        let (robot, log) = (&robot, &log);
+        let first = Run { robot, log }.instants().next().expect("two frames");
+        let angles = first.angles.expect("all four have a pulse");
         for i in 0..4 {
             // Half a cycle of 62.5 ns at 10 us per degree.
             assert!(
@@ -270,7 +304,7 @@ mod tests {
                 pose[i]
             );
         }
-        assert_eq!(instants[0].seconds, 1.0);
+        assert_eq!(first.seconds, 1.0);
     }
 
     #[test]
@@ -282,12 +316,16 @@ mod tests {
             ("back", -34.16, 0.0),
         ] {
             let frames = gait_frames(&robot, gait, 51);
-            let script = Script::parse(&format!("0 {gait}")).expect("it is well formed");
-            let script = Script {
-                end_ms: 10_000,
-                ..script
+            let span = Span {
+                command: gait.to_owned(),
+                from: 0.0,
+                to: 10.0,
             };
-            let way = way(&robot, &instants(&robot, &frames), &script);
+            let run = Run {
+                robot: &robot,
+                log: &frames,
+            };
+            let way = way(run, &[span]);
             let all = way.last().expect("the whole run");
             assert!((all.forward - forward).abs() < 0.35, "{gait}: {all:?}");
             assert!((all.turn - turn).abs() < 0.2, "{gait}: {all:?}");
@@ -302,12 +340,13 @@ mod tests {
             angles[0] += 100.0 * seconds;
             angles
         });
-        frames[2].starts[1] = frames[2].starts[1].map(|start| start + 7);
-        frames[1].widths[2] = frames[1].widths[2].map(|width| width - 3);
+        frames.period_error[1] = 7;
+        frames.widths[1][2] -= 3;
         let commands: Vec<[u16; 4]> = (0..3)
             .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
             .collect();
-        let rows = servos(&robot, &frames, &instants(&robot, &frames), Some(&commands));
+        let (robot, log) = (&robot, &frames);
+        let rows = servos(Run { robot, log }, Some(&commands));
         assert_eq!(
             (rows[0].pulses, rows[0].min_us, rows[0].max_us),
             (3, 1500.0, 1540.0)
@@ -326,11 +365,11 @@ mod tests {
     #[test]
     fn a_pose_near_a_singularity_is_reported() {
         let robot = robot();
-        let fine = safety(&robot, &instants(&robot, &gait_frames(&robot, "walk", 50)));
+        let of = |log: &FrameLog| safety(Run { robot: &robot, log });
+        let fine = of(&gait_frames(&robot, "walk", 50));
         assert_eq!(fine.violations, 0);
         assert!(fine.least.is_some_and(|least| least.value > 0.3));
-        let bad = frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]);
-        let found = safety(&robot, &instants(&robot, &bad));
+        let found = of(&frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
         assert_eq!(found.violations, 2);
         assert!(found.first_violation.is_some());
     }

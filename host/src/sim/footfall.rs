@@ -33,11 +33,11 @@ pub struct Stretch {
 
 /// What the foot of a servo does, in order of time. Nothing while it rests.
 #[must_use]
-pub fn stretches(instants: &[Instant], servo: usize) -> Vec<Stretch> {
+pub fn stretches(instants: impl Iterator<Item = Instant> + Clone, servo: usize) -> Vec<Stretch> {
     let frame = FRAME as f64 / FREQUENCY as f64;
     let mut stretches: Vec<Stretch> = Vec::new();
-    for pair in instants.windows(2) {
-        let (Some(before), Some(after)) = (pair[0].sweeps, pair[1].sweeps) else {
+    for (here, next) in instants.clone().zip(instants.skip(1)) {
+        let (Some(before), Some(after)) = (here.sweeps, next.sweeps) else {
             continue;
         };
         let rate = (after[servo] - before[servo]) / frame;
@@ -48,7 +48,7 @@ pub fn stretches(instants: &[Instant], servo: usize) -> Vec<Stretch> {
         } else {
             Phase::Stance
         };
-        let (from, to) = (pair[0].seconds, pair[1].seconds);
+        let (from, to) = (here.seconds, next.seconds);
         match stretches.last_mut() {
             Some(last) if last.phase == phase && from - last.to < frame / 2.0 => last.to = to,
             _ => stretches.push(Stretch { phase, from, to }),
@@ -65,7 +65,8 @@ mod tests {
 
     /// Five seconds of a gait, then a second of rest.
     fn instants(gait: &str) -> Vec<Instant> {
-        let robot = Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right");
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right");
         let (_, gait) = robot.gait(gait).expect("it is in robot.toml");
         let neutral: [f64; 4] = robot.neutral().into();
         (0..300)
@@ -83,7 +84,7 @@ mod tests {
     }
 
     fn at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
-        let stretches = stretches(&instants(gait), servo);
+        let stretches = stretches(instants(gait).into_iter(), servo);
         let here = stretches
             .iter()
             .find(|stretch| (stretch.from..stretch.to).contains(&seconds));
@@ -93,7 +94,7 @@ mod tests {
     #[test]
     fn walk_is_three_quarters_stance_and_every_foot_returns_once_a_second() {
         for servo in 0..4 {
-            let stretches = stretches(&instants("walk"), servo);
+            let stretches = stretches(instants("walk").into_iter(), servo);
             let within = |phase| {
                 let ours = stretches
                     .iter()

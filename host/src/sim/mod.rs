@@ -2,16 +2,20 @@
 //! its servos get, and where that would take the robot.
 
 pub mod analysis;
-pub mod console;
+mod dialogue;
 pub mod footfall;
 pub mod frame;
+pub mod frame_log;
+pub mod lines;
 mod report;
 pub mod script;
 pub mod session;
+pub mod spans;
 mod timeline;
+pub mod tour;
 pub mod twin;
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -19,23 +23,25 @@ use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
 use crate::{Failure, RobotFile};
+use analysis::Run;
+use dialogue::Printer;
 use report::Report;
 use script::Script;
-use session::{Recording, Speaker};
+use session::{DialogueLine, Event, Recording};
 
 /// Run the firmware on a simulated Arduino UNO
 ///
-/// Plays boot, walk, left, stop, rest unless told otherwise, prints the
-/// dialogue, a table of the servos and the predicted way, and draws servo
-/// angles and footfalls. Time is simulated: ten minutes take a few seconds.
+/// Plays boot, the first gait that moves, the gait that turns most, stop, rest
+/// unless told otherwise; prints the dialogue, a table of the servos and the
+/// predicted way, and draws servo angles and footfalls. Time is simulated: ten
+/// minutes take a few seconds.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
     /// folder or one above it]
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
-    /// Play one gait: walk, trot, crawl, back, left, right, arc-left, arc-right,
-    /// look, or any other gait of the firmware
+    /// Play one gait of robot.toml
     #[arg(long, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
     /// Play a file of lines `<ms since power-on> <command>`
@@ -44,6 +50,9 @@ pub struct Args {
     /// Simulated time in seconds [default: 12, or a second after the script]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
+    /// Print every line of the dialogue, also each of a long run of `# t=` lines
+    #[arg(long)]
+    all: bool,
     /// Print everything, each frame's angles included, as one JSON object
     #[arg(long)]
     json: bool,
@@ -95,16 +104,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let mut uno = Uno::load(&elf, fidelity)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
-    let pins = frame::servo_pins(&robot);
-    let bar = progress_bar(script.end_ms);
-    let recording = session::play(&mut uno, pins, &script, args.realtime, |ms| {
-        bar.set_position(ms)
-    });
-    bar.finish_and_clear();
+    let mut kept = Vec::new();
+    let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
 
-    let commands = commands(&recording);
-    let instants = analysis::instants(&robot, &recording.frames);
-    write_file(&args.svg, &timeline::draw(&robot, &instants, &script))?;
+    let progress = analysis_progress();
+    let spans = spans::spans(&script, &recording.answers);
+    let commands = commands(&robot, &recording);
+    let (robot, log) = (&robot, &recording.frames);
+    let frames = Run { robot, log };
+    write_file(&args.svg, &timeline::draw(frames, &spans))?;
     let report = Report {
         elf: elf.display().to_string(),
         fidelity: match fidelity {
@@ -113,10 +121,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         },
         seconds: recording.cycles as f64 / FREQUENCY as f64,
         wall_seconds: recording.wall.as_secs_f64(),
-        servos: analysis::servos(&robot, &recording.frames, &instants, commands.as_deref()),
-        safety: analysis::safety(&robot, &instants),
-        way: analysis::way(&robot, &instants, &script),
-        most_pins_high: recording.most_pins_high,
+        servos: analysis::servos(frames, commands.as_deref()),
+        safety: analysis::safety(frames),
+        way: analysis::way(frames, &spans),
+        most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: uno.image().flash_used(),
         static_ram: uno.image().static_ram(),
@@ -125,9 +133,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         resets: uno.resets(),
         ended: ended(&recording),
         svg: Some(args.svg.display().to_string()),
-        dialogue: recording.dialogue,
-        frames: instants,
+        dialogue: kept,
+        frames,
     };
+    progress.finish_and_clear();
     let mut out = io::stdout().lock();
     if args.json {
         serde_json::to_writer(&mut out, &report)?;
@@ -141,16 +150,45 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
+/// Plays the script. The dialogue is printed as it happens, or kept for JSON.
+fn record(
+    uno: &mut Uno,
+    robot: &Robot,
+    script: &Script,
+    args: &Args,
+    kept: &mut Vec<DialogueLine>,
+) -> io::Result<Recording> {
+    let bar = progress_bar(script.end_ms);
+    let mut printer = Printer::new(args.all);
+    let mut out = io::stdout();
+    let pins = frame::servo_pins(robot);
+    let recording = session::play(uno, pins, script, args.realtime, |event| {
+        match event {
+            Event::Time(ms) => bar.set_position(ms),
+            Event::Line(line) if args.json => kept.push(line.clone()),
+            Event::Line(line) => return bar.suspend(|| printer.print(line, &mut out)),
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    if !args.json {
+        printer.finish(&mut out)?;
+        writeln!(out)?;
+    }
+    Ok(recording)
+}
+
 /// The widths that the firmware's core asks for, if the firmware's banner says
 /// that it was built from the same core and tables as this program.
-fn commands(recording: &Recording) -> Option<Vec<[u16; 4]>> {
-    let first = recording.frames.first()?.start;
-    let commands = twin::play(&recording.heard, first, recording.frames.len());
-    let mut robot = recording
-        .dialogue
-        .iter()
-        .filter(|said| said.by == Speaker::Robot);
-    let same = robot.next()?.line == commands.said.lines().next()?;
+fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
+    let log = &recording.frames;
+    let commands = twin::play(
+        &robot.firmware,
+        &recording.received_by_uno,
+        log.first,
+        log.widths.len(),
+    );
+    let same = recording.banner.as_deref()? == commands.written.lines().next()?;
     same.then_some(commands.widths)
 }
 
@@ -166,7 +204,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let given = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
         let name = path.display();
-        let text = std::fs::read_to_string(path)
+        let text = read_script(path)
             .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
         let script =
             Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
@@ -191,10 +229,22 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
             "--duration must be at least {least} s without --script"
         )));
     }
-    Ok(args
-        .gait
-        .as_ref()
-        .map_or_else(|| Script::tour(ms), |gait| Script::of_gait(gait, ms)))
+    Ok(args.gait.as_deref().map_or_else(
+        || Script::of_gaits(&tour::gaits(robot), ms),
+        |gait| Script::of_gaits(&[gait], ms),
+    ))
+}
+
+/// The text of a script; no script is longer than 1 MiB.
+fn read_script(path: &Path) -> io::Result<String> {
+    const LONGEST: u64 = 1 << 20;
+    let mut text = String::new();
+    let file = std::fs::File::open(path)?;
+    file.take(LONGEST + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > LONGEST {
+        return Err(io::Error::other("it is longer than 1 MiB"));
+    }
+    Ok(text)
 }
 
 /// The firmware: the one given, or the one that `make firmware` leaves.
@@ -222,6 +272,12 @@ fn progress_bar(end_ms: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
         .expect("the template is well formed");
     ProgressBar::new(end_ms).with_style(style)
+}
+
+fn analysis_progress() -> ProgressBar {
+    let bar = ProgressBar::new_spinner().with_message("looking at every frame");
+    bar.enable_steady_tick(std::time::Duration::from_millis(100));
+    bar
 }
 
 /// Writes a file and the folders it needs.

@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::analysis::{Instant, Leg, Safety, ServoReport};
-use super::session::{Said, Speaker};
+use super::analysis::{Leg, Run, Safety, ServoReport};
+use super::session::DialogueLine;
 
 /// Everything that a run has to show.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct Report<'a> {
     /// The firmware.
     pub elf: String,
     /// `data-sheet` or `stock`.
@@ -19,7 +19,7 @@ pub struct Report {
     /// Wall time in seconds.
     pub wall_seconds: f64,
     /// The console's dialogue.
-    pub dialogue: Vec<Said>,
+    pub dialogue: Vec<DialogueLine>,
     /// The table of servos.
     pub servos: Vec<ServoReport>,
     /// Margins and strokes of every pose sent.
@@ -45,44 +45,18 @@ pub struct Report {
     /// Where the picture is.
     pub svg: Option<String>,
     /// Servo angles of every frame.
-    pub frames: Vec<Instant>,
+    pub frames: Run<'a>,
 }
 
-/// Lines of dialogue before the middle is left out.
-const LONGEST_DIALOGUE: usize = 24;
-
-impl Report {
-    /// Prints the report for people.
+impl Report<'_> {
+    /// Prints the report for people, the dialogue left out.
     ///
     /// # Errors
     /// Writing failed.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
-        self.print_dialogue(out)?;
         self.print_servos(out)?;
         self.print_way(out)?;
         self.print_rest(out)
-    }
-
-    fn print_dialogue(&self, out: &mut impl Write) -> io::Result<()> {
-        let lines = self.dialogue.len();
-        let cut = lines.saturating_sub(LONGEST_DIALOGUE);
-        for (n, said) in self.dialogue.iter().enumerate() {
-            if cut > 0 && n == LONGEST_DIALOGUE / 2 {
-                writeln!(
-                    out,
-                    "               ({cut} lines left out; --json has them all)"
-                )?;
-            }
-            if cut > 0 && (LONGEST_DIALOGUE / 2..LONGEST_DIALOGUE / 2 + cut).contains(&n) {
-                continue;
-            }
-            let mark = match said.by {
-                Speaker::You => ">",
-                Speaker::Robot => " ",
-            };
-            writeln!(out, "{:>9.3} s  {mark} {}", said.ms / 1000.0, said.line)?;
-        }
-        writeln!(out)
     }
 
     fn print_servos(&self, out: &mut impl Write) -> io::Result<()> {
@@ -100,7 +74,7 @@ impl Report {
                 .map_or("?".to_owned(), |error| error.to_string());
             writeln!(
                 out,
-                "{} {} D{:<4} {:>9} {:>9.2} {:>9.2} {:>13} {:>13} {:>9.1}",
+                "{} {} {:<5} {:>9} {:>9.2} {:>9.2} {:>13} {:>13} {:>9.1}",
                 row.servo,
                 row.leg,
                 row.pin,

@@ -56,20 +56,19 @@ impl Script {
     /// The shortest of the built-in scripts, ms.
     pub const SHORTEST_MS: u64 = STAND_MS + CLOSE_MS + 1000;
 
-    /// Boot, walk, turn left, stop, rest, within `ms`.
+    /// Boot, gaits one after the other, stop, status, rest, within `ms`. The
+    /// last gait gets what is left of the time.
     #[must_use]
-    pub fn tour(ms: u64) -> Self {
-        let turn = STAND_MS + (ms - STAND_MS - CLOSE_MS) * 5 / 9;
-        Self::closed(vec![step(STAND_MS, "walk"), step(turn, "left")], ms)
-    }
-
-    /// Boot, one gait, stop, rest, within `ms`.
-    #[must_use]
-    pub fn of_gait(gait: &str, ms: u64) -> Self {
-        Self::closed(vec![step(STAND_MS, &gait.replace('-', " "))], ms)
-    }
-
-    fn closed(mut steps: Vec<Step>, ms: u64) -> Self {
+    pub fn of_gaits(gaits: &[&str], ms: u64) -> Self {
+        let time = ms - STAND_MS - CLOSE_MS;
+        // Of two gaits the first gets the longer part.
+        let start = |n: usize| STAND_MS + time * 5 * n as u64 / (4 + 5 * (gaits.len() as u64 - 1));
+        let command = |gait: &str| gait.replace('-', " ");
+        let mut steps: Vec<Step> = gaits
+            .iter()
+            .enumerate()
+            .map(|(n, gait)| step(start(n), &command(gait)))
+            .collect();
         steps.push(step(ms - CLOSE_MS, "stop"));
         steps.push(step(ms - CLOSE_MS / 2 - 200, "status"));
         steps.push(step(ms - CLOSE_MS / 2, "rest"));
@@ -77,12 +76,13 @@ impl Script {
     }
 
     /// Reads lines `<ms> <command>`. Blank lines and lines that begin with `#`
-    /// are skipped. The run ends a second after the last command.
+    /// are skipped, and so is a byte order mark. The run ends a second after the last command.
     ///
     /// # Errors
     /// A line without a time or a command, or out of order.
     pub fn parse(text: &str) -> Result<Self, ScriptError> {
         let mut steps: Vec<Step> = Vec::new();
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         for (index, line) in text.lines().enumerate() {
             let line = line.trim();
             if line.is_empty() || line.starts_with('#') {
@@ -126,7 +126,8 @@ mod tests {
 
     #[test]
     fn a_script_is_times_and_commands() {
-        let script = Script::parse("# a walk\n 500 walk\n\n1500\tspeed 50\r\n1500 stop");
+        let text = "\u{feff}500 walk\r\n# a comment\n\n 1500\tspeed 50\r\n1500 stop";
+        let script = Script::parse(text);
         let steps = vec![
             step(500, "walk"),
             step(1500, "speed 50"),
@@ -158,14 +159,15 @@ mod tests {
     #[test]
     fn the_built_in_scripts_are_in_order_and_end_in_time() {
         for script in [
-            Script::tour(Script::SHORTEST_MS),
-            Script::of_gait("arc-left", 9000),
+            Script::of_gaits(&["walk", "left"], Script::SHORTEST_MS),
+            Script::of_gaits(&["arc-left"], 9000),
+            Script::of_gaits(&[], 9000),
         ] {
             assert!(script.steps.is_sorted_by_key(|step| step.ms));
             assert!(script.steps.iter().all(|step| step.ms < script.end_ms));
         }
         assert_eq!(
-            Script::of_gait("arc-left", 9000).steps[0].command,
+            Script::of_gaits(&["arc-left"], 9000).steps[0].command,
             "arc left"
         );
     }

@@ -1,46 +1,57 @@
 //! A script played on the simulated UNO.
 
+use std::io;
 use std::time::{Duration, Instant};
 
-use simulated_uno::{CYCLES_PER_MS, Pin, SerialByte, State, Uno, most_pins_high};
+use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Pin, SerialByte, State, Uno};
 
-use super::console::Console;
-use super::frame::{FRAME, Frame, frames, opens};
+use super::frame::FRAME;
+use super::frame_log::{FrameLog, FrameReader};
+use super::lines::LineReader;
 use super::script::Script;
 
-/// Who said a line.
+/// Which end of the serial line a line of text came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Speaker {
+pub enum Sender {
     /// The person at the console.
-    You,
+    User,
     /// The firmware.
     Robot,
 }
 
 /// A line of the dialogue.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Said {
+pub struct DialogueLine {
     /// Milliseconds since power-on: for the robot at the line's end, for the
-    /// person at its start.
+    /// user at its start.
     pub ms: f64,
-    /// Who said it.
-    pub by: Speaker,
-    /// The line.
-    pub line: String,
+    /// Who sent it.
+    pub from: Sender,
+    /// Its text without the line end.
+    pub text: String,
+}
+
+/// What [`play`] tells while it runs.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// The next line of the dialogue.
+    Line(&'a DialogueLine),
+    /// The time reached, ms since power-on; every 20 ms.
+    Time(u64),
 }
 
 /// What a run left behind.
 #[derive(Debug)]
 pub struct Recording {
-    /// The whole dialogue in order of time.
-    pub dialogue: Vec<Said>,
-    /// Every frame from A1's first pulse on.
-    pub frames: Vec<Frame>,
+    /// The firmware's first line.
+    pub banner: Option<String>,
+    /// The answer to each command of the script, if it came before the end.
+    pub answers: Vec<Option<String>>,
+    /// Every pulse of the servos.
+    pub frames: FrameLog,
     /// The bytes of the commands, complete at the UNO.
-    pub heard: Vec<SerialByte>,
-    /// The most servo pins high at once.
-    pub most_pins_high: u32,
+    pub received_by_uno: Vec<SerialByte>,
     /// Cycles simulated.
     pub cycles: u64,
     /// How the firmware ended.
@@ -49,65 +60,89 @@ pub struct Recording {
     pub wall: Duration,
 }
 
-/// Plays a script from where the board is now. `progress` is told the time in ms
-/// every 20 ms; `realtime` waits for the wall clock.
+/// Plays a script from power-on. `realtime` waits for the wall clock. `on_event`
+/// is told what happens, in order of time.
+///
+/// # Errors
+/// Those of `on_event`, which end the run.
 pub fn play(
     uno: &mut Uno,
     pins: [Pin; 4],
     script: &Script,
     realtime: bool,
-    mut progress: impl FnMut(u64),
-) -> Recording {
+    on_event: impl FnMut(Event<'_>) -> io::Result<()>,
+) -> io::Result<Recording> {
     let begin = Instant::now();
-    let mut console = Console::default();
-    let mut dialogue = Vec::new();
+    let frames = script.end_ms as usize / 20 + 1;
+    let mut dialogue = Dialogue {
+        reader: LineReader::default(),
+        banner: None,
+        answers: Vec::with_capacity(script.steps.len()),
+        on_event,
+    };
+    let mut pulses = FrameReader::new(pins, frames);
     let mut steps = script.steps.iter().peekable();
     let mut ms = 0;
     while ms < script.end_ms && *uno.state() == State::Alive {
-        let until = (ms + 20).min(script.end_ms);
+        let until = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
         while let Some(step) = steps.next_if(|step| step.ms < until) {
             uno.run_until_cycle(step.ms * CYCLES_PER_MS);
-            dialogue.push(Said {
-                ms: uno.ms(),
-                by: Speaker::You,
-                line: step.command.clone(),
-            });
-            uno.send(step.command.as_bytes());
-            uno.send(b"\n");
+            dialogue.receive(uno)?;
+            dialogue.send(uno, &step.command)?;
         }
         uno.run_until_cycle(until * CYCLES_PER_MS);
-        console.collect(uno);
+        dialogue.receive(uno)?;
+        pulses.read(uno.take_edges());
         ms = until;
-        progress(ms);
+        (dialogue.on_event)(Event::Time(ms))?;
         if realtime {
             std::thread::sleep(Duration::from_millis(ms).saturating_sub(begin.elapsed()));
         }
     }
-    let said = console.lines().iter().map(|line| Said {
-        ms: line.cycle as f64 / CYCLES_PER_MS as f64,
-        by: Speaker::Robot,
-        line: line.text.clone(),
-    });
-    dialogue.extend(said);
-    dialogue.sort_by(|a, b| a.ms.total_cmp(&b.ms));
-
-    let edges: Vec<_> = uno
-        .edges()
-        .into_iter()
-        .filter(|edge| pins.contains(&edge.pin))
-        .collect();
-    let first = edges.iter().find(|edge| edge.high && edge.pin == pins[0]);
-    let frames = first.map_or(Vec::new(), |first| {
-        let count = (uno.cycle() - opens(first.cycle)) / FRAME;
-        frames(&edges, pins, first.cycle, count)
-    });
-    Recording {
-        dialogue,
-        frames,
-        heard: uno.heard(),
-        most_pins_high: most_pins_high(&edges),
+    dialogue.answers.resize(script.steps.len(), None);
+    Ok(Recording {
+        banner: dialogue.banner,
+        answers: dialogue.answers,
+        frames: pulses.finish(uno.cycle()),
+        received_by_uno: uno.received_by_uno(),
         cycles: uno.cycle(),
         state: uno.state().clone(),
         wall: begin.elapsed(),
+    })
+}
+
+/// What goes over the serial line.
+struct Dialogue<F> {
+    reader: LineReader,
+    banner: Option<String>,
+    /// Commands are answered in the order in which they are sent.
+    answers: Vec<Option<String>>,
+    on_event: F,
+}
+
+impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
+    fn send(&mut self, uno: &mut Uno, command: &str) -> io::Result<()> {
+        uno.send(command.as_bytes());
+        uno.send(b"\n");
+        (self.on_event)(Event::Line(&DialogueLine {
+            ms: uno.ms(),
+            from: Sender::User,
+            text: command.to_owned(),
+        }))
+    }
+
+    fn receive(&mut self, uno: &mut Uno) -> io::Result<()> {
+        for line in self.reader.read(&uno.take_transmitted()) {
+            if line.is_answer() {
+                self.answers.push(Some(line.text.clone()));
+            }
+            self.banner.get_or_insert_with(|| line.text.clone());
+            (self.on_event)(Event::Line(&DialogueLine {
+                ms: line.cycle as f64 * 1000.0 / FREQUENCY as f64,
+                from: Sender::Robot,
+                text: line.text,
+            }))?;
+        }
+        Ok(())
     }
 }

@@ -1,14 +1,14 @@
 //! Servo angles over time, and below them which foot pushes and which returns.
 
-use lizard_robot::Robot;
 use lizard_robot::servo::NAMES;
 use svg::Document;
 use svg::node::element::Group;
 
-use super::analysis::Instant;
+use super::analysis::Run;
 use super::footfall::{Phase, Stretch, stretches};
-use super::script::Script;
+use super::spans::Span;
 use crate::draw::ink::{Anchor, DARK, GREY, GRID, PANEL, SERVO, curve, line, rectangle, text};
+use crate::draw::pin_name;
 
 const WIDTH: f64 = 1280.0;
 const LEFT: f64 = 200.0;
@@ -26,23 +26,25 @@ const HEIGHT: f64 = AXIS + 96.0;
 /// Where each servo's leg is.
 const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
-/// The picture as SVG text.
+/// The picture as SVG text. `spans` are the commands that were in effect.
 #[must_use]
-pub fn draw(robot: &Robot, instants: &[Instant], script: &Script) -> String {
+pub fn draw(run: Run<'_>, spans: &[Span]) -> String {
+    let end = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {
-        robot,
-        instants,
-        seconds: (script.end_ms as f64 / 1000.0).max(0.1),
+        run,
+        spans,
+        seconds: end.max(0.1),
     };
+    let reach = chart.reach();
     let mut group = Group::new();
     group = group.add(rectangle((0.0, 0.0), (WIDTH, HEIGHT), "white"));
     group = chart.title(group);
-    group = chart.commands(group, script);
+    group = chart.commands(group);
     for servo in 0..4 {
-        group = chart.strip(group, servo);
+        group = chart.strip(group, servo, reach);
         group = chart.feet(group, servo);
     }
-    group = chart.marks(group, script);
+    group = chart.marks(group);
     group = chart.axis(group);
     Document::new()
         .set("viewBox", (0.0, 0.0, WIDTH, HEIGHT))
@@ -53,8 +55,8 @@ pub fn draw(robot: &Robot, instants: &[Instant], script: &Script) -> String {
 }
 
 struct Chart<'a> {
-    robot: &'a Robot,
-    instants: &'a [Instant],
+    run: Run<'a>,
+    spans: &'a [Span],
     seconds: f64,
 }
 
@@ -73,9 +75,9 @@ impl Chart<'_> {
     }
 
     /// The band that says which command is in effect.
-    fn commands(&self, mut group: Group, script: &Script) -> Group {
-        for (n, (from, to, command)) in spans(script, self.seconds).into_iter().enumerate() {
-            let (x, end) = (self.x(from), self.x(to));
+    fn commands(&self, mut group: Group) -> Group {
+        for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
+            let (x, end) = (self.x(*from), self.x(*to));
             let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS), (end - x, 26.0), fill));
             // About 7.5 px a letter: leave out what would run over.
@@ -94,9 +96,9 @@ impl Chart<'_> {
     }
 
     /// A line down the whole picture where a command is given.
-    fn marks(&self, mut group: Group, script: &Script) -> Group {
-        for (from, _, _) in spans(script, self.seconds).into_iter().skip(1) {
-            let x = self.x(from);
+    fn marks(&self, mut group: Group) -> Group {
+        for span in self.spans.iter().skip(1) {
+            let x = self.x(span.from);
             let mark = line((x, COMMANDS), (x, AXIS), GREY, 1.0);
             group = group.add(mark.set("stroke-dasharray", "2 4"));
         }
@@ -106,18 +108,17 @@ impl Chart<'_> {
     /// Half the height of every strip in degrees, the same for all so that
     /// slopes compare.
     fn reach(&self) -> f64 {
-        let sweeps = self.instants.iter().filter_map(|at| at.sweeps).flatten();
+        let sweeps = self.run.instants().filter_map(|at| at.sweeps).flatten();
         (sweeps.fold(20.0, |most: f64, sweep| most.max(sweep.abs())) / 10.0).ceil() * 10.0 + 5.0
     }
 
-    fn strip(&self, mut group: Group, servo: usize) -> Group {
+    fn strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
         let top = STRIPS + servo as f64 * (STRIP + STRIP_GAP);
-        let reach = self.reach();
-        let neutral = self.robot.servos[servo].neutral;
+        let neutral = self.run.robot.servos[servo].neutral;
         let y = |angle: f64| top + STRIP / 2.0 * (1.0 - (angle - neutral) / reach);
         let (begin, end) = (self.x(0.0), self.x(self.seconds));
         let name = format!("{} {}", NAMES[servo], PLACES[servo]);
-        let pin = format!("D{}", self.robot.servos[servo].pin);
+        let pin = pin_name(self.run.robot.servos[servo].pin);
         group = group
             .add(rectangle((begin, top), (end - begin, STRIP), PANEL))
             .add(
@@ -161,17 +162,25 @@ impl Chart<'_> {
         group
     }
 
-    /// The unbroken stretches of a servo's angle: (seconds, degrees).
+    /// The unbroken stretches of a servo's angle: (seconds, degrees). A run with
+    /// many frames to a pixel keeps the outermost of each.
     fn runs(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
-        let mut runs = vec![Vec::new()];
-        for at in self.instants {
+        let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
+        let mut runs = vec![Curve::default()];
+        for at in self.run.instants() {
             match (at.angles, runs.last_mut()) {
-                (Some(angles), Some(run)) => run.push((at.seconds, angles[servo])),
-                _ => runs.push(Vec::new()),
+                (Some(angles), Some(run)) => {
+                    let column = dense.then(|| self.x(at.seconds) as i64);
+                    run.add(column, (at.seconds, angles[servo]));
+                }
+                (None, Some(run)) if run.points.is_empty() => {}
+                _ => runs.push(Curve::default()),
             }
         }
-        runs.retain(|run| !run.is_empty());
-        runs
+        runs.into_iter()
+            .map(|run| run.points)
+            .filter(|points| !points.is_empty())
+            .collect()
     }
 
     fn feet(&self, mut group: Group, servo: usize) -> Group {
@@ -192,7 +201,13 @@ impl Chart<'_> {
                 SERVO[servo],
                 Anchor::End,
             ));
-        for Stretch { phase, from, to } in stretches(self.instants, servo) {
+        let stretches = stretches(self.run.instants(), servo);
+        if stretches.len() as f64 > (end - begin) / 2.0 {
+            let at = ((begin + end) / 2.0, top + FOOT / 2.0 + 5.0);
+            let words = "steps shorter than a pixel: simulate less to see them";
+            return group.add(text(words, at, 13.0, GREY, Anchor::Middle));
+        }
+        for Stretch { phase, from, to } in stretches {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
             group = group.add(foot(phase, SERVO[servo], (x, top), (width, FOOT)));
         }
@@ -223,12 +238,12 @@ impl Chart<'_> {
 
     fn axis(&self, mut group: Group) -> Group {
         let steps = [
-            0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0,
+            0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0,
         ];
         let step = steps
             .into_iter()
             .find(|step| self.seconds / step <= 15.0)
-            .unwrap_or(3600.0);
+            .unwrap_or(7200.0);
         group = group.add(line(
             (self.x(0.0), AXIS),
             (self.x(self.seconds), AXIS),
@@ -282,46 +297,95 @@ fn foot(
     }
 }
 
-/// The commands as stretches of time; questions change nothing and are left
-/// out.
-fn spans(script: &Script, end: f64) -> Vec<(f64, f64, &str)> {
-    let quiet = |command: &str| ["status", "help", "?"].contains(&command);
-    let steps = script.steps.iter().filter(|step| !quiet(&step.command));
-    let mut starts: Vec<(f64, &str)> = vec![(0.0, "boot, stand")];
-    starts.extend(steps.map(|step| (step.ms as f64 / 1000.0, step.command.as_str())));
-    let end_of = |n: usize| starts.get(n + 1).map_or(end, |next| next.0);
-    (0..starts.len())
-        .map(|n| (starts[n].0, end_of(n), starts[n].1))
-        .collect()
+/// A curve that is being read.
+#[derive(Default)]
+struct Curve {
+    points: Vec<(f64, f64)>,
+    column: Option<i64>,
+}
+
+impl Curve {
+    /// Adds a point. Of the points in one column of pixels, if it has one, only
+    /// the lowest and the highest are kept.
+    fn add(&mut self, column: Option<i64>, point: (f64, f64)) {
+        if column.is_none() {
+            self.points.push(point);
+            return;
+        }
+        if column != self.column {
+            self.column = column;
+            self.points.extend([point, point]);
+            return;
+        }
+        if let [.., first, last] = self.points.as_mut_slice() {
+            let (low, high) = if first.1 <= last.1 {
+                (first, last)
+            } else {
+                (last, first)
+            };
+            if point.1 < low.1 {
+                *low = point;
+            } else if point.1 > high.1 {
+                *high = point;
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::script::Step;
+    use crate::sim::frame_log::FrameLog;
+    use lizard_robot::Robot;
+
+    fn picture(frames: usize, width: impl Fn(usize) -> u16, spans: &[Span]) -> String {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml"));
+        let robot = robot.expect("paper.toml is right");
+        let log = FrameLog {
+            widths: (0..frames).map(|n| [width(n); 4]).collect(),
+            ..FrameLog::default()
+        };
+        let (robot, log) = (&robot, &log);
+        draw(Run { robot, log }, spans)
+    }
+
+    fn span(command: &str, from: f64, to: f64) -> Span {
+        let command = command.to_owned();
+        Span { command, from, to }
+    }
 
     #[test]
     fn each_unbroken_stretch_of_each_servo_is_one_curve() {
-        let robot = Robot::parse(include_str!("../../../robot.toml")).expect("robot.toml is right");
-        let neutral: [f64; 4] = robot.neutral().into();
-        let instants: Vec<Instant> = (0..400)
-            .map(|n| Instant {
-                seconds: f64::from(n) / 50.0,
-                angles: (n != 100 && n < 350).then_some(neutral),
-                sweeps: (n != 100 && n < 350).then_some([0.0; 4]),
-            })
-            .collect();
-        let step = |ms, command: &str| Step {
-            ms,
-            command: command.into(),
-        };
-        let steps = vec![step(1000, "walk"), step(2000, "status"), step(7000, "rest")];
-        let script = Script {
-            steps,
-            end_ms: 8000,
-        };
-        let picture = draw(&robot, &instants, &script);
+        let rests = |n| n == 100 || n >= 350;
+        let picture = picture(
+            400,
+            |n| if rests(n) { 0 } else { 24_000 },
+            &[span("stand", 0.0, 1.0), span("walk", 1.0, 8.0)],
+        );
         assert_eq!(picture.matches("<polyline").count(), 8);
-        assert!(picture.contains("walk") && !picture.contains("status"));
+        assert!(picture.contains("walk"));
+    }
+
+    #[test]
+    fn a_long_run_is_drawn_with_as_many_points_as_pixels_and_keeps_its_extremes() {
+        // One frame of 10 000 stands out.
+        let width = |n| match n {
+            5000 => 24_800,
+            _ => 24_000 + 10 * (n as u16 % 3),
+        };
+        let picture = picture(10_000, width, &[span("stand", 0.0, 200.0)]);
+        assert!(picture.len() < 300_000, "{} bytes", picture.len());
+        // 50 us are 5 degrees, of 25 in half a strip of 104 pixels.
+        let first = picture.split("points=\"").nth(1).expect("a curve");
+        let ys = first
+            .split('"')
+            .next()
+            .expect("its points")
+            .split_whitespace();
+        let ys = ys.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
+        let [low, high] = ys.fold([f64::MAX, f64::MIN], |[low, high], y| {
+            [low.min(y), high.max(y)]
+        });
+        assert!((high - low - 10.4).abs() < 0.2, "{low} to {high}");
     }
 }

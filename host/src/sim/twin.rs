@@ -1,60 +1,120 @@
 //! The firmware's core run on this machine beside the simulated chip.
 //!
-//! The core is plain integer Rust, so with the same bytes heard before the same
+//! The core is plain integer Rust, so with the same bytes received before the same
 //! ticks it must ask for the same widths here as on the AVR, to the bit. What
 //! the pins then do can be held against it: any difference is a fault of the
 //! compiler, of the board's code or of the pulses.
 //!
-//! What has to be reconstructed is *when* main hears a byte: not before it is
+//! What has to be reconstructed is *when* main takes a byte: not before it is
 //! complete at the UNO, and not while the serial line has no room for the
-//! longest answer. That follows from the length of what has been said so far.
+//! longest answer. That follows from the length of what has been written so far.
 
 use std::collections::VecDeque;
 
-use lizard::console::{Console, Counters, LONGEST_LINE};
+use lizard_core::console::{Counters, LONGEST_LINE};
+use lizard_core::pose::Pulses;
+use lizard_core::robot::Robot;
+use lizard_core::step::{Board, Main, Step};
 use simulated_uno::SerialByte;
 
 use super::frame::{FRAME, SLOT};
 
 /// Cycles that the UNO takes to send a byte: 10 bits, 17 * 8 cycles each.
 const BYTE: u64 = 1360;
-/// What may be queued on the serial line while there is still room for the
-/// longest answer: a ring of 255, and two bytes in the transmitter.
-const QUEUED: u64 = 255 - LONGEST_LINE as u64 + 2;
+/// Bytes that the serial line takes before its writer has to wait: a ring of 255,
+/// and two in the transmitter.
+const CAPACITY: u64 = 255 + 2;
+/// What may be queued while there is still room for the longest answer.
+const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
 /// The robot wakes within this many frames of power-on.
 const WAKES: usize = 500;
 
-/// The firmware's core with the bytes that it has yet to hear.
+/// A board that consists of its serial line and its ticks.
 #[derive(Default)]
-struct Twin {
-    console: Console,
-    inbox: VecDeque<u8>,
-    said: String,
-    /// Cycle at which all that it has said is through the line.
-    line_free: u64,
+struct Line {
+    /// The cycle of the moment.
+    now: u64,
+    ticks: u8,
+    /// Bytes that have come and wait for main.
+    received: VecDeque<u8>,
+    written: String,
+    /// Cycle at which all that was written is through the line.
+    free: u64,
+    pulses: Pulses,
 }
 
-impl Twin {
-    /// The firmware's main loop, woken at a cycle, up to its tick.
+impl Board for Line {
+    type Writer = String;
+
+    fn ticks(&self) -> u8 {
+        self.ticks
+    }
+
+    fn submit(&mut self, pulses: Pulses) {
+        self.pulses = pulses;
+    }
+
+    fn set_led(&mut self, _: bool) {}
+
+    fn room(&self) -> u8 {
+        let queued = self.free.saturating_sub(self.now).div_ceil(BYTE);
+        CAPACITY.saturating_sub(queued).min(255) as u8
+    }
+
+    fn writer(&mut self) -> &mut String {
+        &mut self.written
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        self.received.pop_front()
+    }
+
+    fn counters(&self) -> Counters {
+        Counters::default()
+    }
+}
+
+/// The firmware's main on such a board.
+struct Twin<R> {
+    main: Main<R>,
+    line: Line,
+}
+
+impl<R: Robot> Twin<R> {
+    fn new(robot: R) -> Self {
+        Self {
+            main: Main::new(robot, 0),
+            line: Line::default(),
+        }
+    }
+
+    /// The main loop, woken at a cycle, until it has nothing left to do.
     fn wake(&mut self, cycle: u64) {
-        while self.line_free.saturating_sub(cycle) <= QUEUED * BYTE {
-            if self.console.has_news() {
-                let before = self.said.len();
-                let Ok(()) = self.console.speak(&mut self.said, Counters::default());
-                let length = (self.said.len() - before) as u64;
-                self.line_free = self.line_free.max(cycle) + length * BYTE;
-            } else if let Some(byte) = self.inbox.pop_front() {
-                self.console.hear(byte);
-            } else {
+        self.line.now = cycle;
+        loop {
+            let before = self.line.written.len();
+            if let Step::Idle(_) = self.main.step(&mut self.line) {
                 break;
+            }
+            let length = (self.line.written.len() - before) as u64;
+            if length > 0 {
+                self.line.free = self.line.free.max(cycle) + length * BYTE;
             }
         }
     }
 
-    /// When bytes that wait for room are heard.
+    /// The frame that a tick at this cycle begins.
+    fn tick(&mut self, cycle: u64) -> [u16; 4] {
+        self.wake(cycle);
+        self.line.ticks = self.line.ticks.wrapping_add(1);
+        _ = self.main.step(&mut self.line);
+        self.line.pulses.0.map(|width| width.0)
+    }
+
+    /// When bytes that wait for room are taken.
     fn retry(&self) -> Option<u64> {
-        let waits = !self.inbox.is_empty();
-        waits.then(|| self.line_free.saturating_sub(QUEUED * BYTE))
+        let waits = !self.line.received.is_empty();
+        waits.then(|| self.line.free.saturating_sub(QUEUED * BYTE))
     }
 }
 
@@ -63,19 +123,24 @@ impl Twin {
 pub struct Commands {
     /// Widths in cycles, 0 for no pulse, of each frame from A1's first pulse on.
     pub widths: Vec<[u16; 4]>,
-    /// All that it says, `late` and `rx_lost` left at 0.
-    pub said: String,
+    /// All that it writes, `late` and `rx_lost` left at 0.
+    pub written: String,
 }
 
-/// Runs the core beside a recording: `heard` are the bytes that reached the UNO,
-/// `first` is the cycle of A1's first pulse, `count` the number of frames from
-/// there on. Exact unless a command becomes complete within some 50 us of a tick,
-/// where it is a matter of cycles which of the two main sees first.
+/// Runs the core of a robot beside a recording: `received` are the bytes that
+/// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
+/// frames from there on. Exact unless a command becomes complete within some 50 us
+/// of a tick, where it is a matter of cycles which of the two main sees first.
 #[must_use]
-pub fn play(heard: &[SerialByte], first: u64, count: usize) -> Commands {
-    let silent = frames_before_waking();
-    let mut twin = Twin::default();
-    let mut heard = heard.iter().peekable();
+pub fn play<R: Robot + Copy>(
+    robot: R,
+    received: &[SerialByte],
+    first: u64,
+    count: usize,
+) -> Commands {
+    let silent = frames_before_waking(robot);
+    let mut twin = Twin::new(robot);
+    let mut received = received.iter().peekable();
     let mut widths = Vec::with_capacity(count);
     for frame in 0..silent + count {
         let start = first + frame as u64 * FRAME;
@@ -86,8 +151,8 @@ pub fn play(heard: &[SerialByte], first: u64, count: usize) -> Commands {
             let due = |byte: &&SerialByte| {
                 byte.cycle < tick && retry.is_none_or(|retry| byte.cycle < retry)
             };
-            if let Some(byte) = heard.next_if(due) {
-                twin.inbox.push_back(byte.byte);
+            if let Some(byte) = received.next_if(due) {
+                twin.line.received.push_back(byte.byte);
                 twin.wake(byte.cycle);
             } else if let Some(retry) = retry {
                 twin.wake(retry);
@@ -95,20 +160,21 @@ pub fn play(heard: &[SerialByte], first: u64, count: usize) -> Commands {
                 break;
             }
         }
-        twin.wake(tick);
-        let pulses = twin.console.frame().0;
+        let pulses = twin.tick(tick);
         if frame >= silent {
             widths.push(pulses);
         }
     }
     Commands {
         widths,
-        said: twin.said,
+        written: twin.line.written,
     }
 }
 
-/// Frames before A1's first pulse, if nobody says anything.
-fn frames_before_waking() -> usize {
-    let mut console = Console::new();
-    (0..WAKES).take_while(|_| console.frame().0[0] == 0).count()
+/// Frames before A1's first pulse, if no command comes.
+fn frames_before_waking<R: Robot>(robot: R) -> usize {
+    let mut twin = Twin::new(robot);
+    (0..WAKES)
+        .take_while(|_| twin.tick(twin.line.now)[0] == 0)
+        .count()
 }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use lizard_kinematics::End;
+
 use super::equation::{Aside, Equation};
 use super::sample::Sample;
 

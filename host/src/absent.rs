@@ -1,0 +1,56 @@
+//! Commands that a program built without one of its cargo features lacks.
+
+use std::ffi::OsString;
+
+use crate::Failure;
+
+const SIMULATOR: [&str; 2] = ["sim", "bench"];
+const PAPER: [&str; 9] = [
+    "solve",
+    "inverse",
+    "velocity",
+    "singularity",
+    "mobility",
+    "design",
+    "errata",
+    "charts",
+    "speed",
+];
+
+/// Why there is no command of the first of these words.
+#[must_use]
+pub fn explain(words: &[OsString]) -> Failure {
+    let name = words.first().map(|word| word.to_string_lossy());
+    let name = name.as_deref().unwrap_or_default();
+    let without = if SIMULATOR.contains(&name) {
+        "the simulator"
+    } else if PAPER.contains(&name) {
+        "the commands that compute"
+    } else {
+        return Failure::Input(format!(
+            "there is no command `{name}`; lizard --help lists them"
+        ));
+    };
+    Failure::Input(format!(
+        "`lizard {name}` is missing: this program was built without {without}; make cli builds all"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_of_an_absent_feature_says_how_to_get_it() {
+        let words = |word: &str| explain(&[word.into(), "--json".into()]).to_string();
+        assert_eq!(
+            words("sim"),
+            "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
+        );
+        assert!(words("solve").contains("without the commands that compute"));
+        assert_eq!(
+            words("fly"),
+            "there is no command `fly`; lizard --help lists them"
+        );
+    }
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "handlers.h"
+
+#define RETI_CYCLES 4 /* simavr tells of a `reti` before it counts them */
+
+uint64_t handlers_cycles(const struct handlers *handlers)
+{
+	uint64_t running = handlers->avr->cycle - handlers->running_since;
+	return handlers->finished + (handlers->depth ? running : 0);
+}
+
+/* Adds what has passed to the innermost handler. */
+static void account(struct handlers *handlers, uint64_t cycle)
+{
+	if (handlers->depth) {
+		uint64_t spent = cycle - handlers->running_since;
+		handlers->finished += spent;
+		handlers->vectors[handlers->running[handlers->depth - 1]].cycles += spent;
+	}
+	handlers->running_since = cycle;
+}
+
+static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
+{
+	struct handlers *handlers = param;
+	uint8_t vector = irq->irq / 256;
+	account(handlers, handlers->avr->cycle + (running ? 0 : RETI_CYCLES));
+	if (!running) {
+		if (handlers->depth)
+			handlers->depth--;
+	} else if (vector < CHIP_VECTORS && handlers->depth < sizeof handlers->running) {
+		handlers->vectors[vector].entries++;
+		handlers->running[handlers->depth++] = vector;
+	}
+}
+
+void handlers_attach(struct handlers *handlers, avr_t *avr)
+{
+	*handlers = (struct handlers){ .avr = avr };
+	for (int v = 0; v < avr->interrupts.vector_count; v++)
+		avr_irq_register_notify(
+			avr->interrupts.vector[v]->irq + AVR_INT_IRQ_RUNNING, on_vector,
+			handlers);
+}
+
+void handlers_reset(struct handlers *handlers)
+{
+	handlers->depth = 0;
+}

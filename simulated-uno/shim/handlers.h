@@ -1,0 +1,30 @@
+/* How often each interrupt is served and how many cycles its handler takes.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef HANDLERS_H
+#define HANDLERS_H
+
+#include <stdint.h>
+
+#include <simavr/sim_avr.h>
+
+#include "chip.h"
+
+struct vector_use { uint64_t entries, cycles; };
+
+struct handlers {
+	const avr_t *avr;
+	struct vector_use vectors[CHIP_VECTORS];
+	uint8_t running[16];    /* nested handlers, the innermost last */
+	uint8_t depth;
+	uint64_t running_since; /* cycle at which the innermost began or went on */
+	uint64_t finished;      /* cycles in handlers up to `running_since` */
+};
+
+void handlers_attach(struct handlers *handlers, avr_t *avr);
+void handlers_reset(struct handlers *handlers);
+/* Cycles spent in all handlers up to now. */
+uint64_t handlers_cycles(const struct handlers *handlers);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "instruction.h"
+
+#include <simavr/sim_core.h>
+
+static uint16_t opcode(const avr_t *avr)
+{
+	const uint8_t *flash = avr->flash + avr->pc;
+	return flash[0] | flash[1] << 8;
+}
+
+void instruction_run(struct instruction *instruction)
+{
+	avr_t *avr = instruction->avr;
+	instruction->executing = true;
+	avr->pc = avr_run_one(avr);
+	instruction->executing = false;
+}
+
+uint64_t instruction_effect_cycle(const struct instruction *instruction)
+{
+	const avr_t *avr = instruction->avr;
+	if (!instruction->executing)
+		return avr->cycle;
+	bool is_out = (opcode(avr) & 0xf800) == 0xb800;
+	return avr->cycle + (is_out ? 1 : 2); /* sbi, cbi, st, sts: 2 cycles */
+}
+
+uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value)
+{
+	uint16_t code = opcode(instruction->avr);
+	bool is_sbi = instruction->executing && (code & 0xff00) == 0x9a00;
+	return is_sbi ? 1 << (code & 7) : value;
+}

@@ -1,0 +1,29 @@
+/* The instruction that the CPU executes now: when its store takes effect, and
+ * which bits it writes.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef INSTRUCTION_H
+#define INSTRUCTION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <simavr/sim_avr.h>
+
+struct instruction {
+	avr_t *avr;
+	bool executing; /* inside an instruction, not inside a timer */
+};
+
+/* Executes the next instruction, or several until avr->run_cycle_limit. */
+void instruction_run(struct instruction *instruction);
+/* Cycle at which the store being executed takes effect: the last one of its
+ * instruction. simavr calls back at the first, which would make an `sbi` edge
+ * look a cycle early beside an `out` edge. */
+uint64_t instruction_effect_cycle(const struct instruction *instruction);
+/* What a write of `value` to an I/O register really writes: `sbi` touches one
+ * bit only, but simavr turns it into a read and a write of all eight. */
+uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value);
+
+#endif

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "interrupts.h"
+
+#include <stddef.h>
+
+#include <simavr/sim_core.h>
+
+#include "chip.h"
+#include "hook.h"
+
+#define ENTRY_CYCLES 4
+#define WAKE_CYCLES 4
+
+static bool is_due(avr_t *avr, const avr_int_vector_t *vector)
+{
+	if (!avr_regbit_get(avr, vector->enable))
+		return false;
+	return vector->raised.reg ? avr_regbit_get(avr, vector->raised) : vector->pending;
+}
+
+/* Rebuilds simavr's list of pending interrupts, which `sleep` looks at, from
+ * the flags. Returns the one that outranks the others. */
+static avr_int_vector_t *collect_due(avr_t *avr)
+{
+	avr_int_table_t *table = &avr->interrupts;
+	avr_int_vector_t *first = NULL;
+	table->pending.read = table->pending.write = 0;
+	for (int i = 0; i < table->vector_count; i++) {
+		avr_int_vector_t *vector = table->vector[i];
+		vector->pending = is_due(avr, vector);
+		if (!vector->pending)
+			continue;
+		table->pending.buffer[table->pending.write++] = vector;
+		if (!first || vector->vector < first->vector)
+			first = vector;
+	}
+	return first;
+}
+
+static void enter(struct interrupts *interrupts, avr_int_vector_t *vector)
+{
+	avr_t *avr = interrupts->avr;
+	avr_int_table_t *table = &avr->interrupts;
+	avr_raise_irq(vector->irq + AVR_INT_IRQ_RUNNING, 1);
+	avr->cycle += ENTRY_CYCLES + (interrupts->slept ? WAKE_CYCLES : 0);
+	interrupts->slept = false;
+	_avr_push_addr(avr, avr->pc);
+	avr_sreg_set(avr, S_I, 0);
+	avr->pc = vector->vector * avr->vector_size;
+	if (table->running_ptr < ARRAY_SIZE(table->running))
+		table->running[table->running_ptr++] = vector;
+	avr_clear_interrupt(avr, vector);
+	collect_due(avr);
+}
+
+bool interrupts_serve(struct interrupts *interrupts)
+{
+	avr_t *avr = interrupts->avr;
+	if (!avr->sreg[S_I]) {
+		if (interrupts->recheck)
+			collect_due(avr);
+		interrupts->recheck = false;
+		return false;
+	}
+	if (avr->interrupt_state < 0) {
+		/* simavr counts two instructions after `sei`; silicon one. */
+		if (++avr->interrupt_state < 0)
+			return false;
+	}
+	interrupts->recheck = false;
+	avr_int_vector_t *vector = collect_due(avr);
+	avr->interrupt_state = vector != NULL;
+	if (!vector)
+		return false;
+	enter(interrupts, vector);
+	return true;
+}
+
+static void write_enable(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+	struct interrupts *interrupts = param;
+	avr->data[address] = value;
+	interrupts->recheck = true;
+}
+
+static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+	struct interrupts *interrupts = param;
+	avr->data[address] &= ~instruction_written_bits(interrupts->instruction, value);
+	interrupts->recheck = true;
+}
+
+void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction)
+{
+	avr_t *avr = instruction->avr;
+	const uint16_t enables[] = { REG_TIMSK0, REG_TIMSK1, REG_TIMSK2, REG_PCICR, REG_EIMSK };
+	const uint16_t flags[] = { REG_TIFR0, REG_TIFR1, REG_TIFR2 };
+	*interrupts = (struct interrupts){ .instruction = instruction, .avr = avr };
+	for (size_t i = 0; i < ARRAY_SIZE(enables); i++)
+		hook_write(avr, enables[i], write_enable, interrupts);
+	for (size_t i = 0; i < ARRAY_SIZE(flags); i++)
+		hook_write(avr, flags[i], write_flags, interrupts);
+}

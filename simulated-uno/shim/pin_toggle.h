@@ -1,0 +1,19 @@
+/* `sbi PINx, n` toggles pin n alone. simavr 1.6 toggles every pin of the port
+ * that is high.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef PIN_TOGGLE_H
+#define PIN_TOGGLE_H
+
+#include "hook.h"
+#include "instruction.h"
+
+struct pin_toggle {
+	const struct instruction *instruction;
+	struct write_hook write[3]; /* simavr's, of ports B, C and D */
+};
+
+void pin_toggle_attach(struct pin_toggle *toggle, const struct instruction *instruction);
+
+#endif

@@ -1,0 +1,39 @@
+/* What an oscilloscope on the board would show: every edge of the pins that it
+ * is clipped to, and every store to GPIOR0, which firmware may use as a mark.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef RECORDER_H
+#define RECORDER_H
+
+#include <stdint.h>
+
+#include <simavr/sim_avr.h>
+
+#include "instruction.h"
+#include "list.h"
+
+struct edge { uint64_t cycle; uint8_t pin, level; }; /* pin: Arduino number */
+struct mark { uint64_t cycle; uint8_t value; };
+
+struct recorder;
+struct recorded_port {
+	struct recorder *recorder;
+	char name;          /* 'B', 'C' or 'D' */
+	uint8_t first, bits; /* Arduino number of its bit 0; its pins on the board */
+};
+
+struct recorder {
+	const struct instruction *instruction;
+	struct recorded_port ports[3];
+	uint32_t pins;      /* recorded pins, bit n = Arduino pin n */
+	uint32_t levels;    /* of these, the ones that are high */
+	struct list edges;  /* struct edge */
+	struct list marks;  /* struct mark */
+};
+
+void recorder_attach(struct recorder *recorder, const struct instruction *instruction,
+                     uint32_t pins);
+void recorder_free(struct recorder *recorder);
+
+#endif

@@ -1,0 +1,56 @@
+/* The other end of the serial cable: a PC's UART, which sends one byte after
+ * another with nothing between the stop bit and the next start bit. It does
+ * not know whether the UNO keeps up.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef SENDER_H
+#define SENDER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <simavr/sim_avr.h>
+
+#include "list.h"
+#include "serial_bytes.h"
+
+/* What the cable is plugged into. */
+struct receiver {
+	void *param;
+	/* Cycles from one start bit to the next, given the sender's own. */
+	double (*frame_cycles)(void *param, double frame);
+	void (*start_bit)(void *param);
+	void (*byte)(void *param, uint8_t byte, double cycles_per_bit);
+};
+
+struct sender {
+	avr_t *avr;
+	struct receiver receiver;
+	double cycles_per_bit;
+	double line_free;               /* cycle at which the last stop bit ends */
+	struct list queue;              /* uint8_t */
+	size_t next;                    /* first unsent byte of the queue */
+	uint8_t *flood;                 /* sent over and over once the queue is empty */
+	size_t flood_length, flood_next;
+	uint64_t sent;                  /* bytes put on the line */
+	uint8_t byte;                   /* on the line now */
+	bool busy;
+	struct serial_bytes delivered;  /* complete at the receiver */
+};
+
+void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud);
+/* simavr's reset drops all its timers, the sender's too. */
+void sender_reset(struct sender *sender, uint64_t now);
+void sender_set_baud(struct sender *sender, double baud);
+/* `now` in all of these: the cycle reached, which is ahead of avr->cycle while
+ * the CPU sleeps. */
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
+/* Repeats `bytes` for ever after what is queued; length 0 ends it. */
+void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
+/* Queued bytes that are not through the line. */
+size_t sender_unsent(const struct sender *sender);
+void sender_free(struct sender *sender);
+
+#endif

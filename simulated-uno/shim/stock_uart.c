@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stock_uart.h"
+
+#include "chip.h"
+
+static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
+{
+	(void)irq;
+	struct stock_uart *stock = param;
+	uint64_t cycle = instruction_effect_cycle(stock->instruction);
+	serial_bytes_push(stock->transmitted, cycle, value);
+}
+
+/* Stock simavr takes 11 bits for a frame: sent at the true rate, a long stream
+ * would overflow its 64 bytes, which no UNO has. So it gets what it can take. */
+static double frame_cycles(void *param, double frame)
+{
+	const struct stock_uart *stock = param;
+	double least = stock->uart->cycles_per_byte;
+	return least < frame ? frame : least;
+}
+
+static void start_bit(void *param)
+{
+	(void)param;
+}
+
+static void receive(void *param, uint8_t byte, double cycles_per_bit)
+{
+	(void)cycles_per_bit;
+	const struct stock_uart *stock = param;
+	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, byte);
+}
+
+void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
+                       struct serial_bytes *transmitted)
+{
+	avr_t *avr = instruction->avr;
+	stock->uart = avr->io[AVR_DATA_TO_IO(REG_UDR0)].r.param;
+	stock->instruction = instruction;
+	stock->transmitted = transmitted;
+	uint32_t flags = 0; /* no usleep in polling loops, no echo to stdout */
+	avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
+	avr_irq_register_notify(
+		avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_transmit,
+		stock);
+}
+
+struct receiver stock_uart_receiver(struct stock_uart *stock)
+{
+	return (struct receiver){ stock, frame_cycles, start_bit, receive };
+}

@@ -1,0 +1,46 @@
+/* USART0 of the ATmega328P by its data sheet, chapter 19.
+ *
+ * simavr 1.6 keeps 64 received bytes and counts 11 bits a frame, which hides
+ * every overrun. Here: 10-bit frames at the rate the registers say now, two
+ * received bytes and a third in the shift register, the third lost when a
+ * fourth begins (DOR), and a transmit buffer of one byte.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef USART_H
+#define USART_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+
+#include "interrupts.h"
+#include "sender.h"
+#include "serial_bytes.h"
+
+struct usart {
+	avr_t *avr;
+	avr_uart_t *vectors;        /* simavr's USART0, for its interrupt vectors */
+	struct interrupts *interrupts;
+	struct serial_bytes *transmitted;
+	uint8_t fifo[2];
+	bool fifo_frame_error[2];
+	uint8_t held;               /* complete byte that waits in the shift register */
+	bool held_frame_error;
+	uint8_t count;              /* bytes in fifo, 0..2 */
+	bool holding, overrun;
+	uint8_t transmitting, next;
+	bool busy, next_full;
+	uint64_t overruns;          /* bytes lost since power-on */
+};
+
+/* Takes USART0's registers from simavr. */
+void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t *vectors,
+                  struct serial_bytes *transmitted);
+void usart_reset(struct usart *usart);
+/* Its end of the cable. */
+struct receiver usart_receiver(struct usart *usart);
+
+#endif
