@@ -4,13 +4,13 @@
 use crate::five_bar::FiveBarPose;
 use crate::vector::Vector;
 
-/// Apex velocity for each servo's rate, mm per radian: J = A^-1 B with
+/// Velocity of the end point for each servo's rate, mm per radian: J = A^-1 B with
 /// A (end point velocity) = B (crank rates).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jacobian {
-    /// Apex displacement per radian of the left crank.
+    /// Displacement of the end point per radian of the left crank, mm.
     pub left: Vector,
-    /// Apex displacement per radian of the right crank.
+    /// Displacement of the end point per radian of the right crank, mm.
     pub right: Vector,
 }
 

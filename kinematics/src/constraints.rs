@@ -12,17 +12,25 @@ use crate::real::Real;
 use crate::side::Side;
 use crate::vector::Vector;
 
-/// The joints that follow: angles in degrees, travel in mm.
+/// The joints that follow, chassis frame. phi and s of a slider stand for the
+/// paper's theta10, theta11 (right: theta14, theta15).
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)] // The paper's symbols; phi and s replace theta10, theta11.
 pub struct Passive<T = f64> {
+    /// Head, left coupler: degrees, (-180, 180].
     pub theta2: T,
+    /// Head, right coupler: degrees, (-180, 180].
     pub theta3: T,
+    /// Tail, left coupler: degrees, (-180, 180].
     pub theta6: T,
+    /// Tail, right coupler: degrees, (-180, 180].
     pub theta7: T,
+    /// Direction of the left slider, rear to front: degrees, (-180, 180].
     pub phi_left: T,
+    /// Travel of the left slider from nominal, mm.
     pub s_left: T,
+    /// Direction of the right slider, rear to front: degrees, (-180, 180].
     pub phi_right: T,
+    /// Travel of the right slider from nominal, mm.
     pub s_right: T,
 }
 

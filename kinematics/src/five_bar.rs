@@ -112,7 +112,8 @@ impl<T: Real> FiveBarPose<T> {
         self.right.cross(self.right_coupler)
     }
 
-    /// Finite if every number of the pose is.
+    /// Finite if, and only if, every number of the pose is: it holds each of them
+    /// in a sum or a product.
     #[inline(always)]
     fn probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()

@@ -1,33 +1,48 @@
 //! The paper's table of link lengths.
 
-/// Every link of the body in mm, by the paper's symbols. The table prints l16
+/// Every link of the body in mm, all above 0 but l0 and l5, by the paper's symbols. The table prints l16
 /// twice; its second is l17.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)] // One line each would only repeat the headings.
 pub struct Links {
-    // Head: base, left crank, left coupler, right coupler, right crank.
+    /// Base of the head, between A1 and A2, mm.
     pub l0: f64,
+    /// Head, left crank, mm.
     pub l1: f64,
+    /// Head, left coupler, mm.
     pub l2: f64,
+    /// Head, right coupler, mm.
     pub l3: f64,
+    /// Head, right crank, mm.
     pub l4: f64,
-    // Tail: base, left crank, left coupler, right coupler, right crank.
+    /// Base of the tail, between A4 and A3, mm.
     pub l5: f64,
+    /// Tail, left crank, mm.
     pub l6: f64,
+    /// Tail, left coupler, mm.
     pub l7: f64,
+    /// Tail, right coupler, mm.
     pub l8: f64,
+    /// Tail, right crank, mm.
     pub l9: f64,
-    // Left: chassis, rear arm, slider halves, front arm.
+    /// Chassis on the left, between A4 and A1, mm.
     pub l10: f64,
+    /// Left rear arm, mm.
     pub l11: f64,
+    /// Left slider, rear half, mm.
     pub l12: f64,
+    /// Left slider, front half, mm.
     pub l13: f64,
+    /// Left front arm, mm.
     pub l14: f64,
-    // Right: chassis, rear arm, slider halves, front arm.
+    /// Chassis on the right, between A3 and A2; equal to l10, mm.
     pub l15: f64,
+    /// Right rear arm, mm.
     pub l16: f64,
+    /// Right slider, rear half, mm.
     pub l17: f64,
+    /// Right slider, front half, mm.
     pub l18: f64,
+    /// Right front arm, mm.
     pub l19: f64,
 }
 

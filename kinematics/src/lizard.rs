@@ -14,7 +14,7 @@ use crate::vector::Vector;
 /// Four servo angles in degrees, chassis frame. Declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<T = f64> {
-    /// A1, front left.
+    /// A1, front left; any finite angle, as are all four.
     pub theta1: T,
     /// A2, front right.
     pub theta4: T,

@@ -161,7 +161,7 @@ mod tests {
                         else {
                             continue;
                         };
-                        // Near d = 0 the apex swings about and signs jump.
+                        // Near d = 0 the end point turns fast and signs jump.
                         let gap = bars.forward(left, a).unwrap().gap.length();
                         if before * after >= 0.0 || gap < 1.0 {
                             continue;
