@@ -68,11 +68,11 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
         assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
-        let commands = twin::play(&recording.received_by_uno, log.first, log.widths.len());
+        let commands = twin::play(&robot().firmware, &recording.received_by_uno, log.first, log.widths.len());
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        let here: Vec<&str> = commands.said.lines().collect();
+        let here: Vec<&str> = commands.written.lines().collect();
         // The last line may still be on its way.
         assert!(here.len() - lines.len() <= 1);
         assert!(here.iter().zip(&lines).all(|(here, there)| here == there));

@@ -14,7 +14,8 @@ use crate::{Failure, RobotFile};
 ///
 /// For each gait: the time of a cycle, its fastest frame, the error of its
 /// table over all 65536 phases, the smallest margins and the slider travel over
-/// every sample, and the displacement of one cycle by the contact model. A gait
+/// every sample, and the displacement of one cycle by the contact model; a dash
+/// where two feet pull against two and the model leaves it undecided. A gait
 /// that breaks a limit is named with its phase, the margin, its value and the
 /// limit, exit code 2; so is any other mistake in the file.
 #[derive(clap::Args)]

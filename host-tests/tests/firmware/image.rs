@@ -80,7 +80,7 @@ fn tables_and_sentences_stay_in_flash() {
         .map(|at| bench.uno.peek(at))
         .collect();
     let holds = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
-    for (n, wave) in robot().tables.waves.iter().enumerate() {
+    for (n, wave) in robot().tables().waves.iter().enumerate() {
         for samples in wave.windows(6) {
             // A held leg gives runs of one value, which RAM may well hold.
             if samples.iter().all(|sample| *sample == samples[0]) {

@@ -40,6 +40,7 @@ fn first_pulse(bench: &FirmwareBench) -> u64 {
 fn commanded(bench: &FirmwareBench, first: u64, heard: usize, frames: &[Frame]) -> Vec<[u64; 4]> {
     let before = ((frames[0].start - first) / FRAME) as usize;
     let commands = twin::play(
+        &robot().firmware,
         &bench.uno.received_by_uno()[..heard],
         first,
         before + frames.len(),

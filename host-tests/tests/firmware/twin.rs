@@ -100,7 +100,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         bench.uno.run_until_cycle(END);
         let count = (bench.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
-        let commands = twin::play(&bench.uno.received_by_uno(), first, sent.len());
+        let commands = twin::play(&robot().firmware, &bench.uno.received_by_uno(), first, sent.len());
         let mut poses = std::collections::HashSet::new();
         for (n, (frame, asked)) in sent.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
@@ -116,7 +116,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         // And the same answers, but for the counters of faults, which are 0 here.
         // Which frame a report is told in also depends on the room in the line.
         let is_answer = |line: &&str| !line.starts_with('#');
-        let asked: Vec<&str> = commands.said.lines().filter(is_answer).collect();
+        let asked: Vec<&str> = commands.written.lines().filter(is_answer).collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
         let answered: Vec<&str> = lines.filter(is_answer).collect();
         assert_eq!(answered, asked);

@@ -24,11 +24,11 @@ use crate::{Failure, RobotFile};
   lizard inverse --head 5 120 --tail 0 -125"
 )]
 pub struct Args {
-    /// Head point in mm, chassis frame
+    /// End point of the head in mm, chassis frame
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
           required_unless_present = "tail")]
     head: Option<Vec<f64>>,
-    /// Tail point in mm, chassis frame
+    /// End point of the tail in mm, chassis frame
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length)]
     tail: Option<Vec<f64>>,
     /// One JSON object

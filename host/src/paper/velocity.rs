@@ -29,8 +29,8 @@ pub struct Args {
     pose: PoseArgs,
     #[command(flatten)]
     drive: DriveArgs,
-    /// One JSON object
-    #[arg(long)]
+    /// One JSON array, an object for each joint
+    #[arg(long, help_heading = "Options")]
     json: bool,
     #[command(flatten)]
     robot: RobotFile,
@@ -39,29 +39,29 @@ pub struct Args {
 #[derive(clap::Args)]
 #[command(next_help_heading = "Servos, all 0 unless given")]
 struct DriveArgs {
-    /// Rate of theta1, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
+    /// Rate of theta1 (A1), deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
     omega1: f64,
-    /// Rate of theta4, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
+    /// Rate of theta4 (A2), deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
     omega4: f64,
-    /// Rate of theta8, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
+    /// Rate of theta8 (A3), deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
     omega8: f64,
-    /// Rate of theta5, deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = rate)]
+    /// Rate of theta5 (A4), deg/s
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
     omega5: f64,
-    /// Acceleration of theta1, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
+    /// Acceleration of theta1 (A1), deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
     alpha1: f64,
-    /// Acceleration of theta4, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
+    /// Acceleration of theta4 (A2), deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
     alpha4: f64,
-    /// Acceleration of theta8, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
+    /// Acceleration of theta8 (A3), deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
     alpha8: f64,
-    /// Acceleration of theta5, deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_parser = acceleration)]
+    /// Acceleration of theta5 (A4), deg/s^2
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
     alpha5: f64,
 }
 

@@ -199,6 +199,7 @@ fn numpy_and_the_program_find_the_same_joints() {
             ("l16 = 30.0", "l16 = 31.0"),
             ("l12 = 45.0", "l12 = 46.0"),
             ("l17 = 45.0", "l17 = 44.0"),
+            ("\nleg = 0.3 ", "\nleg = 0.2 "),
         ],
     );
     for args in [
