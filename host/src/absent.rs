@@ -15,6 +15,7 @@ const PAPER: [&str; 9] = [
     "errata",
     "charts",
     "speed",
+    "prove",
 ];
 
 /// Why there is no command of the first of these words.

@@ -15,6 +15,8 @@ pub mod gaits;
 pub mod paper;
 mod pose_args;
 mod robot_file;
+#[cfg(feature = "paper")]
+pub mod prove;
 #[cfg(feature = "simulator")]
 pub mod sim;
 

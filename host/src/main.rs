@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 #[cfg(not(all(feature = "simulator", feature = "paper")))]
 use lizard_host::absent;
 #[cfg(feature = "paper")]
-use lizard_host::paper;
+use lizard_host::{paper, prove};
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim};
 use lizard_host::{draw, gaits};
@@ -50,6 +50,8 @@ enum Command {
     Charts(paper::charts::Args),
     #[cfg(feature = "paper")]
     Speed(paper::speed::Args),
+    #[cfg(feature = "paper")]
+    Prove(prove::Args),
     #[cfg(feature = "simulator")]
     Sim(sim::Args),
     Draw(draw::Args),
@@ -82,6 +84,8 @@ fn main() -> ExitCode {
         Command::Charts(args) => paper::charts::run(args),
         #[cfg(feature = "paper")]
         Command::Speed(args) => paper::speed::run(args),
+        #[cfg(feature = "paper")]
+        Command::Prove(args) => prove::run(args),
         #[cfg(feature = "simulator")]
         Command::Sim(args) => sim::run(args),
         Command::Draw(args) => draw::run(args),

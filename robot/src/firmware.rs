@@ -144,6 +144,11 @@ impl Firmware {
         self.pins
     }
 
+    /// The step of lengths of an end's loop, mm.
+    pub fn end_step(&self, end: kinematics::End) -> f64 {
+        1.0 / f64::from(1u32 << self.ends[end as usize].scale.bits)
+    }
+
     /// The gaits.
     pub fn tables(&self) -> &Tables {
         &self.tables

@@ -1,0 +1,218 @@
+//! `lizard prove`: the integer guard against floating point at every pair of
+//! positions that two servos can take.
+//!
+//! Every condition of a safe pose depends on one servo (a leg), on the two of an
+//! end or on the two of a side. So walking every pair of each end and of each side,
+//! in the steps in which the firmware counts angles, decides every pose that there
+//! is: 1.8e18 for servos of half a turn. Nothing is sampled.
+
+mod positions;
+mod tally;
+mod walk;
+
+use std::io::{self, Write};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lizard_robot::Robot;
+use serde::Serialize;
+
+use crate::{Failure, RobotFile};
+
+pub use tally::{MARGIN_BAND, STEPS_BAND, Tally};
+
+/// Compare the firmware's guard with floating point at every pose there is.
+///
+/// Every condition of a safe pose depends on one servo or on two: so every pair of
+/// positions of the two servos of the head, the tail, the left and the right side
+/// is decided by the firmware's integers and by floating point, in the firmware's
+/// own steps of 1/65536 turn. Prints the largest error of each margin, and how far
+/// from its limit a pose may be that the two decide differently. Exit code 1 if one
+/// is farther than the band that the documentation states.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard prove
+  lizard prove --robot robots/unequal.toml
+  lizard prove --one-in 64 --offset 5")]
+pub struct Args {
+    /// Look at one pair in so many, evenly spread
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    one_in: u32,
+    /// Which of them; other numbers below N look at other pairs
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    offset: u32,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Which pairs are looked at: in each row, those whose column is a certain
+/// remainder of `one_in`, another one in each row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// One pair in so many; at least 1.
+    pub one_in: u32,
+    /// Which of them.
+    pub offset: u32,
+}
+
+impl Share {
+    /// Every pair.
+    pub const ALL: Self = Self {
+        one_in: 1,
+        offset: 0,
+    };
+}
+
+/// What was found at one end or one side.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
+    pub part: String,
+    /// The servos that decide it.
+    pub servos: Vec<&'static str>,
+    /// Of its conditions.
+    #[serde(flatten)]
+    pub tally: Tally,
+}
+
+/// The comparison for a whole robot.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proof {
+    /// Ends, sides and legs.
+    pub findings: Vec<Finding>,
+    /// Hash of the firmware's numbers.
+    pub hash: u32,
+}
+
+impl Proof {
+    /// Walks a share of the pairs of a robot. `progress` is told of rows walked;
+    /// [`Proof::rows`] says how many there are.
+    pub fn of(robot: &Robot, share: Share, progress: impl Fn(u64) + Sync) -> Self {
+        Self {
+            findings: walk::all(robot, share, &progress),
+            hash: robot.tables_hash(),
+        }
+    }
+
+    /// Rows that [`Proof::of`] walks.
+    pub fn rows(robot: &Robot) -> u64 {
+        walk::rows(robot)
+    }
+
+    /// Poses farther from every limit than the bands, and decided wrong all the
+    /// same: 0 proves the guard.
+    pub fn wrong(&self) -> u64 {
+        self.findings
+            .iter()
+            .map(|finding| finding.tally.wrong)
+            .sum()
+    }
+}
+
+/// Walks and prints.
+///
+/// # Errors
+/// A wrong robot.toml; a pose that is decided wrong.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let share = Share {
+        one_in: args.one_in,
+        offset: args.offset,
+    };
+    let style = ProgressStyle::with_template("{bar:40} {percent} % of all rows, {eta} left")
+        .map_err(|error| Failure::Impossible(error.to_string()))?;
+    let bar = ProgressBar::new(Proof::rows(&robot)).with_style(style);
+    let proof = Proof::of(&robot, share, |rows| bar.inc(rows));
+    bar.finish_and_clear();
+
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer(&mut out, &proof)?;
+        writeln!(out)?;
+    } else {
+        print(&proof, share, &mut out)?;
+    }
+    match proof.wrong() {
+        0 => Ok(()),
+        wrong => Err(Failure::Impossible(format!(
+            "the guard decides {wrong} pairs wrong that are outside the band"
+        ))),
+    }
+}
+
+fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "                                      largest error          decided otherwise within"
+    )?;
+    writeln!(
+        out,
+        "part        servos          pairs   type-2   type-1      mm    margin      mm   wrong"
+    )?;
+    for finding in &proof.findings {
+        let Tally {
+            pairs,
+            type2,
+            type1,
+            leg,
+            travel,
+            margin_band,
+            length_band,
+            wrong,
+            ..
+        } = finding.tally;
+        let cell = |value: Option<f64>, digits: usize| {
+            value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
+        };
+        writeln!(
+            out,
+            "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
+            finding.part,
+            finding.servos.join(" "),
+            grouped(pairs),
+            cell(type2.or(leg), 5),
+            cell(type1, 5),
+            cell(travel, 4),
+            cell(margin_band, 6),
+            cell(length_band, 4),
+            wrong
+        )?;
+    }
+    for finding in &proof.findings {
+        if let Some(example) = &finding.tally.example {
+            writeln!(out, "{}: {example}", finding.part)?;
+        }
+    }
+    let what = if share.one_in == 1 {
+        "every pair of positions".to_string()
+    } else {
+        format!("one pair of positions in {}", share.one_in)
+    };
+    writeln!(
+        out,
+        "\n{what}, in steps of 0.0055 deg, of a robot with tables {:08x}",
+        proof.hash
+    )?;
+    if proof.wrong() == 0 {
+        writeln!(
+            out,
+            "no pose that is farther than {MARGIN_BAND} (a sine) or {STEPS_BAND} steps of length from a limit is decided wrong"
+        )?;
+    }
+    Ok(())
+}
+
+/// A count with its thousands apart.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}

@@ -1,0 +1,43 @@
+//! Every position of a servo, as the firmware and as floating point see it.
+
+use lizard_core::robot::Robot as _;
+use lizard_core::trig::Direction;
+use lizard_core::units::Sweep;
+use lizard_kinematics::{End, Vector};
+use lizard_robot::Robot;
+
+/// One servo's positions, in steps of 1/65536 turn over its whole travel.
+pub struct Positions {
+    /// Its angle in the chassis frame, degrees.
+    pub degrees: Vec<f64>,
+    /// The crank's direction in the frame of its end, Q15.
+    pub fixed: Vec<Direction>,
+    /// The same in floating point.
+    pub exact: Vec<Vector>,
+}
+
+impl Positions {
+    /// All positions of a servo, by its index.
+    pub fn of(robot: &Robot, servo: usize) -> Self {
+        let neutral = robot.firmware.neutral()[servo];
+        let calibration = robot.firmware.calibration()[servo];
+        let end = End::of_servo(servo);
+        let mut positions = Self {
+            degrees: Vec::new(),
+            fixed: Vec::new(),
+            exact: Vec::new(),
+        };
+        for sweep in calibration.min.0..=calibration.max.0 {
+            let angle = neutral.swept(Sweep(sweep));
+            let degrees = f64::from(angle.0) * 360.0 / 65536.0;
+            let fixed = Direction::of(angle);
+            positions.degrees.push(degrees);
+            positions.fixed.push(match end {
+                End::Head => fixed,
+                End::Tail => fixed.in_tail_frame(),
+            });
+            positions.exact.push(end.mirror(Vector::direction(degrees)));
+        }
+        positions
+    }
+}

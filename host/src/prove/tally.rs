@@ -1,0 +1,81 @@
+//! What a walk over many pairs of positions adds up.
+
+use serde::Serialize;
+
+/// How near to a margin's limit the guard may decide otherwise than floating
+/// point, a sine.
+pub const MARGIN_BAND: f64 = 0.002;
+
+/// How near to the end of a stroke, or to the crossing of the crank tips, in steps
+/// of the mechanism's lengths: 1/256 mm for a robot of the paper's size.
+pub const STEPS_BAND: f64 = 4.0;
+
+/// Errors and disagreements of one end, one side or one leg.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Tally {
+    /// Pairs of positions looked at.
+    pub pairs: u64,
+    /// Largest error of the type-2 margin, a sine.
+    pub type2: Option<f64>,
+    /// Largest error of a type-1 margin.
+    pub type1: Option<f64>,
+    /// Largest error of a leg's margin.
+    pub leg: Option<f64>,
+    /// Largest error of a slider's travel, mm.
+    pub travel: Option<f64>,
+    /// Farthest from a margin's limit that the decisions differ.
+    pub margin_band: Option<f64>,
+    /// Farthest from the end of a stroke, or from the crossing of the crank tips,
+    /// that the decisions differ, mm.
+    pub length_band: Option<f64>,
+    /// Pairs outside the band that are decided wrong.
+    pub wrong: u64,
+    /// The first of them, in words.
+    pub example: Option<String>,
+}
+
+impl Tally {
+    /// Raises a largest value.
+    #[inline(always)]
+    pub fn raise(largest: &mut Option<f64>, value: f64) {
+        if largest.is_none_or(|largest| value > largest) {
+            *largest = Some(value);
+        }
+    }
+
+    /// Of two walks together.
+    pub fn and(mut self, other: Self) -> Self {
+        self.pairs += other.pairs;
+        for (largest, value) in [
+            (&mut self.type2, other.type2),
+            (&mut self.type1, other.type1),
+            (&mut self.leg, other.leg),
+            (&mut self.travel, other.travel),
+            (&mut self.margin_band, other.margin_band),
+            (&mut self.length_band, other.length_band),
+        ] {
+            if let Some(value) = value {
+                Self::raise(largest, value);
+            }
+        }
+        self.wrong += other.wrong;
+        self.example = self.example.or(other.example);
+        self
+    }
+
+    /// Notes a pair that is decided differently: it is `by` from the limit, where
+    /// `band` is allowed.
+    #[cold]
+    pub fn differ(&mut self, length: bool, by: f64, band: f64, example: impl FnOnce() -> String) {
+        let widest = if length {
+            &mut self.length_band
+        } else {
+            &mut self.margin_band
+        };
+        Self::raise(widest, by);
+        if by > band {
+            self.wrong += 1;
+            self.example.get_or_insert_with(example);
+        }
+    }
+}

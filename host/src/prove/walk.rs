@@ -1,0 +1,352 @@
+//! Rows and columns of positions, and the two decisions at each pair.
+
+use lizard_core::five_bar::EndMargins;
+use lizard_core::part;
+use lizard_core::robot::Robot as _;
+use lizard_core::trig::Direction;
+use lizard_core::units::ONE_Q15;
+use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Side, Slider, Vector};
+use lizard_robot::{Robot, servo};
+use rayon::prelude::*;
+
+use super::positions::Positions;
+use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
+use super::{Finding, Share};
+
+/// Columns that floating point takes at once.
+const LANES: usize = 8;
+
+/// Every end, side and leg of a robot.
+pub fn all(robot: &Robot, share: Share, progress: &(impl Fn(u64) + Sync)) -> Vec<Finding> {
+    let positions = [0, 1, 2, 3].map(|servo| Positions::of(robot, servo));
+    let mut findings = Vec::new();
+    for end in End::ALL {
+        findings.push(Finding {
+            part: end.name().to_string(),
+            servos: names(end.servos()),
+            tally: EndWalk::new(robot, end).walk(end.pick(positions.each_ref()), share, progress),
+        });
+    }
+    for side in Side::ALL {
+        findings.push(Finding {
+            part: format!("{side} side"),
+            servos: names(side.servos()),
+            tally: SideWalk::new(robot, side).walk(
+                side.pick(positions.each_ref()),
+                share,
+                progress,
+            ),
+        });
+    }
+    for (servo, positions) in positions.iter().enumerate() {
+        findings.push(Finding {
+            part: format!("leg {}", servo::LEGS[servo]),
+            servos: vec![servo::NAMES[servo]],
+            tally: leg(robot, positions),
+        });
+    }
+    findings
+}
+
+/// How many rows that is.
+pub fn rows(robot: &Robot) -> u64 {
+    let positions = |servo: usize| {
+        let calibration = robot.firmware.calibration()[servo];
+        (i32::from(calibration.max.0) - i32::from(calibration.min.0) + 1) as u64
+    };
+    let first = End::ALL
+        .map(|end| end.servos()[0])
+        .into_iter()
+        .chain(Side::ALL.map(|side| side.servos()[0]));
+    first.map(positions).sum()
+}
+
+fn names(servos: [usize; 2]) -> Vec<&'static str> {
+    servos.map(|servo| servo::NAMES[servo]).to_vec()
+}
+
+/// The columns of a row that belong to a share.
+fn columns(share: Share, row: usize, count: usize) -> impl Iterator<Item = usize> {
+    let first = (row + share.offset as usize) % share.one_in as usize;
+    (first..count).step_by(share.one_in as usize)
+}
+
+/// Walks all rows on all cores.
+fn rows_of(
+    first: &Positions,
+    progress: &(impl Fn(u64) + Sync),
+    row: impl Fn(usize) -> Tally + Sync,
+) -> Tally {
+    (0..first.fixed.len())
+        .into_par_iter()
+        .map(|index| {
+            let tally = row(index);
+            progress(1);
+            tally
+        })
+        .reduce(Tally::default, Tally::and)
+}
+
+/// The columns of a row, eight at a time; the last ones are repeated.
+fn eight_by_eight(
+    mut columns: impl Iterator<Item = usize>,
+    mut take: impl FnMut([usize; LANES], usize),
+) {
+    loop {
+        let mut eight = [0; LANES];
+        let mut count = 0;
+        for column in columns.by_ref().take(LANES) {
+            eight[count..].fill(column);
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        take(eight, count);
+    }
+}
+
+fn lanes(of: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
+    Vector::new(
+        Lanes(columns.map(|column| of[column].x)),
+        Lanes(columns.map(|column| of[column].y)),
+    )
+}
+
+fn splat(vector: Vector) -> Vector<Lanes<LANES>> {
+    Vector::new(Lanes([vector.x; LANES]), Lanes([vector.y; LANES]))
+}
+
+/// A margin of the firmware as a sine.
+fn sine(q15: i16) -> f64 {
+    f64::from(q15) / f64::from(ONE_Q15)
+}
+
+/// The pairs of an end.
+struct EndWalk<'a> {
+    name: &'static str,
+    fixed: lizard_core::five_bar::FiveBar<'a>,
+    exact: FiveBar,
+    /// Type-2 and type-1, as robot.toml and as the firmware has them.
+    limits: [f64; 2],
+    fixed_limits: [i16; 2],
+    crossing_band: f64,
+}
+
+impl<'a> EndWalk<'a> {
+    fn new(robot: &'a Robot, end: End) -> Self {
+        let part = match end {
+            End::Head => part::End::Head,
+            End::Tail => part::End::Tail,
+        };
+        let limits = robot.firmware.limits();
+        Self {
+            name: end.name(),
+            fixed: robot.firmware.end(part),
+            exact: robot.lizard.end(end),
+            limits: [robot.limits.type2, robot.limits.type1],
+            fixed_limits: [limits.type2.0, limits.type1.0],
+            crossing_band: STEPS_BAND * robot.firmware.end_step(end),
+        }
+    }
+
+    fn walk(
+        &self,
+        [left, right]: [&Positions; 2],
+        share: Share,
+        progress: &(impl Fn(u64) + Sync),
+    ) -> Tally {
+        rows_of(left, progress, |row| {
+            let mut tally = Tally::default();
+            let crank = splat(left.exact[row]);
+            eight_by_eight(columns(share, row, right.fixed.len()), |eight, count| {
+                let other = lanes(&right.exact, eight);
+                let pose = self.exact.shape(AssemblyMode::Ahead, crank, other);
+                let closes = self.exact.closes(&pose);
+                let Lanes(type2) = pose.type2;
+                let Lanes(type1_left) = pose.type1_left();
+                let Lanes(type1_right) = pose.type1_right();
+                let Lanes(across) = pose.gap.x;
+                for lane in 0..count {
+                    let column = eight[lane];
+                    let truth = EndTruth {
+                        closes: closes[lane],
+                        type2: type2[lane],
+                        type1: [type1_left[lane], type1_right[lane]],
+                        across: across[lane],
+                    };
+                    let margins = self.fixed.margins(left.fixed[row], right.fixed[column]);
+                    let place = || {
+                        format!(
+                            "{} at {:.4} and {:.4} deg",
+                            self.name, left.degrees[row], right.degrees[column]
+                        )
+                    };
+                    self.compare(&mut tally, margins, &truth, place);
+                }
+            });
+            tally
+        })
+    }
+
+    #[inline(always)]
+    fn compare(
+        &self,
+        tally: &mut Tally,
+        margins: EndMargins,
+        truth: &EndTruth,
+        place: impl Fn() -> String,
+    ) {
+        tally.pairs += 1;
+        let EndMargins {
+            type2,
+            type1_left,
+            type1_right,
+        } = margins;
+        // All zero says too near to a singularity to measure.
+        if truth.closes && margins != EndMargins::default() {
+            Tally::raise(
+                &mut tally.type2,
+                (sine(type2.0).abs() - truth.type2).abs(),
+            );
+            for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
+                Tally::raise(&mut tally.type1, (sine(fixed.0) - exact).abs());
+            }
+        }
+        let [least2, least1] = self.fixed_limits;
+        let fixed = type2.0 >= least2 && type1_left.0 >= least1 && type1_right.0 >= least1;
+        let (clear, crossed) = truth.clear_by(self.limits);
+        let exact = clear >= 0.0 && crossed > 0.0;
+        if fixed != exact {
+            // Of what decides, how far it is beyond its limit.
+            let by_crossing = crossed / self.crossing_band < clear / MARGIN_BAND;
+            let (by, band) = if by_crossing {
+                (crossed.abs(), self.crossing_band)
+            } else {
+                (clear.abs(), MARGIN_BAND)
+            };
+            tally.differ(by_crossing, by, band, || {
+                format!(
+                    "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
+                    place(),
+                    if fixed { "safe" } else { "unsafe" },
+                    if exact { "safe" } else { "unsafe" },
+                    sine(type2.0),
+                    sine(type1_left.0),
+                    sine(type1_right.0),
+                    truth.type2,
+                    truth.type1[0],
+                    truth.type1[1],
+                    truth.across,
+                )
+            });
+        }
+    }
+}
+
+/// An end at a pair of angles, in floating point.
+struct EndTruth {
+    closes: bool,
+    type2: f64,
+    type1: [f64; 2],
+    /// From the left crank tip to the right one, mm, across the end.
+    across: f64,
+}
+
+impl EndTruth {
+    /// By how much the least margin is above its limit, a sine; and by how much the
+    /// crank tips are uncrossed, mm.
+    #[inline(always)]
+    fn clear_by(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
+        if !self.closes {
+            return (-least2, self.across);
+        }
+        let type1 = self.type1[0].min(self.type1[1]) - least1;
+        ((self.type2 - least2).min(type1), self.across)
+    }
+}
+
+/// The pairs of a side.
+struct SideWalk {
+    side: Side,
+    fixed: lizard_core::slider::Slider,
+    exact: Slider,
+    stroke: [f64; 2],
+    steps_per_mm: f64,
+}
+
+impl SideWalk {
+    fn new(robot: &Robot, side: Side) -> Self {
+        let fixed = match side {
+            Side::Left => robot.firmware.side(part::Side::Left),
+            Side::Right => robot.firmware.side(part::Side::Right).mirrored(),
+        };
+        Self {
+            side,
+            fixed,
+            exact: robot.lizard.side(side),
+            stroke: [robot.limits.stroke_min, robot.limits.stroke_max],
+            steps_per_mm: f64::from(1u32 << fixed.scale.bits),
+        }
+    }
+
+    fn walk(
+        &self,
+        [front, rear]: [&Positions; 2],
+        share: Share,
+        progress: &(impl Fn(u64) + Sync),
+    ) -> Tally {
+        let turned = |direction: Direction| match self.side {
+            Side::Left => direction,
+            Side::Right => direction.mirrored(),
+        };
+        let band = STEPS_BAND / self.steps_per_mm;
+        rows_of(front, progress, |row| {
+            let mut tally = Tally::default();
+            let crank = turned(front.fixed[row]);
+            let front_arm = splat(self.side.front_arm(front.exact[row]));
+            eight_by_eight(columns(share, row, rear.fixed.len()), |eight, count| {
+                // Positions are in the frame of their end, arms in the chassis'.
+                let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
+                let pose = self.exact.shape(self.side.rear_arm(crank_rear), front_arm);
+                let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
+                for lane in 0..count {
+                    let column = eight[lane];
+                    tally.pairs += 1;
+                    let length_sq = self.fixed.length_sq(crank, turned(rear.fixed[column]));
+                    let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
+                    Tally::raise(&mut tally.travel, (length - d[lane]).abs());
+                    let fixed = self.fixed.allows(length_sq);
+                    let [min, max] = self.stroke;
+                    let clear = (s[lane] - min).min(max - s[lane]);
+                    if fixed != (clear >= 0.0) {
+                        tally.differ(true, clear.abs(), band, || {
+                            format!(
+                                "at {:.4} and {:.4} deg the slider is {length:.5} mm long by the guard, {:.5} by floating point",
+                                front.degrees[row], rear.degrees[column], d[lane]
+                            )
+                        });
+                    }
+                }
+            });
+            tally
+        })
+    }
+}
+
+/// The positions of one leg.
+fn leg(robot: &Robot, positions: &Positions) -> Tally {
+    let mut tally = Tally::default();
+    let least = robot.firmware.limits().leg.0;
+    for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
+        tally.pairs += 1;
+        Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
+        let clear = exact.y - robot.limits.leg;
+        if (fixed.sin >= least) != (clear >= 0.0) {
+            tally.differ(false, clear.abs(), MARGIN_BAND, || {
+                format!("at {:.4} deg", positions.degrees[position])
+            });
+        }
+    }
+    tally
+}
