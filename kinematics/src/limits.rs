@@ -36,6 +36,8 @@ pub struct Violation {
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, value, limit } = *self;
+        // To the last digit shown, without the sign of a zero.
+        let shown = |scale: f64| libm::round(value * scale) / scale + 0.0;
         match what {
             Check::StrokeLeft | Check::StrokeRight => {
                 let side = if what == Check::StrokeLeft {
@@ -46,7 +48,8 @@ impl fmt::Display for Violation {
                 let passes = if value < limit { "below" } else { "above" };
                 write!(
                     f,
-                    "{side} slider travel {value:+.2} mm is {passes} {limit:+.2} mm"
+                    "{side} slider travel {:+.2} mm is {passes} {limit:+.2} mm",
+                    shown(100.0)
                 )
             }
             Check::UncrossedHead | Check::UncrossedTail => {
@@ -57,10 +60,11 @@ impl fmt::Display for Violation {
                 };
                 write!(
                     f,
-                    "{part} crank tips are crossed: {value:+.2} mm from left to right"
+                    "{part} crank tips are crossed: {:+.2} mm from left to right",
+                    shown(100.0)
                 )
             }
-            _ => write!(f, "margin {what} {value:.3} is below {limit:.3}"),
+            _ => write!(f, "margin {what} {:.3} is below {limit:.3}", shown(1e3)),
         }
     }
 }

@@ -142,14 +142,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
     for r in reports.iter().filter(singular) {
         write!(
             out,
-            "{}: this pose is singular, the rank leaves {} freedoms",
+            "{} is singular here: the rank leaves {} freedoms",
             r.mechanism, r.freedoms
         )?;
         match r.loose.as_slice() {
             [] => writeln!(out, ".")?,
             loose => writeln!(
                 out,
-                "; with the cranks locked {} can still move: {}.",
+                ", and {} with the driven cranks locked: {}.",
                 r.locked_freedoms,
                 loose.join(", ")
             )?,

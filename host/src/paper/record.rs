@@ -57,7 +57,7 @@ impl Serialize for Sines {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for (what, value) in self.0.iter() {
-            map.serialize_entry(what.name(), &value)?;
+            map.serialize_entry(what.name(), &(value + 0.0))?;
         }
         map.end()
     }

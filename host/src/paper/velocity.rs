@@ -9,8 +9,12 @@ use crate::paper::tidy::tidy;
 use crate::pose_args::{acceleration, rate};
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Step of the finite differences that the result is shown beside, s.
+/// Longest step of the finite differences that the result is shown beside, s.
 const STEP: f64 = 2e-4;
+
+/// Furthest that a servo may go in a step, deg: beyond it the differences are of
+/// another pose.
+const SWEEP: f64 = 0.04;
 
 /// How fast every passive joint moves when the servos move.
 ///
@@ -173,8 +177,12 @@ fn rates(m: &Motion) -> [(f64, f64); 12] {
 
 fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
     let start = <[f64; 4]>::from(solution.pose);
+    let largest = |all: &[f64; 4]| all.iter().fold(0.0f64, |most, one| most.max(one.abs()));
+    let step = STEP
+        .min(SWEEP / largest(&drive.rate))
+        .min((SWEEP / largest(&drive.acceleration)).sqrt());
     let at = |steps: f64| {
-        let t = steps * STEP;
+        let t = steps * step;
         let angles: [f64; 4] = std::array::from_fn(|i| {
             start[i] + drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0
         });
@@ -197,8 +205,8 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
                 });
                 // Five points: the error is of the fourth order in the step.
                 (
-                    (a - 8.0 * b + 8.0 * c - d) / (12.0 * STEP),
-                    (16.0 * (b + c) - a - d) / (12.0 * STEP * STEP),
+                    (a - 8.0 * b + 8.0 * c - d) / (12.0 * step),
+                    (16.0 * (b + c) - a - d) / (12.0 * step * step),
                 )
             });
             Row {

@@ -1,6 +1,6 @@
 //! Bad input: each case its message, its exit code, and nothing half written.
 
-use crate::program::lizard;
+use crate::program::{lizard, paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
@@ -189,7 +189,7 @@ fn what_does_not_exist_ends_with_code_1() {
         ),
     ];
     for (args, message) in cases {
-        let outcome = lizard(args, "");
+        let outcome = lizard(&paper(args), "");
         assert_eq!(outcome.code, 1, "{args}: {}", outcome.err);
         assert!(outcome.err.contains(message), "{args}: {}", outcome.err);
     }

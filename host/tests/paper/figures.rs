@@ -152,6 +152,22 @@ fn rates_agree_with_differences_of_positions() {
 }
 
 #[test]
+fn rates_of_any_size_agree_with_differences() {
+    for drive in [
+        "--omega1 1e6 --omega8 -3e5",
+        "--alpha4 1e9",
+        "--omega1 1e-3 --alpha5 1e-3",
+    ] {
+        let rows = lizard(&paper(&format!("velocity {drive}")), "").out;
+        let verdicts = rows
+            .lines()
+            .skip(1)
+            .filter(|row| row.ends_with("agree to 1e-6"));
+        assert_eq!(verdicts.count(), 12, "{drive}\n{rows}");
+    }
+}
+
+#[test]
 fn a_point_leads_to_angles_and_back_to_the_point() {
     // The last two would take a leg through its change point.
     for (point, safe) in [

@@ -147,10 +147,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn agree(report: &Report) -> Result<(), Failure> {
     match &report.numpy {
         // Not a number is no agreement.
-        Some(numpy) if !(numpy.worst_difference <= ROUNDING) => Err(Failure::Impossible(format!(
-            "the results of numpy differ by {:.1e}, more than {ROUNDING:.0e}",
-            numpy.worst_difference
-        ))),
+        Some(numpy) if numpy.worst_difference.is_nan() || numpy.worst_difference > ROUNDING => {
+            Err(Failure::Impossible(format!(
+                "the results of numpy differ by {:.1e}, more than {ROUNDING:.0e}",
+                numpy.worst_difference
+            )))
+        }
         _ => Ok(()),
     }
 }
