@@ -24,11 +24,11 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash lint cli bench docs clean .firmware .gaits .flash .lint .cli .simulator .sim .test .bench .docs
+.PHONY: help sim test firmware flash lint cli bench prove docs clean .firmware .gaits .flash .lint .cli .simulator .sim .test .bench .prove .docs
 
 help: ## this list
 	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
-	@echo "firmware, sim, test, bench and flash take ROBOT=robots/x.toml; without it, robot.toml"
+	@echo "firmware, sim, test, bench, prove and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
@@ -44,6 +44,8 @@ cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)
 bench: ## measured budgets, beside the Arduino Servo library's; speed beside numpy's
 	$(call prepared,.bench)
+prove: ## the guard against floating point at every pose there is; about a minute
+	$(call prepared,.prove)
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
 clean: ## remove everything that was built
@@ -87,6 +89,9 @@ clean: ## remove everything that was built
 	@$(LIZARD) bench --elf $(ELF) $(FOR_ROBOT)
 	@echo
 	@$(LIZARD) speed
+
+.prove: .cli
+	@$(LIZARD) prove $(FOR_ROBOT)
 
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md

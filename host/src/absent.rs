@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use crate::Failure;
 
 const SIMULATOR: [&str; 2] = ["sim", "bench"];
-const PAPER: [&str; 9] = [
+const PAPER: [&str; 10] = [
     "solve",
     "inverse",
     "velocity",

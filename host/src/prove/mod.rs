@@ -25,8 +25,9 @@ pub use tally::{MARGIN_BAND, STEPS_BAND, Tally};
 /// Every condition of a safe pose depends on one servo or on two: so every pair of
 /// positions of the two servos of the head, the tail, the left and the right side
 /// is decided by the firmware's integers and by floating point, in the firmware's
-/// own steps of 1/65536 turn. Prints the largest error of each margin, and how far
-/// from its limit a pose may be that the two decide differently. Exit code 1 if one
+/// own steps of 1/65536 turn. Prints the largest error of each margin (of an end
+/// whose type-2 margin keeps its limit), and how far from its limit a pose may be
+/// that the two decide differently. Exit code 1 if one
 /// is farther than the band that the documentation states.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:

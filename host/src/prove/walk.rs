@@ -203,8 +203,8 @@ impl<'a> EndWalk<'a> {
             type1_left,
             type1_right,
         } = margins;
-        // All zero says too near to a singularity to measure.
-        if truth.closes && margins != EndMargins::default() {
+        // Where the couplers fold, no other margin matters.
+        if truth.closes && truth.type2 > self.limits[0] - MARGIN_BAND {
             Tally::raise(
                 &mut tally.type2,
                 (sine(type2.0).abs() - truth.type2).abs(),

@@ -1,0 +1,80 @@
+//! The guard of every robot of this repository against floating point, at one in
+//! 64 of all pairs of servo positions. `make prove` looks at all of them.
+
+use std::path::PathBuf;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use lizard_host::prove::{Proof, Share};
+use lizard_robot::Robot;
+
+const ONE_IN: u32 = 64;
+
+/// robot.toml, or the robot that the firmware was built for, and all of robots/.
+fn files() -> Vec<PathBuf> {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    let own = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    let own = own.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
+    let robots = std::fs::read_dir(format!("{root}/robots")).expect("there is a folder robots");
+    let mut files: Vec<PathBuf> = robots
+        .map(|entry| entry.expect("it can be read").path())
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .collect();
+    files.sort();
+    files.insert(0, own);
+    files
+}
+
+/// Another share of the pairs at every run; a failure says which.
+fn offset() -> u32 {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    now.map_or(0, |now| now.subsec_nanos() / 1000 % ONE_IN)
+}
+
+#[test]
+fn no_pair_of_positions_outside_the_band_is_decided_wrong_for_any_robot() {
+    let share = Share {
+        one_in: ONE_IN,
+        offset: offset(),
+    };
+    for file in files() {
+        let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
+        let proof = Proof::of(&robot, share, |_| {});
+        let pairs: u64 = proof.findings.iter().map(|one| one.tally.pairs).sum();
+        assert!(pairs > 1_000_000, "{pairs} pairs are no walk");
+        for finding in &proof.findings {
+            assert_eq!(
+                finding.tally.wrong,
+                0,
+                "{}, {} with {share:?}: {:?}",
+                file.display(),
+                finding.part,
+                finding.tally.example
+            );
+        }
+    }
+}
+
+#[test]
+fn a_guard_with_another_robots_lengths_does_not_pass() {
+    let text = std::fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../robots/paper.toml"
+    ));
+    let text = text.expect("the paper's robot is there");
+    let robot = Robot::parse(&text).expect("it is right");
+    let longer = text
+        .replace("\nl2 = 50.0 ", "\nl2 = 51.0 ")
+        .replace("\nl10 = 135.0 ", "\nl10 = 136.0 ")
+        .replace("\nl15 = 135.0 ", "\nl15 = 136.0 ");
+    let longer = Robot::parse(&longer).expect("it is right, too");
+    let wrong = robot.with_firmware_of(&longer);
+    let share = Share {
+        one_in: 4096,
+        offset: 1,
+    };
+    assert_eq!(Proof::of(&robot, share, |_| {}).wrong(), 0);
+    let proof = Proof::of(&wrong, share, |_| {});
+    for (finding, seen) in proof.findings.iter().zip([true, false, true, true]) {
+        assert_eq!(finding.tally.wrong > 0, seen, "{}", finding.part);
+    }
+}
