@@ -26,7 +26,7 @@ impl Jacobian {
             self.left.square() + self.right.square(),
             self.determinant().abs(),
         );
-        let largest = (libm::sqrt(sum + 2.0 * det) + libm::sqrt((sum - 2.0 * det).max(0.0))) / 2.0;
+        let largest = ((sum + 2.0 * det).sqrt() + (sum - 2.0 * det).max(0.0).sqrt()) / 2.0;
         // The difference of the roots would cancel near a singularity.
         let smallest = if largest > 0.0 { det / largest } else { 0.0 };
         [largest, smallest]

@@ -37,7 +37,7 @@ impl Real for f64 {
     #[inline(always)]
     fn root(self) -> Self {
         // Not `max`, which would turn what is no number into 0.
-        libm::sqrt(if self < 0.0 { 0.0 } else { self })
+        (if self < 0.0 { 0.0 } else { self }).sqrt()
     }
 
     #[inline(always)]

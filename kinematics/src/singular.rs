@@ -118,7 +118,7 @@ fn meet(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let between = b - a;
     let square = between.square();
     let along = (square + (r - s) * (r + s)) / (2.0 * square);
-    let rise = libm::sqrt(r * r / square - along * along);
+    let rise = (r * r / square - along * along).sqrt();
     // No meeting, or equal centres: not a number, which ends here.
     let points = rise.is_finite().then(|| {
         let foot = a + between * along;

@@ -221,3 +221,16 @@ fn unreachable_points_and_bad_numbers_say_why() {
         Fault::NotFinite
     );
 }
+
+#[test]
+fn a_distance_that_overflows_is_no_number_and_not_out_of_reach() {
+    let far = Vector::new(1e200, 0.0);
+    assert_eq!(HEAD.inverse(far).unwrap_err(), Fault::NotFinite);
+    assert_eq!(HEAD.reach(far).unwrap_err(), Fault::NotFinite);
+    let endless = FiveBar {
+        crank_right: f64::INFINITY,
+        ..HEAD
+    };
+    let near = Vector::new(0.0, 50.0);
+    assert_eq!(endless.inverse(near).unwrap_err(), Fault::NotFinite);
+}

@@ -129,3 +129,20 @@ fn lanes_do_not_mix() {
     let one: Solution = robot.solve(&neutral.into()).unwrap();
     assert_eq!(all.margins.type2[1].0[7], one.margins.type2[1]);
 }
+
+#[test]
+fn no_lane_closes_if_any_one_loop_does_not() {
+    // A link of each loop that no other loop has: head, tail, left, right.
+    let neutral = [[138.59, 41.41, 318.59, 221.41]; N];
+    for link in [3, 8, 13, 18] {
+        let paper = crate::reference::lizard();
+        let mut l = paper.links.to_array();
+        l[link] = f64::NAN;
+        let robot = Lizard {
+            links: l.into(),
+            ..paper
+        };
+        let all = robot.solve_lanes(&lanes(&neutral));
+        assert_eq!(robot.closes(&all), [false; N], "l{link}");
+    }
+}
