@@ -13,7 +13,7 @@ mod failure;
 pub mod gaits;
 #[cfg(feature = "paper")]
 pub mod paper;
-mod pose_args;
+pub mod pose_args;
 mod robot_file;
 #[cfg(feature = "paper")]
 pub mod prove;

@@ -1,7 +1,9 @@
 //! Frames read back into servo angles, and what can be said about them.
 
-use lizard_robot::Robot;
+use std::collections::HashMap;
+
 use lizard_robot::servo::{FORWARD, LEGS, NAMES};
+use lizard_robot::{Robot, Travel};
 use serde::Serialize;
 use simulated_uno::{CYCLES_PER_US, FREQUENCY};
 
@@ -238,12 +240,29 @@ impl Safety {
 /// the last one. Feet are never lifted: see [`lizard_robot::Ground`].
 #[must_use]
 pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
+    let mut steps = Steps {
+        run,
+        known: HashMap::new(),
+    };
+    let mut whole = NOWHERE;
+    let mut legs = Vec::with_capacity(spans.len() + 1);
+    for span in spans {
+        let mut travel = NOWHERE;
+        for n in run.log.index(span.from)..run.log.index(span.to) {
+            let step = steps.from(n);
+            travel = followed_by(travel, step);
+            whole = followed_by(whole, step);
+        }
+        legs.push(Leg::new(&span.command, [span.from, span.to], travel));
+    }
     let end = spans.last().map_or(0.0, |span| span.to);
-    let leg = |command: &str, from: f64, to: f64| {
-        let within = run.within(run.log.index(from)..run.log.index(to));
-        let sweeps = within.filter_map(|at| at.sweeps);
-        let travel = run.robot.ground.travel(sweeps);
-        Leg {
+    legs.push(Leg::new("all", [0.0, end], whole));
+    legs
+}
+
+impl Leg {
+    fn new(command: &str, [from, to]: [f64; 2], travel: Travel) -> Self {
+        Self {
             command: command.to_owned(),
             from,
             to,
@@ -251,13 +270,56 @@ pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
             left: travel.left,
             turn: travel.turn,
         }
-    };
-    let mut legs: Vec<Leg> = spans
-        .iter()
-        .map(|span| leg(&span.command, span.from, span.to))
-        .collect();
-    legs.push(leg("all", 0.0, end));
-    legs
+    }
+}
+
+/// The way of a robot that stands.
+const NOWHERE: Travel = Travel {
+    forward: 0.0,
+    left: 0.0,
+    turn: 0.0,
+};
+
+/// Widths of a frame and of the next.
+type Pair = [[u16; 4]; 2];
+
+/// Where the robot gets to from one frame to the next. A gait repeats its frames,
+/// so each pair is computed once.
+struct Steps<'a> {
+    run: Run<'a>,
+    known: HashMap<Pair, Travel>,
+}
+
+impl Steps<'_> {
+    /// From frame number `n`. A frame in which the robot rests moves nothing.
+    fn from(&mut self, n: usize) -> Travel {
+        /// Pairs that are kept, some megabytes.
+        const KEPT: usize = 100_000;
+        let frames = &self.run.log.widths;
+        let Some(next) = frames.get(n + 1) else {
+            return NOWHERE;
+        };
+        let pair = [frames[n], *next];
+        if let Some(travel) = self.known.get(&pair) {
+            return *travel;
+        }
+        let sweeps = self.run.within(n..n + 2).filter_map(|at| at.sweeps);
+        let travel = self.run.robot.ground.travel(sweeps);
+        if self.known.len() < KEPT {
+            self.known.insert(pair, travel);
+        }
+        travel
+    }
+}
+
+/// One way and then another, the second seen from where the first ends.
+fn followed_by(first: Travel, second: Travel) -> Travel {
+    let (sin, cos) = first.turn.to_radians().sin_cos();
+    Travel {
+        forward: first.forward + cos * second.forward - sin * second.left,
+        left: first.left + sin * second.forward + cos * second.left,
+        turn: first.turn + second.turn,
+    }
 }
 
 #[cfg(test)]
@@ -329,6 +391,41 @@ mod tests {
             let all = way.last().expect("the whole run");
             assert!((all.forward - forward).abs() < 0.35, "{gait}: {all:?}");
             assert!((all.turn - turn).abs() < 0.2, "{gait}: {all:?}");
+        }
+    }
+
+    #[test]
+    fn a_way_step_by_step_is_the_way_as_a_whole() {
+        let robot = robot();
+        for gait in ["arc-left", "right"] {
+            let log = gait_frames(&robot, gait, 400);
+            let run = Run {
+                robot: &robot,
+                log: &log,
+            };
+            let span = |from, to| Span {
+                command: gait.to_owned(),
+                from,
+                to,
+            };
+            let legs = way(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
+            let whole = robot
+                .ground
+                .travel(run.instants().filter_map(|at| at.sweeps));
+            let [first, second, all] = &legs[..] else {
+                panic!("two commands and the whole: {legs:?}")
+            };
+            let apart = |leg: &Leg, travel: Travel| {
+                let [x, y] = [leg.forward - travel.forward, leg.left - travel.left];
+                x.hypot(y) + (leg.turn - travel.turn).abs()
+            };
+            assert!(apart(all, whole) < 1e-6, "{all:?} {whole:?}");
+            let travel = |leg: &Leg| Travel {
+                forward: leg.forward,
+                left: leg.left,
+                turn: leg.turn,
+            };
+            assert!(apart(all, followed_by(travel(first), travel(second))) < 1e-6);
         }
     }
 

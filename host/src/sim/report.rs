@@ -123,8 +123,8 @@ impl Report<'_> {
                 least.value,
                 least.margin,
                 least.seconds,
-                self.safety.stroke[0],
-                self.safety.stroke[1]
+                positive_zero(self.safety.stroke[0], 0.05),
+                positive_zero(self.safety.stroke[1], 0.05)
             )?;
         }
         if let Some(reason) = &self.safety.first_violation {
