@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::{env, fs};
 
-use lizard_robot::Robot;
+use lizard_robot::{Report, Robot};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -19,10 +19,10 @@ fn main() {
     // Cargo sets OUT_DIR for every build script.
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out = PathBuf::from(out);
-    write(&out.join("robot.rs"), &robot.source());
+    write(&out.join("robot.rs"), &robot.firmware().source());
     // OUT_DIR is build/<package>/out in the folder that the firmware goes to.
     if let Some(beside) = out.ancestors().nth(3) {
-        write(&beside.join("gaits.txt"), &robot.report().to_string());
+        write(&beside.join("gaits.txt"), &Report::of(&robot).to_string());
     }
 }
 

@@ -15,8 +15,9 @@ use crate::units::Scale;
 /// slider.
 pub const LONGEST: f64 = 255.0 * 256.0;
 
-/// The longest arm, in steps.
-pub const LONGEST_ARM: f64 = 127.0 * 256.0;
+/// The longest that both arms and the offset may be together, in steps: what they
+/// add up to has a sign.
+pub const LONGEST_ARMS: f64 = 127.0 * 256.0;
 
 /// One side of the body, lengths in steps of `scale`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,11 +28,20 @@ pub const FRAMES_PER_SECOND: u16 = 50;
 /// CPU cycles in a microsecond: the UNO runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 
+/// Steps of an [`Angle`] in a turn.
+pub const TURN: i32 = 1 << 16;
+
 /// 1.0 in Q15, one past the largest sine.
 pub const ONE_Q15: i32 = 1 << 15;
 
+/// 1.0 in Q14, as gains have it.
+pub const ONE_Q14: i32 = 1 << 14;
+
 /// One gait cycle, as a phase.
 pub const CYCLE: u32 = 1 << 24;
+
+/// One gait cycle, in the steps that tables tell apart.
+pub const CYCLE16: u32 = 1 << 16;
 
 /// An angle in the chassis frame, 1/65536 turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -107,6 +116,9 @@ impl Sine {
 }
 
 impl Scale {
+    /// The finest step, 1/16384 mm.
+    pub const FINEST: Self = Self { bits: 14 };
+
     /// A length of this step in hundredths of a millimetre, rounded to nearest;
     /// `length` within 16 bits, whatever its sign.
     #[inline(always)]

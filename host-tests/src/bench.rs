@@ -150,7 +150,7 @@ fn done<T>(result: Result<T, BoardError>) -> T {
 /// under test has: every test would fail for that one reason.
 fn is_of_this_robot(elf: &Path) {
     let mut board = done(Board::boot(elf, Fidelity::Stock, servo_pins(robot())));
-    let hash = format!("tables {:08x}", robot().tables_hash());
+    let hash = format!("tables {:08x}", robot().firmware().hash());
     let banner = board.lines()[0].text.clone();
     assert!(
         banner.contains(&hash),

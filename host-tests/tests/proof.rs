@@ -38,7 +38,7 @@ fn no_pair_of_positions_outside_the_band_is_decided_wrong_for_any_robot() {
     };
     for file in files() {
         let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
-        let proof = Proof::of(&robot, share, |_| {});
+        let proof = Proof::of(&robot, robot.firmware(), share, |_| {});
         let pairs: u64 = proof.findings.iter().map(|one| one.tally.pairs).sum();
         assert!(pairs > 1_000_000, "{pairs} pairs are no walk");
         for finding in &proof.findings {
@@ -67,13 +67,12 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
         .replace("\nl10 = 135.0 ", "\nl10 = 136.0 ")
         .replace("\nl15 = 135.0 ", "\nl15 = 136.0 ");
     let longer = Robot::parse(&longer).expect("it is right, too");
-    let wrong = robot.with_firmware_of(&longer);
     let share = Share {
         one_in: 4096,
         offset: 1,
     };
-    assert_eq!(Proof::of(&robot, share, |_| {}).wrong(), 0);
-    let proof = Proof::of(&wrong, share, |_| {});
+    assert_eq!(Proof::of(&robot, robot.firmware(), share, |_| {}).wrong(), 0);
+    let proof = Proof::of(&robot, longer.firmware(), share, |_| {});
     for (finding, seen) in proof.findings.iter().zip([true, false, true, true]) {
         assert_eq!(finding.tally.wrong > 0, seen, "{}", finding.part);
     }

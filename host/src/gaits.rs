@@ -4,7 +4,7 @@
 use std::io::Write;
 
 use lizard_kinematics::Check;
-use lizard_robot::{Robot, Row, Sensitivity, servo};
+use lizard_robot::{Report, Robot, Row, Sensitivity, servo};
 use serde::Serialize;
 
 use crate::pose_args::ANGLES;
@@ -49,28 +49,28 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
         None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
         None if args.json => {
-            for row in &robot.report().rows {
+            for row in &Report::of(&robot).rows {
                 serde_json::to_writer(&mut out, &Record::new(row))?;
                 writeln!(out)?;
             }
         }
-        None => write!(out, "{}", robot.report())?,
+        None => write!(out, "{}", Report::of(&robot))?,
     }
     Ok(out.flush()?)
 }
 
 /// One cycle of a gait, frame by frame, as the firmware reads its table.
 fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
-    let Some((index, gait)) = robot.gait(name) else {
-        let known: Vec<&str> = robot.gaits.iter().map(|gait| gait.name.as_str()).collect();
+    let Some(gait) = robot.gait(name) else {
+        let known: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         return Err(Failure::Input(format!(
             "--trace {name}: the gaits are {}",
             known.join(", ")
         )));
     };
     let mut text = format!("seconds,{}\n", ANGLES.join(","));
-    for (seconds, phase) in robot.tables().frames(gait, index) {
-        let [a1, a2, a3, a4] = robot.tables().angles(gait, index, phase);
+    for (seconds, phase) in gait.frames() {
+        let [a1, a2, a3, a4] = gait.table_angles(phase);
         text += &format!("{seconds:.2},{a1:.3},{a2:.3},{a3:.3},{a4:.3}\n");
     }
     Ok(text)

@@ -1,7 +1,9 @@
 //! How far the tables, as the firmware reads them, are from the gaits in
 //! floating point.
 
-use crate::Robot;
+use lizard_core::units::CYCLE16;
+
+use crate::tabled_gait::TabledGait;
 
 /// The error of a gait's tables over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,11 +19,10 @@ pub struct TableError {
 }
 
 /// Every phase that the firmware can be in.
-pub const ALL_PHASES: usize = 65536;
+pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
 
-/// The error over `count` evenly spaced phases, a divisor of 65536.
-pub fn worst(robot: &Robot, index: usize, count: usize) -> TableError {
-    let gait = &robot.gaits[index];
+/// The error over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
+pub(crate) fn worst(gait: &TabledGait, count: usize) -> TableError {
     let mut error = TableError {
         max: 0.0,
         rms: 0.0,
@@ -32,8 +33,8 @@ pub fn worst(robot: &Robot, index: usize, count: usize) -> TableError {
     for i in 0..count {
         let step = (i * (ALL_PHASES / count)) as u16;
         let phase = f64::from(step) / ALL_PHASES as f64;
-        let table = robot.tables().angles(gait, index, step);
-        let float = gait.angles(phase);
+        let table = gait.angles(step);
+        let float = gait.gait().angles(phase);
         for servo in 0..4 {
             let off = (table[servo] - float[servo]).abs();
             squares += off * off;

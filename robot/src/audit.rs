@@ -1,18 +1,19 @@
 //! Every sample of every gait, as the firmware will send it, through the
 //! forward solution: head, tail, sides and legs against all limits.
 
+use lizard_core::gait::SAMPLES;
 use lizard_kinematics::{Check, Solution, Violation};
 
+use crate::accuracy::{self, ALL_PHASES};
 use crate::error::Problem;
 use crate::gait::Gait;
+use crate::measure::Measures;
 use crate::servo::NAMES;
-use lizard_core::gait::SAMPLES;
-
-use crate::table::FRAMES_PER_SECOND;
-use crate::{Robot, accuracy};
+use crate::tabled_gait::TabledGait;
+use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
 /// Evenly spaced phases that are checked besides the tables' own samples.
-const PHASES: usize = 1024;
+const CHECKED: usize = 1024;
 /// Phases over which the fastest frame is looked for.
 const SPEEDS: usize = 4096;
 /// The largest error of a table, deg.
@@ -55,15 +56,14 @@ pub struct Audit {
     pub peak: Peak,
 }
 
-/// Checks a gait of the robot, by its index.
-pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
-    let gait = &robot.gaits[index];
-    let peak = fastest(gait);
+/// Checks a gait against the limits of its robot.
+pub(crate) fn check(gait: &TabledGait, robot: &Measures) -> Result<Audit, Problem> {
+    let peak = fastest(gait.gait());
     let mut found: Option<Audit> = None;
     let mut worst: Option<(f64, Violation)> = None;
-    for phase in phases(robot, index) {
-        let angles = robot.tables().angles(gait, index, phase);
-        let phase = f64::from(phase) / 65536.0;
+    for phase in phases(gait) {
+        let angles = gait.angles(phase);
+        let phase = f64::from(phase) / PHASES;
         travels(robot, angles, phase)?;
         let solution = robot
             .lizard
@@ -96,7 +96,7 @@ pub(crate) fn check(robot: &Robot, index: usize) -> Result<Audit, Problem> {
             limit,
         });
     }
-    let coarse = accuracy::worst(robot, index, PHASES);
+    let coarse = accuracy::worst(gait, CHECKED);
     if coarse.max > ERROR_LIMIT {
         let (phase, servo) = (coarse.phase, NAMES[coarse.servo]);
         return Err(Problem::Coarse {
@@ -122,10 +122,10 @@ fn exceeds(violation: Violation, earlier: Violation) -> bool {
 }
 
 /// The phases to check: evenly spaced ones, and every sample of every servo.
-fn phases(robot: &Robot, index: usize) -> Vec<u16> {
-    let every = |count: usize| (0..count).map(move |i| (i * (65536 / count)) as u16);
-    let mut phases: Vec<u16> = every(PHASES).collect();
-    for channel in &robot.tables().gaits[index].channels {
+fn phases(gait: &TabledGait) -> Vec<u16> {
+    let every = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
+    let mut phases: Vec<u16> = every(CHECKED).collect();
+    for channel in &gait.table().channels {
         phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
     }
     phases.sort_unstable();
@@ -133,9 +133,9 @@ fn phases(robot: &Robot, index: usize) -> Vec<u16> {
     phases
 }
 
-fn travels(robot: &Robot, angles: [f64; 4], phase: f64) -> Result<(), Problem> {
+fn travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), Problem> {
     // The ends of the travel and the sample are both rounded to an angle step.
-    const STEP: f64 = 360.0 / 65536.0;
+    const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
     for (i, servo) in robot.servos.iter().enumerate() {
         let (min, max) = servo.travel();
         let sweep = angles[i] - servo.neutral;

@@ -5,14 +5,17 @@ use std::collections::HashMap;
 
 use lizard_core::command::WORDS;
 use lizard_core::gait::{LONGEST_NAME, MOST_GAITS};
-use lizard_kinematics::{End, Lizard};
+use lizard_kinematics::End;
 
 use crate::error::{Checked, Hint, Problem};
 use crate::gait::{Gait, Stride};
-use crate::path::{Path, PathLeg};
+use crate::harmonic::Harmonic;
+use crate::measure::Measures;
+use crate::path::Path;
+use crate::path_leg::PathLeg;
 use crate::reader::Section;
 use crate::servo::LEGS;
-use crate::waveform::{Harmonic, Waveform};
+use crate::waveform::Waveform;
 
 const KEYS: [&str; 12] = [
     "period",
@@ -30,15 +33,9 @@ const KEYS: [&str; 12] = [
 ];
 const WAVEFORMS: [&str; 3] = ["still", "wave", "held"];
 const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
-/// The robot that the gaits are for.
-pub(crate) struct Body {
-    pub lizard: Lizard,
-    /// Neutral servo angles, deg.
-    pub neutral: [f64; 4],
-}
 
 /// Every gait of the file, in its order, references resolved.
-pub(crate) fn gaits(root: &Section, body: &Body) -> Checked<Vec<Gait>> {
+pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     let section = root.open("gait")?;
     let names = section.names();
     for name in &names {
@@ -98,7 +95,7 @@ fn check_name(name: &str) -> Result<(), Problem> {
 struct Resolver<'a> {
     section: Section<'a>,
     names: Vec<&'a str>,
-    body: &'a Body,
+    body: &'a Measures,
     known: HashMap<&'a str, Gait>,
     /// The gaits that wait for the one being resolved.
     chain: Vec<&'a str>,
@@ -178,7 +175,7 @@ fn only(one: &Section, allowed: &[&str], with: &str) -> Checked<()> {
     }
 }
 
-fn waveform(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
+fn waveform(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
     let word = one.text("waveform")?;
     let with = format!("waveform = \"{word}\"");
     let strides = match word {
@@ -234,7 +231,7 @@ fn waveform(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
     finish(name, one, body, strides)
 }
 
-fn path(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
+fn path(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
     only(one, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
@@ -247,7 +244,7 @@ fn path(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
             x: harmonics(&section, "x")?,
             y: harmonics(&section, "y")?,
         };
-        let legs = PathLeg::pair(body.lizard, body.neutral, end, &path)
+        let legs = PathLeg::pair(body.lizard, body.neutral(), end, &path)
             .map_err(|problem| problem.at(section.key.clone()))?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
@@ -260,13 +257,13 @@ fn path(name: &str, one: &Section, body: &Body) -> Checked<Gait> {
     finish(name, one, body, strides)
 }
 
-fn finish(name: &str, one: &Section, body: &Body, strides: [Stride; 4]) -> Checked<Gait> {
+fn finish(name: &str, one: &Section, body: &Measures, strides: [Stride; 4]) -> Checked<Gait> {
     let gait = Gait {
         name: name.to_string(),
         period: period(one, None)?,
         reversed: false,
         strides,
-        neutral: body.neutral,
+        neutral: body.neutral(),
     };
     Ok(gait.scaled(gains(one)?))
 }

@@ -52,7 +52,6 @@ impl Problem {
         matches!(
             self,
             Self::Neutral(_)
-                | Self::TooLarge
                 | Self::Stand
                 | Self::Circle(_)
                 | Self::OutOfReach { .. }
@@ -81,8 +80,11 @@ pub enum Problem {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// The file is larger than any robot file.
-    #[error("is longer than {} MiB, so it is no robot file", crate::LONGEST >> 20)]
-    Huge,
+    #[error("is longer than {mib} MiB, so it is no robot file")]
+    Huge {
+        /// What it may have, MiB.
+        mib: u64,
+    },
     /// The file is not UTF-8 text, from this line on.
     #[error("is not UTF-8 text: line {0} holds other bytes")]
     NotText(usize),
@@ -137,9 +139,6 @@ pub enum Problem {
         /// That key's value.
         other_value: f64,
     },
-    /// Lengths beyond all that the firmware's integers hold.
-    #[error("a length is too large for the firmware")]
-    TooLarge,
     /// A coupler that is short beside the rest of its loop.
     #[error(
         "is {value} mm; beside the rest of its loop it must be at least {least:.1} mm, else 16-bit integers do not hold its angle"

@@ -1,8 +1,6 @@
 //! A gait in floating point: the truth that tables, pulses and predictions are
 //! compared with.
 
-use lizard_kinematics::Pose;
-
 use crate::servo::{FORWARD, OPPOSITE};
 use crate::waveform::Waveform;
 
@@ -26,7 +24,8 @@ impl Stride {
         amplitude: 0.0,
     };
 
-    /// The leg's sweep from neutral, deg, foot forward positive.
+    /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
+    /// positive.
     pub fn sweep(&self, phase: f64) -> f64 {
         self.amplitude * self.waveform.at(phase - self.start)
     }
@@ -34,7 +33,7 @@ impl Stride {
 
 /// A gait of robot.toml with its references resolved.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Gait {
+pub(crate) struct Gait {
     /// Its name, also its console command with a blank for the dash.
     pub name: String,
     /// Time of one cycle at full speed, s.
@@ -66,19 +65,14 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + FORWARD[i] * sweeps[i])
     }
 
-    /// The pose at a phase.
-    pub fn pose(&self, phase: f64) -> Pose {
-        self.angles(phase).into()
-    }
-
     /// The same gait with left and right exchanged.
-    pub(crate) fn mirrored(mut self) -> Self {
+    pub fn mirrored(mut self) -> Self {
         self.strides = OPPOSITE.map(|i| self.strides[i].clone());
         self
     }
 
     /// Each leg's sweep times its gain.
-    pub(crate) fn scaled(mut self, gains: [f64; 4]) -> Self {
+    pub fn scaled(mut self, gains: [f64; 4]) -> Self {
         for (stride, gain) in self.strides.iter_mut().zip(gains) {
             stride.amplitude *= gain;
         }

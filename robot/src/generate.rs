@@ -5,23 +5,23 @@ use std::fmt::{self, Display, Write};
 
 use lizard_core::gait::SAMPLES;
 
-use crate::firmware::{Bars, Firmware, Loop};
+use crate::numbers::{Bars, Loop, Numbers};
 
 /// The source of a robot's numbers, headed by their hash.
-pub(crate) fn source(firmware: &Firmware) -> String {
+pub(crate) fn source(numbers: &Numbers) -> String {
     format!(
         "// Written by build.rs from robot.toml.\n\n/// CRC-32 of everything below.\npub const HASH: u32 = {:#010x};\n{}",
-        firmware.hash,
-        Body(firmware)
+        hash(numbers),
+        Body(numbers)
     )
 }
 
 /// The hash that the source carries.
-pub(crate) fn hash(firmware: &Firmware) -> u32 {
-    crc32fast::hash(Body(firmware).to_string().as_bytes())
+pub(crate) fn hash(numbers: &Numbers) -> u32 {
+    crc32fast::hash(Body(numbers).to_string().as_bytes())
 }
 
-struct Body<'a>(&'a Firmware);
+struct Body<'a>(&'a Numbers);
 
 impl Display for Body<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {

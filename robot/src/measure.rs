@@ -4,14 +4,13 @@ use lizard_core::five_bar::SHORTEST_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::error::{Checked, Problem};
-use crate::firmware::loop_scale;
-use crate::ground::Ground;
+use crate::ground::{Feet, Ground};
 use crate::reader::Section;
-use crate::servo::{NAMES, Servo};
-use crate::{Feet, Pace};
+use crate::scale::{self, LONGEST_BAR};
+use crate::servo::{NAMES, Pace, Servo};
 
 /// Lengths of a robot that hobby servos move, mm.
-const LENGTHS: (f64, f64) = (1.0, 1000.0);
+const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
 /// Widths that a hobby servo can bear, us; within a 4 ms slot.
 const WIDTHS: (f64, f64) = (500.0, 2500.0);
 /// 22 us per degree is the most that the firmware's i16 gain holds.
@@ -25,8 +24,97 @@ const LINKS: [&str; 20] = [
     "l15", "l16", "l17", "l18", "l19",
 ];
 
+/// All of robot.toml but the gaits.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Measures {
+    pub lizard: Lizard,
+    /// A1, A2, A3, A4.
+    pub servos: [Servo; 4],
+    pub limits: Limits,
+    pub pace: Pace,
+    pub ground: Ground,
+}
+
+impl Measures {
+    /// Reads and checks the measurements; the neutral pose of what it returns is
+    /// safe.
+    pub fn read(root: &Section) -> Checked<Self> {
+        let links = links(root)?;
+        let (leg, feet) = leg(root)?;
+        let servos = servos(root)?;
+        let (limits, pace) = limits(root)?;
+        let measures = Self {
+            lizard: Lizard { links, leg },
+            servos,
+            limits,
+            pace,
+            ground: ground(root, feet)?,
+        };
+        measures.fits()?;
+        measures.stands()?;
+        Ok(measures)
+    }
+
+    /// The servos' neutral angles, deg, chassis frame, servo order.
+    pub fn neutral(&self) -> [f64; 4] {
+        self.servos.map(|servo| servo.neutral)
+    }
+
+    /// What the firmware's 16-bit integers ask of the lengths: couplers that are not
+    /// short beside the rest of their loop, and a stroke that leaves the slider a
+    /// length.
+    fn fits(&self) -> Checked<()> {
+        for (end, names) in [
+            (End::Head, ["links.l2", "links.l3"]),
+            (End::Tail, ["links.l7", "links.l8"]),
+        ] {
+            let bars = self.lizard.end(end);
+            let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
+            let least = f64::from(SHORTEST_COUPLER) / per_mm;
+            for (key, value) in names
+                .into_iter()
+                .zip([bars.coupler_left, bars.coupler_right])
+            {
+                if value < least {
+                    return Err(Problem::ShortCoupler { value, least }.at(key));
+                }
+            }
+        }
+        let nominal = Side::ALL.map(|side| self.lizard.side(side).nominal);
+        let shortest = nominal[0].min(nominal[1]);
+        for (key, value) in [
+            ("limits.stroke_min", self.limits.stroke_min),
+            ("limits.stroke_max", self.limits.stroke_max),
+        ] {
+            let (min, max) = (-shortest, LONGEST_BAR);
+            if !(min..=max).contains(&value) {
+                return Err(Problem::Range {
+                    value,
+                    min,
+                    max,
+                    unit: "mm, so that the slider keeps a length",
+                }
+                .at(key));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a robot that could not even stand.
+    fn stands(&self) -> Checked<()> {
+        let fault = |text: String| Err(Problem::Neutral(text).at("servo"));
+        match self.lizard.solve(&self.neutral().into()) {
+            Err(infeasible) => fault(infeasible.to_string()),
+            Ok(solution) => match self.limits.violations(&solution).next() {
+                Some(violation) => fault(violation.to_string()),
+                None => Ok(()),
+            },
+        }
+    }
+}
+
 /// The links of the body.
-pub(crate) fn links(root: &Section) -> Checked<Links> {
+fn links(root: &Section) -> Checked<Links> {
     let section = root.section("links", &LINKS)?;
     let mut lengths = [0.0; 20];
     for (length, name) in lengths.iter_mut().zip(LINKS) {
@@ -44,7 +132,7 @@ pub(crate) fn links(root: &Section) -> Checked<Links> {
 }
 
 /// The legs: their links, and where their feet are.
-pub(crate) fn leg(root: &Section) -> Checked<(Leg, Feet)> {
+fn leg(root: &Section) -> Checked<(Leg, Feet)> {
     let keys = [
         "ground",
         "crank",
@@ -87,7 +175,7 @@ pub(crate) fn leg(root: &Section) -> Checked<(Leg, Feet)> {
 }
 
 /// The four servos.
-pub(crate) fn servos(root: &Section) -> Checked<[Servo; 4]> {
+fn servos(root: &Section) -> Checked<[Servo; 4]> {
     let section = root.section("servo", &NAMES)?;
     let mut servos = Vec::with_capacity(4);
     for name in NAMES {
@@ -168,7 +256,7 @@ fn pin(name: &str) -> Option<u8> {
 }
 
 /// What a pose must keep clear of, and how fast a servo may turn.
-pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
+fn limits(root: &Section) -> Checked<(Limits, Pace)> {
     let section = root.section(
         "limits",
         &[
@@ -186,8 +274,8 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
-        stroke_min: section.number("stroke_min", -LENGTHS.1, LENGTHS.1, "mm")?,
-        stroke_max: section.number("stroke_max", -LENGTHS.1, LENGTHS.1, "mm")?,
+        stroke_min: section.number("stroke_min", -LONGEST_BAR, LONGEST_BAR, "mm")?,
+        stroke_max: section.number("stroke_max", -LONGEST_BAR, LONGEST_BAR, "mm")?,
     };
     less(
         &section,
@@ -206,46 +294,8 @@ pub(crate) fn limits(root: &Section) -> Checked<(Limits, Pace)> {
     ))
 }
 
-/// What the firmware's 16-bit integers ask of the lengths: couplers that are not
-/// short beside the rest of their loop, and a stroke that leaves the slider a
-/// length.
-pub(crate) fn fits(lizard: &Lizard, limits: &Limits) -> Checked<()> {
-    for (bars, names) in [
-        (lizard.end(End::Head), ["links.l2", "links.l3"]),
-        (lizard.end(End::Tail), ["links.l7", "links.l8"]),
-    ] {
-        let scale = loop_scale(&bars).ok_or_else(|| Problem::TooLarge.at(names[0]))?;
-        let least = f64::from(SHORTEST_COUPLER) / f64::from(1u32 << scale.bits);
-        for (key, value) in names.into_iter().zip([bars.coupler_left, bars.coupler_right]) {
-            if value < least {
-                return Err(Problem::ShortCoupler { value, least }.at(key));
-            }
-        }
-    }
-    let shortest = Side::ALL
-        .map(|side| lizard.side(side).nominal)
-        .into_iter()
-        .fold(f64::INFINITY, f64::min);
-    for (key, value) in [
-        ("limits.stroke_min", limits.stroke_min),
-        ("limits.stroke_max", limits.stroke_max),
-    ] {
-        let (min, max) = (-shortest, LENGTHS.1);
-        if !(min..=max).contains(&value) {
-            return Err(Problem::Range {
-                value,
-                min,
-                max,
-                unit: "mm, so that the slider keeps a length",
-            }
-            .at(key));
-        }
-    }
-    Ok(())
-}
-
 /// The contact model.
-pub(crate) fn ground(root: &Section, feet: Feet) -> Checked<Ground> {
+fn ground(root: &Section, feet: Feet) -> Checked<Ground> {
     const KEY: &str = "friction_back_over_forward";
     let section = root.section("ground", &[KEY])?;
     let ratio = section.number(KEY, 0.1, 10.0, "(a ratio)")?;

@@ -182,8 +182,22 @@ impl<'a> Section<'a> {
     }
 }
 
+/// The line, from 1, of a key or of the nearest table that holds it.
+pub(crate) fn line(text: &str, table: &DeTable, key: &str) -> Option<usize> {
+    let within = |whole: &String| {
+        key == *whole
+            || key.starts_with(&format!("{whole}."))
+            || key.starts_with(&format!("{whole}["))
+    };
+    lines(text, table)
+        .into_iter()
+        .filter(|(whole, _)| within(whole))
+        .max_by_key(|(whole, _)| whole.len())
+        .map(|(_, line)| line)
+}
+
 /// Where each key of the file stands, by its whole key.
-pub(crate) fn lines(text: &str, table: &DeTable) -> HashMap<String, usize> {
+fn lines(text: &str, table: &DeTable) -> HashMap<String, usize> {
     fn walk(text: &str, prefix: &str, table: &DeTable, lines: &mut HashMap<String, usize>) {
         for (key, value) in table {
             let whole = if prefix.is_empty() {

@@ -3,12 +3,15 @@
 
 use std::fmt;
 
-use crate::accuracy::{self, TableError};
-use crate::audit::Audit;
-use crate::ground::Prediction;
-use crate::servo::NAMES;
 use lizard_core::gait::SAMPLES;
-use crate::{Gait, Robot, accuracy::ALL_PHASES};
+use lizard_core::robot::Robot as _;
+
+use crate::accuracy::TableError;
+use crate::audit::Audit;
+use crate::checked_gait::CheckedGait;
+use crate::ground::Prediction;
+use crate::robot::Robot;
+use crate::servo::NAMES;
 
 /// One gait's figures.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,19 +53,20 @@ const GAIT_BYTES: usize = 3 + 4 + 4 * 5;
 impl Report {
     /// Measures the tables and predicts the gaits of a robot; takes a moment.
     pub fn of(robot: &Robot) -> Self {
-        let row = |(index, gait): (usize, &Gait)| Row {
-            name: gait.name.clone(),
-            period: gait.period,
-            audit: robot.audits[index],
-            error: accuracy::worst(robot, index, ALL_PHASES),
+        let row = |gait: &CheckedGait| Row {
+            name: gait.name().to_string(),
+            period: gait.period(),
+            audit: *gait.audit(),
+            error: gait.table_error(),
             way: robot.predict(gait),
         };
-        let (waves, gaits) = (robot.tables().waves.len(), robot.gaits.len());
+        let firmware = robot.firmware();
+        let (waves, gaits) = (firmware.waves().len(), firmware.gaits().len());
         Self {
-            rows: robot.gaits.iter().enumerate().map(row).collect(),
-            hash: robot.tables_hash(),
+            rows: robot.gaits().iter().map(row).collect(),
+            hash: firmware.hash(),
             waves,
-            flash: waves * WAVE_BYTES + gaits * GAIT_BYTES + robot.tables().names.len(),
+            flash: waves * WAVE_BYTES + gaits * GAIT_BYTES + firmware.names().len(),
         }
     }
 }

@@ -3,9 +3,9 @@
 
 use std::fmt;
 
-use crate::Robot;
-use crate::ground::{Ground, Prediction};
+use crate::ground::{Feet, Ground, Prediction};
 use crate::report::{UNDECIDED, known};
+use crate::robot::Robot;
 
 /// Friction backward over forward: even pads, pads that grip when pushed back,
 /// and pads that are on the wrong way round.
@@ -35,29 +35,25 @@ pub struct Sensitivity {
 impl Sensitivity {
     /// Predicts the gaits of a robot on other floors and with other mountings.
     pub fn of(robot: &Robot) -> Self {
-        let moving = robot
-            .gaits
+        let ground = *robot.ground();
+        let rows = robot
+            .gaits()
             .iter()
-            .filter(|gait| gait.sweeps(0.0) != [0.0; 4]);
-        let rows = moving.map(|gait| {
-            let on = |ground: Ground| {
-                Robot {
-                    ground,
-                    ..robot.clone()
+            .filter(|gait| gait.moves())
+            .map(|gait| {
+                let mounted = |mount: f64| Ground {
+                    feet: Feet {
+                        mount,
+                        ..ground.feet
+                    },
+                    ..ground
+                };
+                Sensitive {
+                    name: gait.name().to_string(),
+                    ratios: RATIOS.map(|ratio| gait.predict(&Ground { ratio, ..ground })),
+                    mounts: MOUNTS.map(|mount| gait.predict(&mounted(mount))),
                 }
-                .predict(gait)
-            };
-            let ground = robot.ground;
-            Sensitive {
-                name: gait.name.clone(),
-                ratios: RATIOS.map(|ratio| on(Ground { ratio, ..ground })),
-                mounts: MOUNTS.map(|mount| {
-                    let mut ground = ground;
-                    ground.feet.mount = mount;
-                    on(ground)
-                }),
-            }
-        });
+            });
         Self {
             rows: rows.collect(),
         }

@@ -2,6 +2,8 @@
 
 use lizard_kinematics::wrap;
 
+use crate::units::STEPS_PER_DEGREE;
+
 /// The servos' names.
 pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 
@@ -53,5 +55,14 @@ impl Servo {
     }
 }
 
-/// The largest sweep that an i16 of 1/65536 turns holds, deg.
-const HALF_TURN: f64 = 32767.0 * 360.0 / 65536.0;
+/// The largest sweep that the core holds, deg.
+const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
+
+/// How fast servos may turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// In a point-to-point move, deg/s.
+    pub slew: f64,
+    /// In a gait, deg/s.
+    pub gait_slew: f64,
+}

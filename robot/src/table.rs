@@ -4,27 +4,21 @@
 //! What a table means, and how it is read between its samples, is the core's:
 //! [`lizard_core::gait`].
 
-use lizard_avr::Flash;
 use lizard_core::gait::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
-use lizard_core::units::{CYCLE, FRAMES_PER_SECOND as FRAMES};
+use lizard_core::units::CYCLE;
 
 use crate::gait::{Gait, Stride};
 use crate::servo::FORWARD;
+use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
 use crate::waveform::{Waveform, canonical};
 
-/// Steps of an angle in one degree.
-pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
-/// Frames of 20 ms in a second.
-pub const FRAMES_PER_SECOND: f64 = FRAMES as f64;
-/// 1.0 as a gain.
-const ONE_Q14: f64 = 16384.0;
 /// Two waveforms that differ by less than this (deg) share a table: a third of
 /// an angle step.
 const SAME: f64 = 0.002;
 
 /// Everything the firmware needs to walk.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Tables {
+pub(crate) struct Tables {
     /// Waveforms, angle steps at gain 1.
     pub waves: Vec<Wave>,
     /// Gaits in the order of the file.
@@ -43,35 +37,9 @@ pub(crate) enum Unfit {
 }
 
 impl Tables {
-    /// The four sweeps of a gait (by its index) at a phase, angle steps,
-    /// counter-clockwise positive.
-    pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
-        self.gaits[gait].channels.map(|channel| {
-            let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
-            channel.sweep(wave, phase).0
-        })
-    }
-
-    /// The four servo angles of a gait at a phase, deg, chassis frame.
-    pub fn angles(&self, gait: &Gait, index: usize, phase: u16) -> [f64; 4] {
-        let sweeps = self.sweeps(index, phase);
-        std::array::from_fn(|i| gait.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
-    }
-
-    /// One cycle of a gait at full speed from phase 0 on: the time of each frame
-    /// in s, and its phase. The last is the first that completes the cycle.
-    pub fn frames(&self, gait: &Gait, index: usize) -> impl Iterator<Item = (f64, u16)> + use<> {
-        let increment = self.gaits[index].increment;
-        let frames = (gait.period * FRAMES_PER_SECOND).ceil() as i32;
-        (0..=frames).map(move |frame| {
-            let phase = (increment * frame) as u32 >> 8;
-            (f64::from(frame) / FRAMES_PER_SECOND, phase as u16)
-        })
-    }
-
     /// Builds the tables, or names the first gait (by index) that the fixed point
     /// does not hold.
-    pub(crate) fn new(gaits: &[Gait]) -> Result<Self, (usize, Unfit)> {
+    pub fn new(gaits: &[Gait]) -> Result<Self, (usize, Unfit)> {
         let mut bank = Bank::default();
         let mut parts = Vec::new();
         for (g, gait) in gaits.iter().enumerate() {
@@ -89,8 +57,7 @@ impl Tables {
             bank.samples.push([0.0; SAMPLES]);
         }
         let waves =
-            bank
-                .samples
+            bank.samples
                 .iter()
                 .zip(largest.iter().chain([&1.0]))
                 .map(|(samples, largest)| {
@@ -101,7 +68,7 @@ impl Tables {
             Channel {
                 wave: part.wave as u8,
                 // A shift of a whole cycle is none: the cast to u16 wraps.
-                offset: (part.ahead.rem_euclid(1.0) * 65536.0).round() as u32 as u16,
+                offset: (part.ahead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
             }
         };

@@ -5,9 +5,7 @@
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
-use std::f64::consts::TAU;
-
-use crate::path::PathLeg;
+use crate::path_leg::PathLeg;
 
 /// Shares of the cycle that a held gait gives to each of its five moves.
 const MOVE: f64 = 0.2;
@@ -92,24 +90,6 @@ pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
             -1.0,
         ),
         other => (other.clone(), 0.0, 1.0),
-    }
-}
-
-/// One term of a path's coordinate: `amplitude * sin(2 pi (k phase + shift))`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Harmonic {
-    /// Whole periods in a cycle, so that the path closes.
-    pub k: f64,
-    /// mm.
-    pub amplitude: f64,
-    /// In periods of the term.
-    pub shift: f64,
-}
-
-impl Harmonic {
-    /// The term's value at a phase, mm.
-    pub fn at(&self, phase: f64) -> f64 {
-        self.amplitude * (TAU * (self.k * phase + self.shift)).sin()
     }
 }
 

@@ -14,7 +14,7 @@ const PRINTED: f64 = 0.005 + 0.0032 + 0.0028;
 fn half_a_second_after_power_on_there_is_a_banner_and_after_one_an_answer() {
     in_both(|fidelity| {
         let mut bench = FirmwareBench::boot_with(fidelity);
-        let hash = robot().tables_hash();
+        let hash = robot().firmware().hash();
         let banner = bench.lines()[0].text.clone();
         assert!(banner.starts_with("# lizard "), "{banner}");
         assert!(banner.contains(&format!(" tables {hash:08x}")), "{banner}");
@@ -150,8 +150,12 @@ fn help_names_every_gait_and_every_command() {
         let (notes, answer) = bench.ask(line);
         assert_eq!(answer, "ok help");
         let text = notes.join("\n");
-        for gait in &robot().gaits {
-            assert!(text.contains(&gait.name.replace('-', " ")), "{}", gait.name);
+        for gait in robot().gaits() {
+            assert!(
+                text.contains(&gait.name().replace('-', " ")),
+                "{}",
+                gait.name()
+            );
         }
         for word in ["stop", "rest", "speed", "pose", "status", "watch"] {
             assert!(text.contains(&format!("# {word}")), "{word}");
@@ -172,7 +176,7 @@ fn status_tells_what_the_pulses_show() {
         for (servo, (said, sent)) in status.pose().into_iter().zip(sent).enumerate() {
             assert!((said - sent).abs() <= PRINTED, "{servo}: {said} and {sent}");
         }
-        let solution = robot().lizard.solve(&sent.into()).expect("a safe pose");
+        let solution = robot().lizard().solve(&sent.into()).expect("a safe pose");
         let margin = solution.margins.min().1;
         assert!((status.number("margin") - margin).abs() <= 0.0025);
         assert_eq!(status.text("gait"), "stop");

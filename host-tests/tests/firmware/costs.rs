@@ -30,15 +30,15 @@ fn every_budget_is_met() {
 #[test]
 fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
     for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
-        for gait in &robot().gaits {
-            let mut bench = doing(&gait.name.replace('-', " "), fidelity);
+        for gait in robot().gaits() {
+            let mut bench = doing(&gait.name().replace('-', " "), fidelity);
             let awake = bench.uno.awake_cycles();
             bench.run_ms(4000);
             let awake = (bench.uno.awake_cycles() - awake) / (4 * SECOND);
             assert!(
                 awake < FRAME / 10,
                 "{}: {awake} cycles in a frame",
-                gait.name
+                gait.name()
             );
         }
     }

@@ -3,7 +3,7 @@
 
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::robot;
-use lizard_robot::Gait;
+use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
 use crate::{SECOND, awake, for_each};
@@ -31,24 +31,24 @@ const LEADS: [(&str, f64, f64); 9] = [
 
 /// Servo angles frame by frame, deg, from a second after power-on, when the gait
 /// is asked for.
-fn decoded(gait: &Gait, fidelity: Fidelity) -> Vec<[f64; 4]> {
+fn decoded(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = awake(fidelity);
-    let line = gait.name.replace('-', " ");
+    let line = gait.name().replace('-', " ");
     assert_eq!(bench.say(&line), format!("ok {line}"));
-    let frames = bench.run_for_frames((3.0 * gait.period) as u64 * SECOND + 2 * SECOND);
+    let frames = bench.run_for_frames((3.0 * gait.period()) as u64 * SECOND + 2 * SECOND);
     let angles = |at: lizard_host::sim::analysis::Instant| at.angles.expect("four pulses");
     instants(robot(), &frames).into_iter().map(angles).collect()
 }
 
 /// The phase so many frames after a gait has begun.
-fn phase(gait: &Gait, frames: usize) -> f64 {
+fn phase(gait: &CheckedGait, frames: usize) -> f64 {
     let gone = |frame: usize| (frame as f64 * GATHERS.1).min(1.0);
     let full: f64 = (1..=frames).map(gone).sum();
     gait.phase(full / SECOND as f64)
 }
 
 /// The largest deviation of a servo from the gait that begins at frame `begin`.
-fn worst(gait: &Gait, frames: &[[f64; 4]], begin: usize) -> f64 {
+fn worst(gait: &CheckedGait, frames: &[[f64; 4]], begin: usize) -> f64 {
     let off = |(n, angles): (usize, &[f64; 4])| {
         let float = gait.angles(phase(gait, n));
         (0..4)
@@ -63,7 +63,7 @@ fn worst(gait: &Gait, frames: &[[f64; 4]], begin: usize) -> f64 {
 }
 
 /// The frame at which the gait begins: the one unknown of the comparison.
-fn begins(gait: &Gait, frames: &[[f64; 4]]) -> usize {
+fn begins(gait: &CheckedGait, frames: &[[f64; 4]]) -> usize {
     let by_worst =
         |a: &usize, b: &usize| worst(gait, frames, *a).total_cmp(&worst(gait, frames, *b));
     // At most a second of stroke to the first pose, and it is past the answer.
@@ -74,18 +74,18 @@ fn begins(gait: &Gait, frames: &[[f64; 4]]) -> usize {
 #[test]
 fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
-        for gait in &robot().gaits {
+        for gait in robot().gaits() {
             let frames = decoded(gait, *fidelity);
             let begin = begins(gait, &frames);
             let off = worst(gait, &frames, begin);
             println!(
                 "{:<10} {} frames, max {off:.4} deg",
-                gait.name,
+                gait.name(),
                 frames.len() - begin
             );
-            assert!(off <= TABLES + HALF_CYCLE, "{}: {off} deg", gait.name);
+            assert!(off <= TABLES + HALF_CYCLE, "{}: {off} deg", gait.name());
             // A frame sooner or later would not do, so frames are told apart.
-            if gait.name != "stand" {
+            if gait.name() != "stand" {
                 for other in [begin + 1, begin.wrapping_sub(1)] {
                     assert!(other >= frames.len() || worst(gait, &frames, other) > 2.0 * off);
                 }
@@ -97,22 +97,22 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
 #[test]
 fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
     for_each(&LEADS, |&(name, forward, turn)| {
-        let (_, gait) = robot().gait(name).expect("it is in robot.toml");
+        let gait = robot().gait(name).expect("it is in robot.toml");
         let frames = decoded(gait, Fidelity::DataSheet);
         let begin = begins(gait, &frames);
         // From the first frame at full pace that begins a cycle, whole cycles: two
         // of those that are no whole number of frames.
-        let cycles = if (gait.period * SECOND as f64).fract() == 0.0 {
+        let cycles = if (gait.period() * SECOND as f64).fract() == 0.0 {
             1
         } else {
             2
         };
-        let length = (f64::from(cycles) * gait.period * SECOND as f64) as usize;
-        let step = 1.0 / (gait.period * SECOND as f64);
+        let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
+        let step = 1.0 / (gait.period() * SECOND as f64);
         let from = (begin + GATHERS.0..frames.len())
             .find(|frame| {
                 let phase = phase(gait, frame - begin);
-                if gait.reversed {
+                if gait.is_reversed() {
                     1.0 - phase <= step
                 } else {
                     phase < step

@@ -15,7 +15,7 @@ const STROKE: f64 = 0.05;
 
 /// The limits, stricter by the guard's tolerance (`by` = 1) or laxer (-1).
 fn limits(by: f64) -> Limits {
-    let limits = robot().limits;
+    let limits = robot().limits();
     Limits {
         type2: limits.type2 + by * MARGIN,
         type1: limits.type1 + by * MARGIN,
@@ -27,14 +27,14 @@ fn limits(by: f64) -> Limits {
 
 /// Whether a pose (deg, chassis frame) is safe by these limits.
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
-    let solved = robot().lizard.solve(&Pose::from(angles));
+    let solved = robot().lizard().solve(&Pose::from(angles));
     solved.is_ok_and(|solution| limits.allow(&solution))
 }
 
 /// A pose within so many degrees of neutral, as it is typed.
 fn wish(rng: &mut Rng, within: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
-        let angle = robot().servos[i].neutral + within * (2.0 * rng.f64() - 1.0);
+        let angle = robot().servos()[i].neutral + within * (2.0 * rng.f64() - 1.0);
         (angle.rem_euclid(360.0) * 100.0).round() / 100.0
     })
 }
@@ -121,7 +121,7 @@ fn a_refusal_names_the_margin_and_its_value() {
     for _ in 0..200 {
         let angles = wish(&mut rng, 70.0);
         let answer = bench.say(&typed(angles));
-        let Ok(solution) = robot().lizard.solve(&Pose::from(angles)) else {
+        let Ok(solution) = robot().lizard().solve(&Pose::from(angles)) else {
             continue;
         };
         if answer.starts_with("ok") || answer.starts_with("err 3") {
@@ -153,9 +153,9 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
         let mut rng = Rng::with_seed(seed);
         let mut bench = awake(fidelity);
         let lines: Vec<String> = robot()
-            .gaits
+            .gaits()
             .iter()
-            .map(|gait| gait.name.replace('-', " "))
+            .map(|gait| gait.name().replace('-', " "))
             .collect();
         let mut frames = Vec::new();
         for _ in 0..150 {
@@ -174,7 +174,7 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
             assert!(is_safe(angles, &lax), "{at:?}");
         }
         // Nothing jumps either: at most what the fastest gait asks for.
-        let fastest = robot().pace.gait_slew / 50.0;
+        let fastest = robot().pace().gait_slew / 50.0;
         for (pair, times) in sent.windows(2).zip(frames.windows(2)) {
             if times[1].start - times[0].start > lizard_host_tests::FRAME {
                 continue;

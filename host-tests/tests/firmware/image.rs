@@ -1,6 +1,7 @@
 //! What the ELF is made of: no panic, no float, no core::fmt, and tables that
 //! stay in flash.
 
+use lizard_core::robot::Robot as _;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
 
@@ -80,7 +81,9 @@ fn tables_and_sentences_stay_in_flash() {
         .map(|at| bench.uno.peek(at))
         .collect();
     let holds = |bytes: &[u8]| ram.windows(bytes.len()).any(|window| window == bytes);
-    for (n, wave) in robot().tables().waves.iter().enumerate() {
+    let waves = robot().firmware().waves();
+    for n in 0..waves.len() {
+        let wave = waves.get(n).expect("a waveform").load();
         for samples in wave.windows(6) {
             // A held leg gives runs of one value, which RAM may well hold.
             if samples.iter().all(|sample| *sample == samples[0]) {

@@ -40,7 +40,7 @@ fn first_pulse(bench: &FirmwareBench) -> u64 {
 fn commanded(bench: &FirmwareBench, first: u64, heard: usize, frames: &[Frame]) -> Vec<[u64; 4]> {
     let before = ((frames[0].start - first) / FRAME) as usize;
     let commands = twin::play(
-        &robot().firmware,
+        robot().firmware(),
         &bench.uno.received_by_uno()[..heard],
         first,
         before + frames.len(),
@@ -54,15 +54,15 @@ fn commanded(bench: &FirmwareBench, first: u64, heard: usize, frames: &[Frame]) 
 #[test]
 fn every_width_is_the_one_that_was_asked_for() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
-        for gait in &robot().gaits {
+        for gait in robot().gaits() {
             let mut bench = awake(*fidelity);
             let first = first_pulse(&bench);
-            bench.say(&gait.name.replace('-', " "));
+            bench.say(&gait.name().replace('-', " "));
             let frames = bench.run_for_frames(6 * SECOND);
             assert_in_step(&bench, &frames);
             let heard = bench.uno.received_by_uno().len();
             for (frame, asked) in frames.iter().zip(commanded(&bench, first, heard, &frames)) {
-                assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name);
+                assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name());
             }
         }
     });

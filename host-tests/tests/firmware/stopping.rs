@@ -56,7 +56,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         bench.run_ms(100);
         let edges = bench.uno.edges();
         let mut last_fall = 0;
-        for (servo, pin) in robot().servos.iter().map(|servo| servo.pin).enumerate() {
+        for (servo, pin) in robot().servos().iter().map(|servo| servo.pin).enumerate() {
             let pulses = bench.uno.pulses(simulated_uno::Pin::d(pin));
             let ups = edges
                 .iter()
@@ -139,7 +139,7 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         );
         let sent = widths(&bench.run_for_frames(60));
         let goal: [u64; 4] =
-            std::array::from_fn(|i| (robot().servos[i].pulse(target[i]) * 16.0).round() as u64);
+            std::array::from_fn(|i| (robot().servos()[i].pulse(target[i]) * 16.0).round() as u64);
         let end = sent[59];
         for (end, goal) in end.into_iter().zip(goal) {
             // The console's angle is held in steps of 1/65536 turn, .88 cycles.
@@ -154,7 +154,7 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
                 assert!(off.abs() <= 2.5, "{widths:?}");
             }
         }
-        let most = robot().pace.slew / 50.0 * 160.0;
+        let most = robot().pace().slew / 50.0 * 160.0;
         for pair in sent.windows(2) {
             let mut steps = (0..4).map(|servo| pair[0][servo].abs_diff(pair[1][servo]));
             assert!(steps.all(|step| step as f64 <= most), "{pair:?}");

@@ -17,7 +17,7 @@ const BYTE: u64 = 1400;
 fn line(rng: &mut Rng) -> String {
     let near = |rng: &mut Rng, within: f64| {
         let angles: Vec<String> = robot()
-            .servos
+            .servos()
             .iter()
             .map(|servo| format!("{:.2}", servo.neutral + within * (2.0 * rng.f64() - 1.0)))
             .collect();
@@ -25,9 +25,9 @@ fn line(rng: &mut Rng) -> String {
     };
     match rng.u64(..20) {
         0..7 => rng
-            .choice(&robot().gaits)
+            .choice(robot().gaits())
             .expect("stand at least")
-            .name
+            .name()
             .replace('-', " "),
         7..9 => near(rng, 15.0),
         9..11 => near(rng, 45.0),
@@ -100,7 +100,12 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         bench.uno.run_until_cycle(END);
         let count = (bench.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
-        let commands = twin::play(&robot().firmware, &bench.uno.received_by_uno(), first, sent.len());
+        let commands = twin::play(
+            robot().firmware(),
+            &bench.uno.received_by_uno(),
+            first,
+            sent.len(),
+        );
         let mut poses = std::collections::HashSet::new();
         for (n, (frame, asked)) in sent.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));

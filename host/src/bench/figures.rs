@@ -100,10 +100,10 @@ impl Figures {
         progress("pulses on an idle line");
         let mut idle = Steady::of(awake()?, gait, 20_000)?;
         let sent = idle.board.uno.received_by_uno().len();
-        let idle_exact = Exactness::of(&mut idle.board, &robot.firmware, sent)?;
+        let idle_exact = Exactness::of(&mut idle.board, robot.firmware(), sent)?;
         progress("pulses on a saturated line");
         let (mut flooded, sent) = flood(awake()?, turn)?;
-        let flooded_exact = Exactness::of(&mut flooded, &robot.firmware, sent)?;
+        let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), sent)?;
         progress("every command");
         let mut session = session(awake()?, robot)?;
         progress("the control tick in a gait");
@@ -220,7 +220,7 @@ fn saturate(board: &mut Board, gait: &str) -> Result<usize, BoardError> {
 /// Everything one can ask for that moves: each gait from the one before, a far
 /// pose, home, a stop.
 fn motions(robot: &Robot) -> Vec<String> {
-    let names = robot.gaits.iter().map(|gait| command(&gait.name));
+    let names = robot.gaits().iter().map(|gait| command(gait.name()));
     let mut lines: Vec<String> = names.collect();
     lines.push(pose(robot, [-35.0, 0.0, -35.0, 0.0]));
     lines.push(pose(robot, [0.0; 4]));

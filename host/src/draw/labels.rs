@@ -33,7 +33,7 @@ impl View<'_> {
             let name = format!(
                 "{} · {}",
                 NAMES[servo],
-                pin_name(self.robot.servos[servo].pin)
+                pin_name(self.robot.servos()[servo].pin)
             );
             let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
             let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));

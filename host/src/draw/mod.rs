@@ -37,7 +37,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
     let solution = robot
-        .lizard
+        .lizard()
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
     let picture = top_view(&robot, &solution, !args.plain);

@@ -78,7 +78,7 @@ impl View<'_> {
     }
 
     pub(super) fn shafts(&self) -> [Joint; 4] {
-        self.robot.lizard.shafts()
+        self.robot.lizard().shafts()
     }
 
     /// Tip of a servo's crank.
@@ -175,7 +175,7 @@ impl View<'_> {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
         let (low, high) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
-        let links = &self.robot.lizard.links;
+        let links = self.robot.lizard().links;
         let tube = match side {
             Side::Left => links.l12,
             Side::Right => links.l17,
@@ -220,7 +220,7 @@ impl View<'_> {
     /// The paper gives no mounting. Drawn is what the contact model takes: at
     /// neutral the foot is straight beside the hip, swept by `mount`.
     fn leg_frame(&self, servo: usize) -> (Joint, f64, f64) {
-        let feet = &self.robot.ground.feet;
+        let feet = &self.robot.ground().feet;
         let left = matches!(servo, 0 | 3);
         let front = servo < 2;
         let hip = Vector::new(
@@ -238,17 +238,17 @@ impl View<'_> {
         } else {
             feet.mount
         };
-        let turned = straight + mount - self.robot.servos[servo].neutral;
+        let turned = straight + mount - self.robot.servos()[servo].neutral;
         (hip, wrap(turned), wrap(turned + self.angles()[servo]))
     }
 
     pub(super) fn foot(&self, servo: usize) -> Joint {
         let (hip, _, crank) = self.leg_frame(servo);
-        hip + Vector::direction(crank) * self.robot.lizard.leg.crank
+        hip + Vector::direction(crank) * self.robot.lizard().leg.crank
     }
 
     fn leg(&self, mut group: Group, servo: usize) -> Group {
-        let leg = &self.robot.lizard.leg;
+        let leg = self.robot.lizard().leg;
         let (hip, ground, crank) = self.leg_frame(servo);
         let half = Vector::direction(ground) * (leg.ground / 2.0);
         let reach = Vector::direction(crank) * leg.crank;
@@ -276,7 +276,7 @@ mod tests {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right");
         let pose = pose.unwrap_or_else(|| robot.neutral());
-        let solution = robot.lizard.solve(&pose).expect("the pose closes");
+        let solution = robot.lizard().solve(&pose).expect("the pose closes");
         verdict(&View {
             robot: &robot,
             solution: &solution,

@@ -111,8 +111,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
-    let local = robot.lizard.to_end(end, point);
-    let (working_modes, why) = match robot.lizard.end(end).inverse(local) {
+    let local = robot.lizard().to_end(end, point);
+    let (working_modes, why) = match robot.lizard().end(end).inverse(local) {
         Ok(all) => {
             let ways = all.into_iter().map(|a| way(robot, end, local, a));
             (ways.collect(), None)
@@ -127,7 +127,7 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
 }
 
 fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
-    let bars = robot.lizard.end(end);
+    let bars = robot.lizard().end(end);
     let there = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
     let (error_mm, margin) = match &there {
         Ok(pose) => ((pose.end_point - point).length(), pose.margin()),
@@ -147,7 +147,7 @@ fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
     if let Ok(pose) = &there {
         // In the other assembly mode the type-2 margin is negative, which is said.
         let said = |what| behind && Check::TYPE2.contains(&what);
-        let broken = robot.limits.end_violations(end, pose);
+        let broken = robot.limits().end_violations(end, pose);
         why.extend(broken.filter(|v| !said(v.what)).map(|v| v.to_string()));
     }
     Way {
@@ -172,7 +172,7 @@ fn bend(elbow: Elbow) -> &'static str {
 
 /// Puts both ends together and checks the whole robot.
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
-    let mut angles = robot.servos.map(|servo| servo.neutral);
+    let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut whole = true;
     for (part, end) in [(&head, End::Head), (&tail, End::Tail)] {
         match part.as_ref().map(|part| part.working_modes.first()) {
@@ -190,7 +190,7 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
         why.extend(part.why.clone());
     }
     if whole {
-        match robot.lizard.solve(&Pose::from(angles)) {
+        match robot.lizard().solve(&Pose::from(angles)) {
             Ok(solution) => why.extend(verdict::reasons(robot, &solution)),
             Err(infeasible) => why.push(infeasible.to_string()),
         }

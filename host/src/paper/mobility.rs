@@ -95,12 +95,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
     let solution = robot
-        .lizard
+        .lizard()
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
     let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let mut all = vec![body(&robot.lizard, &solution)];
-    all.extend((0..4).map(|i| leg(&robot.lizard, &solution, i, legs[i])));
+    let mut all = vec![body(robot.lizard(), &solution)];
+    all.extend((0..4).map(|i| leg(robot.lizard(), &solution, i, legs[i])));
     let reports: Vec<Report> = all.iter().map(measure).collect();
     let mut out = io::stdout().lock();
     if args.json {

@@ -184,7 +184,7 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
 
 /// A solved pose as a page.
 pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
-    let limits = &robot.limits;
+    let limits = robot.limits();
     let milli = |value: f64| tidy(value, 3);
     let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(milli);
     let mut page = format!(

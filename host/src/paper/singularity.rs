@@ -140,7 +140,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
     let solution = robot
-        .lizard
+        .lizard()
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
     let report = report(&robot, &solution);
@@ -162,10 +162,10 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
         left,
         right,
     } = solution.blocks();
-    let leg = &robot.lizard.leg;
+    let leg = robot.lizard().leg;
     let mut nearest = vec![];
     for end in End::ALL {
-        let (bars, servos, sign) = (robot.lizard.end(end), end.servos(), end.sign());
+        let (bars, servos, sign) = (robot.lizard().end(end), end.servos(), end.sign());
         let angles = end.pick(solution.pose.into()).map(|angle| sign * angle);
         for kind in [
             Singularity::Couplers,
@@ -365,10 +365,10 @@ fn cell(robot: &Robot, theta1: f64, theta4: f64) -> Cell {
         theta4,
         ..neutral
     };
-    let solved = robot.lizard.solve(&pose).ok();
+    let solved = robot.lizard().solve(&pose).ok();
     let head = solved.as_ref().map(|s| s.head);
     let safe = solved.is_some_and(|s| {
-        robot.limits.violations(&s).all(|v| {
+        robot.limits().violations(&s).all(|v| {
             use lizard_kinematics::Check::{StrokeLeft, StrokeRight};
             matches!(v.what, StrokeLeft | StrokeRight)
         }) && verdict::out_of_travel(robot, &pose).next().is_none()

@@ -58,7 +58,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// One pose, as a page or an object.
 fn one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
-    let solved = robot.lizard.solve(pose);
+    let solved = robot.lizard().solve(pose);
     if !json {
         return Ok(record::page(robot, pose, &solved).into_bytes());
     }
@@ -138,7 +138,7 @@ fn solve_all(
 fn lines(robot: &Robot, poses: &[Timed], json: bool) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::with_capacity(poses.len() * if json { 1024 } else { 192 });
     for timed in poses {
-        let solved = robot.lizard.solve(&timed.pose);
+        let solved = robot.lizard().solve(&timed.pose);
         if json {
             serde_json::to_writer(&mut text, &Record::new(robot, timed.seconds, &solved))?;
         } else {

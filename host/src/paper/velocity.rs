@@ -93,7 +93,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         acceleration: [d.alpha1, d.alpha4, d.alpha8, d.alpha5],
     };
     let solution = robot
-        .lizard
+        .lizard()
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
     let singular = solution.margins.type2[0].min(solution.margins.type2[1]);
@@ -102,7 +102,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             "the couplers line up: rates do not follow from the servos'".to_string(),
         ));
     }
-    let rows = rows(&robot.lizard, &solution, &drive);
+    let rows = rows(robot.lizard(), &solution, &drive);
     let mut out = io::stdout().lock();
     if args.json {
         serde_json::to_writer_pretty(&mut out, &rows)?;

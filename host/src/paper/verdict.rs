@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-9;
 /// Every reason why the robot may not take a solved pose, each as a sentence;
 /// none if the pose is safe.
 pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
-    let limits = robot.limits.violations(solution);
+    let limits = robot.limits().violations(solution);
     limits
         .map(|violation| violation.to_string())
         .chain(out_of_travel(robot, &solution.pose))
@@ -25,9 +25,9 @@ pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String>
 
 /// A sentence if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
 pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
-    let neutral = robot.servos[servo].neutral;
+    let neutral = robot.servos()[servo].neutral;
     let sweep = wrap(angle - neutral);
-    let (least, most) = robot.servos[servo].travel();
+    let (least, most) = robot.servos()[servo].travel();
     (sweep < least - ROUNDING || sweep > most + ROUNDING).then(|| {
         format!(
             "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg, its travel is {:.1} to {:.1} deg",

@@ -13,7 +13,7 @@ mod walk;
 use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lizard_robot::Robot;
+use lizard_robot::{Firmware, Robot};
 use serde::Serialize;
 
 use crate::{Failure, RobotFile};
@@ -88,18 +88,24 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Walks a share of the pairs of a robot. `progress` is told of rows walked;
-    /// [`Proof::rows`] says how many there are.
-    pub fn of(robot: &Robot, share: Share, progress: impl Fn(u64) + Sync) -> Self {
+    /// Walks a share of the pairs of a robot with a guard, which is to be the
+    /// robot's own. `progress` is called with the number of rows walked since its
+    /// last call; [`Proof::rows`] says how many there are.
+    pub fn of(
+        robot: &Robot,
+        guard: &Firmware,
+        share: Share,
+        progress: impl Fn(u64) + Sync,
+    ) -> Self {
         Self {
-            findings: walk::all(robot, share, &progress),
-            hash: robot.tables_hash(),
+            findings: walk::all(robot, guard, share, &progress),
+            hash: guard.hash(),
         }
     }
 
     /// Rows that [`Proof::of`] walks.
-    pub fn rows(robot: &Robot) -> u64 {
-        walk::rows(robot)
+    pub fn rows(guard: &Firmware) -> u64 {
+        walk::rows(guard)
     }
 
     /// Poses farther from every limit than the bands, and decided wrong all the
@@ -118,14 +124,15 @@ impl Proof {
 /// A wrong robot.toml; a pose that is decided wrong.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
+    let guard = robot.firmware();
     let share = Share {
         one_in: args.one_in,
         offset: args.offset,
     };
     let style = ProgressStyle::with_template("{bar:40} {percent} % of all rows, {eta} left")
         .map_err(|error| Failure::Impossible(error.to_string()))?;
-    let bar = ProgressBar::new(Proof::rows(&robot)).with_style(style);
-    let proof = Proof::of(&robot, share, |rows| bar.inc(rows));
+    let bar = ProgressBar::new(Proof::rows(guard)).with_style(style);
+    let proof = Proof::of(&robot, guard, share, |rows| bar.inc(rows));
     bar.finish_and_clear();
 
     let mut out = io::stdout().lock();

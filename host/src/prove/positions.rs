@@ -4,7 +4,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::trig::Direction;
 use lizard_core::units::Sweep;
 use lizard_kinematics::{End, Vector};
-use lizard_robot::Robot;
+use lizard_robot::Firmware;
 
 /// One servo's positions, in steps of 1/65536 turn over its whole travel.
 pub struct Positions {
@@ -17,10 +17,10 @@ pub struct Positions {
 }
 
 impl Positions {
-    /// All positions of a servo, by its index.
-    pub fn of(robot: &Robot, servo: usize) -> Self {
-        let neutral = robot.firmware.neutral()[servo];
-        let calibration = robot.firmware.calibration()[servo];
+    /// All positions of a servo, by its index, as the firmware counts them.
+    pub fn of(guard: &Firmware, servo: usize) -> Self {
+        let neutral = guard.neutral()[servo];
+        let calibration = guard.calibration()[servo];
         let end = End::of_servo(servo);
         let mut positions = Self {
             degrees: Vec::new(),

@@ -6,7 +6,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::trig::Direction;
 use lizard_core::units::ONE_Q15;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Side, Slider, Vector};
-use lizard_robot::{Robot, servo};
+use lizard_robot::{Firmware, Robot, servo};
 use rayon::prelude::*;
 
 use super::positions::Positions;
@@ -17,21 +17,26 @@ use super::{Finding, Share};
 const LANES: usize = 8;
 
 /// Every end, side and leg of a robot.
-pub fn all(robot: &Robot, share: Share, progress: &(impl Fn(u64) + Sync)) -> Vec<Finding> {
-    let positions = [0, 1, 2, 3].map(|servo| Positions::of(robot, servo));
+pub fn all(
+    robot: &Robot,
+    guard: &Firmware,
+    share: Share,
+    progress: &(impl Fn(u64) + Sync),
+) -> Vec<Finding> {
+    let positions = [0, 1, 2, 3].map(|servo| Positions::of(guard, servo));
     let mut findings = Vec::new();
     for end in End::ALL {
         findings.push(Finding {
             part: end.name().to_string(),
             servos: names(end.servos()),
-            tally: EndWalk::new(robot, end).walk(end.pick(positions.each_ref()), share, progress),
+            tally: EndWalk::new(robot, guard, end).walk(end.pick(positions.each_ref()), share, progress),
         });
     }
     for side in Side::ALL {
         findings.push(Finding {
             part: format!("{side} side"),
             servos: names(side.servos()),
-            tally: SideWalk::new(robot, side).walk(
+            tally: SideWalk::new(robot, guard, side).walk(
                 side.pick(positions.each_ref()),
                 share,
                 progress,
@@ -42,16 +47,16 @@ pub fn all(robot: &Robot, share: Share, progress: &(impl Fn(u64) + Sync)) -> Vec
         findings.push(Finding {
             part: format!("leg {}", servo::LEGS[servo]),
             servos: vec![servo::NAMES[servo]],
-            tally: leg(robot, positions),
+            tally: leg(robot, guard, positions),
         });
     }
     findings
 }
 
 /// How many rows that is.
-pub fn rows(robot: &Robot) -> u64 {
+pub fn rows(guard: &Firmware) -> u64 {
     let positions = |servo: usize| {
-        let calibration = robot.firmware.calibration()[servo];
+        let calibration = guard.calibration()[servo];
         (i32::from(calibration.max.0) - i32::from(calibration.min.0) + 1) as u64
     };
     let first = End::ALL
@@ -134,19 +139,19 @@ struct EndWalk<'a> {
 }
 
 impl<'a> EndWalk<'a> {
-    fn new(robot: &'a Robot, end: End) -> Self {
+    fn new(robot: &Robot, guard: &'a Firmware, end: End) -> Self {
         let part = match end {
             End::Head => part::End::Head,
             End::Tail => part::End::Tail,
         };
-        let limits = robot.firmware.limits();
+        let limits = guard.limits();
         Self {
             name: end.name(),
-            fixed: robot.firmware.end(part),
-            exact: robot.lizard.end(end),
-            limits: [robot.limits.type2, robot.limits.type1],
+            fixed: guard.end(part),
+            exact: robot.lizard().end(end),
+            limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],
-            crossing_band: STEPS_BAND * robot.firmware.end_step(end),
+            crossing_band: STEPS_BAND * f64::from(1u32 << guard.end_scale(part).bits).recip(),
         }
     }
 
@@ -276,16 +281,16 @@ struct SideWalk {
 }
 
 impl SideWalk {
-    fn new(robot: &Robot, side: Side) -> Self {
+    fn new(robot: &Robot, guard: &Firmware, side: Side) -> Self {
         let fixed = match side {
-            Side::Left => robot.firmware.side(part::Side::Left),
-            Side::Right => robot.firmware.side(part::Side::Right).mirrored(),
+            Side::Left => guard.side(part::Side::Left),
+            Side::Right => guard.side(part::Side::Right).mirrored(),
         };
         Self {
             side,
             fixed,
-            exact: robot.lizard.side(side),
-            stroke: [robot.limits.stroke_min, robot.limits.stroke_max],
+            exact: robot.lizard().side(side),
+            stroke: [robot.limits().stroke_min, robot.limits().stroke_max],
             steps_per_mm: f64::from(1u32 << fixed.scale.bits),
         }
     }
@@ -335,13 +340,13 @@ impl SideWalk {
 }
 
 /// The positions of one leg.
-fn leg(robot: &Robot, positions: &Positions) -> Tally {
+fn leg(robot: &Robot, guard: &Firmware, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
-    let least = robot.firmware.limits().leg.0;
+    let least = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
         tally.pairs += 1;
         Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
-        let clear = exact.y - robot.limits.leg;
+        let clear = exact.y - robot.limits().leg;
         if (fixed.sin >= least) != (clear >= 0.0) {
             tally.differ(false, clear.abs(), MARGIN_BAND, || {
                 format!("at {:.4} deg", positions.degrees[position])

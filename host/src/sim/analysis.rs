@@ -93,11 +93,12 @@ impl Instant {
     fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
         let us = |width: u64| width as f64 / CYCLES_PER_US as f64;
         let turns = widths.map(|widths| -> [f64; 4] {
-            std::array::from_fn(|i| robot.servos[i].sweep(us(widths[i])))
+            std::array::from_fn(|i| robot.servos()[i].sweep(us(widths[i])))
         });
         Self {
             seconds,
-            angles: turns.map(|turns| std::array::from_fn(|i| robot.servos[i].neutral + turns[i])),
+            angles: turns
+                .map(|turns| std::array::from_fn(|i| robot.servos()[i].neutral + turns[i])),
             sweeps: turns.map(|turns| std::array::from_fn(|i| turns[i] * FORWARD[i])),
         }
     }
@@ -173,7 +174,7 @@ pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
         ServoReport {
             servo: NAMES[i],
             leg: LEGS[i],
-            pin: pin_name(run.robot.servos[i].pin),
+            pin: pin_name(run.robot.servos()[i].pin),
             pulses: widths().count(),
             min_us: us(widths().min()),
             max_us: us(widths().max()),
@@ -216,7 +217,7 @@ pub fn safety(run: Run<'_>) -> Safety {
 impl Safety {
     /// Takes a pose into account; returns why it breaks a limit.
     fn add(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
-        let solution = match robot.lizard.solve(&angles.into()) {
+        let solution = match robot.lizard().solve(&angles.into()) {
             Err(infeasible) => return Some(infeasible.to_string()),
             Ok(solution) => solution,
         };
@@ -231,7 +232,7 @@ impl Safety {
         for s in [solution.left.s, solution.right.s] {
             self.stroke = [self.stroke[0].min(s), self.stroke[1].max(s)];
         }
-        let violation = robot.limits.violations(&solution).next();
+        let violation = robot.limits().violations(&solution).next();
         violation.map(|violation| violation.to_string())
     }
 }
@@ -304,7 +305,7 @@ impl Steps<'_> {
             return *travel;
         }
         let sweeps = self.run.within(n..n + 2).filter_map(|at| at.sweeps);
-        let travel = self.run.robot.ground.travel(sweeps);
+        let travel = self.run.robot.ground().travel(sweeps);
         if self.known.len() < KEPT {
             self.known.insert(pair, travel);
         }
@@ -332,7 +333,7 @@ mod tests {
 
     /// The frames that servos of `angles(seconds)` would get, from second 1 on.
     fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
-        let width = |i: usize, angle: f64| (robot.servos[i].pulse(angle) * 16.0).round() as u16;
+        let width = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
         let frame = |n: u64| {
             let angles = angles(n as f64 / 50.0);
             std::array::from_fn(|i| width(i, angles[i]))
@@ -345,7 +346,7 @@ mod tests {
     }
 
     fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
-        let (_, gait) = robot.gait(name).expect("it is in robot.toml");
+        let gait = robot.gait(name).expect("it is in robot.toml");
         frames_of(robot, count, |seconds| gait.angles(gait.phase(seconds)))
     }
 

@@ -67,7 +67,7 @@ mod tests {
     fn instants(gait: &str) -> Vec<Instant> {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right");
-        let (_, gait) = robot.gait(gait).expect("it is in robot.toml");
+        let gait = robot.gait(gait).expect("it is in robot.toml");
         let neutral: [f64; 4] = robot.neutral().into();
         (0..300)
             .map(|n| f64::from(n) / 50.0)

@@ -49,7 +49,7 @@ impl Frame {
 /// The pins of the robot's servos A1, A2, A3, A4.
 #[must_use]
 pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
-    robot.servos.map(|servo| Pin::arduino(servo.pin))
+    robot.servos().map(|servo| Pin::arduino(servo.pin))
 }
 
 /// The first cycle that belongs to the frame which starts at cycle `start`: half

@@ -183,7 +183,7 @@ fn record(
 fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
     let commands = twin::play(
-        &robot.firmware,
+        robot.firmware(),
         &recording.received_by_uno,
         log.first,
         log.widths.len(),
@@ -216,7 +216,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(gait) = &args.gait
         && robot.gait(gait).is_none()
     {
-        let names: Vec<&str> = robot.gaits.iter().map(|gait| gait.name.as_str()).collect();
+        let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         let names = names.join(", ");
         return Err(Failure::Input(format!(
             "robot.toml has no gait `{gait}`; it has {names}"

@@ -114,11 +114,11 @@ impl Chart<'_> {
 
     fn strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
         let top = STRIPS + servo as f64 * (STRIP + STRIP_GAP);
-        let neutral = self.run.robot.servos[servo].neutral;
+        let neutral = self.run.robot.servos()[servo].neutral;
         let y = |angle: f64| top + STRIP / 2.0 * (1.0 - (angle - neutral) / reach);
         let (begin, end) = (self.x(0.0), self.x(self.seconds));
         let name = format!("{} {}", NAMES[servo], PLACES[servo]);
-        let pin = pin_name(self.run.robot.servos[servo].pin);
+        let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
             .add(rectangle((begin, top), (end - begin, STRIP), PANEL))
             .add(

@@ -5,14 +5,8 @@ use lizard_robot::Robot;
 /// Names of the gaits that move a servo, in the order of robot.toml.
 #[must_use]
 pub fn moving(robot: &Robot) -> Vec<&str> {
-    /// Phases to look at: a gait that moves differs at one of them.
-    const PHASES: u32 = 64;
-    let moves = |gait: &&lizard_robot::Gait| {
-        let rest = gait.sweeps(0.0);
-        (1..PHASES).any(|n| gait.sweeps(f64::from(n) / f64::from(PHASES)) != rest)
-    };
-    let moving = robot.gaits.iter().filter(moves);
-    moving.map(|gait| gait.name.as_str()).collect()
+    let moving = robot.gaits().iter().filter(|gait| gait.moves());
+    moving.map(|gait| gait.name()).collect()
 }
 
 /// The gaits of a tour: the first that moves, and of the others the one that is
@@ -22,7 +16,7 @@ pub fn gaits(robot: &Robot) -> Vec<&str> {
     let moving = moving(robot);
     let turn = |name: &str| {
         let found = robot.gait(name);
-        found.map_or(0.0, |(_, gait)| robot.predict(gait).turn.map_or(0.0, f64::abs))
+        found.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
     };
     let others = moving.iter().copied().skip(1);
     // Of several equal ones the first: mirrored gaits turn alike.

@@ -192,10 +192,10 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
 #[test]
 fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
     let robot = lizard_robot::Robot::parse(&paper_text()).expect("robots/paper.toml");
-    let (_, look) = robot.gait("look").expect("look");
+    let look = robot.gait("look").expect("look");
     for i in 0..1000 {
         let solution = robot
-            .lizard
+            .lizard()
             .solve(&look.pose(f64::from(i) / 1000.0))
             .unwrap();
         assert!(solution.head.lci() >= 0.7, "{}", solution.head.lci());

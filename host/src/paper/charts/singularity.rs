@@ -2,7 +2,7 @@
 //! that the gaits take through it.
 
 use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wrap};
-use lizard_robot::{Gait, Robot};
+use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, page, title};
@@ -166,9 +166,9 @@ fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         theta4,
         ..robot.neutral()
     };
-    let s = robot.lizard.solve(&pose).ok()?;
+    let s = robot.lizard().solve(&pose).ok()?;
     let broken = robot
-        .limits
+        .limits()
         .violations(&s)
         .any(|v| !matches!(v.what, Check::StrokeLeft | Check::StrokeRight));
     let m = &s.margins;
@@ -180,21 +180,21 @@ fn least(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
 /// backwards takes the same path.
 fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
-    for gait in &robot.gaits {
+    for gait in robot.gaits() {
         let path = path(gait);
         let known = paths.iter_mut().find(|(_, other)| same(other, &path));
         match known {
             Some((names, _)) => {
                 names.push_str(", ");
-                names.push_str(&gait.name);
+                names.push_str(gait.name());
             }
-            None => paths.push((gait.name.clone(), path)),
+            None => paths.push((gait.name().to_string(), path)),
         }
     }
     paths
 }
 
-fn path(gait: &Gait) -> Vec<(f64, f64)> {
+fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     let at = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
         (theta1, theta4)
@@ -237,7 +237,7 @@ fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 
 /// The singular curves within the plot, as short pieces.
 fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
-    let bars = robot.lizard.end(End::Head);
+    let bars = robot.lizard().end(End::Head);
     group = sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
     // Once more with the other crank leading, where the first runs steeply: the
     // five-bar seen in a mirror, in which left and right change places.

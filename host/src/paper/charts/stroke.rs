@@ -1,6 +1,6 @@
 //! How far the sliders travel in each gait.
 
-use lizard_robot::{Gait, Robot};
+use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use super::plot::{Axis, Plot, SHUT, entry, page, title};
@@ -14,12 +14,12 @@ const RIGHT: &str = "#d55e00";
 
 /// Travel of both sliders over a cycle of every gait, and the limits.
 pub fn stroke(robot: &Robot) -> String {
-    let rows = robot.gaits.len().div_ceil(COLUMNS);
+    let rows = robot.gaits().len().div_ceil(COLUMNS);
     let size = (
         90.0 + PITCH.0 * COLUMNS as f64,
         130.0 + PITCH.1 * rows as f64,
     );
-    let limits = &robot.limits;
+    let limits = robot.limits();
     let range = (limits.stroke_min - 5.0, limits.stroke_max + 5.0);
     let mut group = title(
         Group::new(),
@@ -41,7 +41,7 @@ pub fn stroke(robot: &Robot) -> String {
         "7 4",
         "right slider (A2, A3)",
     );
-    for (i, gait) in robot.gaits.iter().enumerate() {
+    for (i, gait) in robot.gaits().iter().enumerate() {
         let plot = Plot {
             corner: (
                 80.0 + PITCH.0 * (i % COLUMNS) as f64,
@@ -56,7 +56,7 @@ pub fn stroke(robot: &Robot) -> String {
     page(size, group)
 }
 
-fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &Gait) -> Group {
+fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
     let axes = (
         Axis {
             step: 0.25,
@@ -69,8 +69,8 @@ fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &Gait) -> Group {
     );
     group = plot.grid(group, &axes.0, &axes.1);
     for (from, to) in [
-        (plot.y.0, robot.limits.stroke_min),
-        (robot.limits.stroke_max, plot.y.1),
+        (plot.y.0, robot.limits().stroke_min),
+        (robot.limits().stroke_max, plot.y.1),
     ] {
         let (top, bottom) = (plot.at(0.0, to), plot.at(0.0, from));
         group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), SHUT));
@@ -78,7 +78,7 @@ fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &Gait) -> Group {
     let travel: Vec<(f64, f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0)
         .filter_map(|phase| {
-            let s = robot.lizard.solve(&gait.pose(phase)).ok()?;
+            let s = robot.lizard().solve(&gait.pose(phase)).ok()?;
             Some((phase, s.left.s, s.right.s))
         })
         .collect();
@@ -100,7 +100,7 @@ fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &Gait) -> Group {
     group
         .add(
             text(
-                &gait.name.replace('-', " "),
+                &gait.name().replace('-', " "),
                 head,
                 17.0,
                 DARK,

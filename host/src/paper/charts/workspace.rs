@@ -23,7 +23,7 @@ const BLUE: &str = "#0072b2";
 /// The four circles, the workspace between them, the inscribed circle, and the
 /// head at neutral.
 pub fn workspace(robot: &Robot) -> String {
-    let bars = robot.lizard.end(End::Head);
+    let bars = robot.lizard().end(End::Head);
     let space = Workspace::of(&bars);
     let reach = (space.outer / 20.0).ceil() * 20.0 + 20.0;
     let plot = Plot {
@@ -89,7 +89,7 @@ pub fn workspace(robot: &Robot) -> String {
 
 /// The local conditioning index over the upper workspace, outward elbows.
 pub fn conditioning(robot: &Robot) -> String {
-    let bars = robot.lizard.end(End::Head);
+    let bars = robot.lizard().end(End::Head);
     let space = Workspace::of(&bars);
     let reach = (space.outer / 20.0).ceil() * 20.0;
     let plot = Plot {
@@ -164,9 +164,9 @@ fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
     robot
         .gait("look")
         .into_iter()
-        .map(|(_, gait)| {
+        .map(|gait| {
             (0..=200)
-                .filter_map(|i| robot.lizard.solve(&gait.pose(f64::from(i) / 200.0)).ok())
+                .filter_map(|i| robot.lizard().solve(&gait.pose(f64::from(i) / 200.0)).ok())
                 .map(|s| (s.head.end_point.x, s.head.end_point.y))
                 .collect()
         })
@@ -174,7 +174,7 @@ fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
 }
 
 fn mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
-    if let Ok(s) = robot.lizard.solve(&robot.neutral()) {
+    if let Ok(s) = robot.lizard().solve(&robot.neutral()) {
         let h = &s.head;
         let points = [
             h.bars.left_shaft(),

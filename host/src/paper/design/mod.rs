@@ -206,7 +206,7 @@ LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of 
                 page += &verdict(lci, p.r_mic);
             }
         }
-        let l = &robot.lizard.links;
+        let l = robot.lizard().links;
         page += &format!(
             "
 link                          mm   from
@@ -225,8 +225,8 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
             self.l1,
             l.l12,
             l.l10,
-            robot.lizard.leg.ground,
-            robot.lizard.leg.crank,
+            robot.lizard().leg.ground,
+            robot.lizard().leg.crank,
         );
         page
     }
@@ -284,15 +284,15 @@ fn ranking(
     given: Proportions,
     out: &mut impl Write,
 ) -> Result<(), Failure> {
-    let travel = robot.servos.iter().map(|servo| {
+    let travel = robot.servos().iter().map(|servo| {
         let (least, most) = servo.travel();
         most.min(-least)
     });
     let demands = Demands {
         base: l0,
-        chassis: robot.lizard.links.l10,
-        leg: robot.lizard.leg.crank,
-        limits: robot.limits,
+        chassis: robot.lizard().links.l10,
+        leg: robot.lizard().leg.crank,
+        limits: *robot.limits(),
         travel: travel.fold(f64::INFINITY, f64::min),
         shortest: args.shortest,
         sweep: args.sweep,

@@ -76,7 +76,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let vectors = Arch::new();
     let seconds = fastest(|| {
         vectors.dispatch(SolveAll {
-            lizard: &robot.lizard,
+            lizard: robot.lizard(),
             poses: &poses,
             results: &mut results,
         });
@@ -84,7 +84,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     });
     let one_by_one = fastest(|| {
         for (pose, result) in poses.iter().zip(&mut results) {
-            *result = solve(&robot.lizard, pose);
+            *result = solve(robot.lizard(), pose);
         }
         black_box(&results);
     });
@@ -97,7 +97,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         poses_per_second: rate,
         one_by_one_poses_per_second: poses.len() as f64 / one_by_one,
         floor_share: floor / seconds,
-        numpy: numpy(&robot.lizard, &poses, &results, rate)?,
+        numpy: numpy(robot.lizard(), &poses, &results, rate)?,
     };
     let mut out = io::stdout().lock();
     if args.json {

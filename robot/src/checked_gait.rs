@@ -1,0 +1,128 @@
+//! A gait that may be walked.
+
+use lizard_kinematics::Pose;
+
+use crate::accuracy::{self, TableError};
+use crate::audit::Audit;
+use crate::gait::Stride;
+use crate::ground::{Ground, Prediction};
+use crate::tabled_gait::TabledGait;
+
+/// A gait of robot.toml whose every sample has been checked: in floating point,
+/// the truth, and as the firmware's table has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckedGait {
+    gait: TabledGait,
+    audit: Audit,
+}
+
+impl CheckedGait {
+    /// A gait that was checked, and what the check found.
+    pub(crate) fn new(gait: TabledGait, audit: Audit) -> Self {
+        Self { gait, audit }
+    }
+
+    /// Its name; with a blank for each dash also its console command.
+    pub fn name(&self) -> &str {
+        self.gait.name()
+    }
+
+    /// Its place among the gaits, from 0.
+    pub fn index(&self) -> usize {
+        self.gait.index()
+    }
+
+    /// Time of one cycle at full speed, s.
+    pub fn period(&self) -> f64 {
+        self.gait.gait().period
+    }
+
+    /// True where the phase runs backwards, from 1 to 0.
+    pub fn is_reversed(&self) -> bool {
+        self.gait.gait().reversed
+    }
+
+    /// True if a servo moves in the course of a cycle.
+    pub fn moves(&self) -> bool {
+        self.gait.moves()
+    }
+
+    /// What each leg does, in servo order: LF, RF, RH, LH.
+    pub fn strides(&self) -> &[Stride; 4] {
+        &self.gait.gait().strides
+    }
+
+    /// The neutral servo angles, deg, chassis frame, servo order.
+    pub fn neutral(&self) -> [f64; 4] {
+        self.gait.gait().neutral
+    }
+
+    /// The phase, 0 to 1, at a time in s after a start at phase 0, at full speed.
+    pub fn phase(&self, seconds: f64) -> f64 {
+        self.gait.gait().phase(seconds)
+    }
+
+    /// The legs' sweeps from neutral at a phase of 0 to 1, deg, foot forward
+    /// positive, servo order.
+    pub fn sweeps(&self, phase: f64) -> [f64; 4] {
+        self.gait.gait().sweeps(phase)
+    }
+
+    /// The servo angles at a phase of 0 to 1, deg, chassis frame, servo order.
+    pub fn angles(&self, phase: f64) -> [f64; 4] {
+        self.gait.gait().angles(phase)
+    }
+
+    /// The pose at a phase of 0 to 1.
+    pub fn pose(&self, phase: f64) -> Pose {
+        self.angles(phase).into()
+    }
+
+    /// The servos' sweeps at a phase of 1/65536 cycle as the firmware has them:
+    /// 1/65536 turn from neutral, counter-clockwise positive, servo order.
+    pub fn table_sweeps(&self, phase: u16) -> [i16; 4] {
+        self.gait.sweeps(phase)
+    }
+
+    /// The servo angles at a phase of 1/65536 cycle as the firmware has them: deg,
+    /// chassis frame, servo order.
+    pub fn table_angles(&self, phase: u16) -> [f64; 4] {
+        self.gait.angles(phase)
+    }
+
+    /// One cycle at full speed from phase 0 on: the time of each frame in s, and
+    /// its phase in 1/65536 cycle. The last is the first that completes the cycle.
+    pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
+        self.gait.frames()
+    }
+
+    /// What the check of every sample found.
+    pub fn audit(&self) -> &Audit {
+        &self.audit
+    }
+
+    /// The error of the table over every phase that the firmware can be in.
+    pub fn table_error(&self) -> TableError {
+        accuracy::worst(&self.gait, accuracy::ALL_PHASES)
+    }
+
+    /// Where one cycle takes a robot on this ground, in the time order of a gait
+    /// that starts at phase 0, by the contact model.
+    pub fn predict(&self, ground: &Ground) -> Prediction {
+        /// Steps in a cycle; twice as many change no result by 0.01 mm.
+        const STEPS: usize = 1000;
+        /// Enough to tell what hangs on a tie, which takes longer.
+        const COARSE: usize = 250;
+        let cycle = |steps: usize| {
+            (0..=steps)
+                .map(move |i| self.sweeps(self.phase(self.period() * i as f64 / steps as f64)))
+        };
+        let known = ground.predict(cycle(COARSE));
+        let travel = ground.travel(cycle(STEPS));
+        Prediction {
+            forward: known.forward.and(Some(travel.forward)),
+            left: known.left.and(Some(travel.left)),
+            turn: known.turn.and(Some(travel.turn)),
+        }
+    }
+}

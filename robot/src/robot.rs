@@ -1,0 +1,174 @@
+//! A whole robot.toml.
+
+use std::path::Path;
+
+use lizard_core::gait::MOST_WAVES;
+use lizard_kinematics::{Limits, Lizard, Pose, wrap};
+use toml::de::DeTable;
+
+use crate::audit;
+use crate::checked_gait::CheckedGait;
+use crate::define;
+use crate::error::{Checked, Error, Fault, Problem};
+use crate::file;
+use crate::firmware::Firmware;
+use crate::ground::{Ground, Prediction, Travel};
+use crate::measure::Measures;
+use crate::numbers::Numbers;
+use crate::reader::{self, Section};
+use crate::servo::{self, FORWARD, Pace, Servo};
+use crate::table::{Tables, Unfit};
+use crate::tabled_gait::TabledGait;
+
+/// A robot whose every value and gait has been checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    measures: Measures,
+    gaits: Vec<CheckedGait>,
+    firmware: Firmware,
+}
+
+impl Robot {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is longer than [`crate::LONGEST`], is not UTF-8 text,
+    /// or holds a mistake.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        match file::read(path) {
+            Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
+            Err(problem) => Err(Error {
+                file,
+                line: None,
+                key: String::new(),
+                problem,
+            }),
+        }
+    }
+
+    /// Reads and checks the text of a robot.toml. A byte order mark at its start
+    /// is passed over.
+    ///
+    /// # Errors
+    /// If the text holds a mistake.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let file = "robot.toml".to_string();
+        let document = DeTable::parse(text).map_err(|fault| Error {
+            file: file.clone(),
+            line: fault
+                .span()
+                .map(|span| text[..span.start].matches('\n').count() + 1),
+            key: String::new(),
+            problem: Problem::Syntax(fault.message().to_string()),
+        })?;
+        let table = document.get_ref();
+        Self::read(table).map_err(|Fault { key, problem }| Error {
+            file,
+            line: reader::line(text, table, &key),
+            key,
+            problem,
+        })
+    }
+
+    fn read(table: &DeTable) -> Checked<Self> {
+        let root = Section::root(
+            table,
+            &["links", "leg", "servo", "limits", "ground", "gait"],
+        )?;
+        let measures = Measures::read(&root)?;
+        let gaits = define::gaits(&root, &measures)?;
+        let key = |name: &str| format!("gait.{name}");
+        let tables = Tables::new(&gaits).map_err(|(gait, unfit)| {
+            match unfit {
+                Unfit::HalfTurn(servo) => Problem::HalfTurn {
+                    servo: servo::NAMES[servo],
+                },
+                Unfit::Waves => Problem::ManyWaves { most: MOST_WAVES },
+            }
+            .at(key(&gaits[gait].name))
+        })?;
+        let firmware = Firmware::new(Numbers::new(&measures, tables));
+        let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
+            let gait = TabledGait::new(gait, index, firmware.tables());
+            match audit::check(&gait, &measures) {
+                Ok(audit) => Ok(CheckedGait::new(gait, audit)),
+                Err(problem) => Err(problem.at(key(gait.name()))),
+            }
+        });
+        Ok(Self {
+            gaits: gaits.collect::<Checked<_>>()?,
+            measures,
+            firmware,
+        })
+    }
+
+    /// Its links.
+    pub fn lizard(&self) -> &Lizard {
+        &self.measures.lizard
+    }
+
+    /// Its servos A1, A2, A3, A4.
+    pub fn servos(&self) -> &[Servo; 4] {
+        &self.measures.servos
+    }
+
+    /// What its poses must keep clear of.
+    pub fn limits(&self) -> &Limits {
+        &self.measures.limits
+    }
+
+    /// How fast its servos may turn.
+    pub fn pace(&self) -> &Pace {
+        &self.measures.pace
+    }
+
+    /// Its feet on the floor.
+    pub fn ground(&self) -> &Ground {
+        &self.measures.ground
+    }
+
+    /// Its gaits in the order of the file; the first is `stand`.
+    pub fn gaits(&self) -> &[CheckedGait] {
+        &self.gaits
+    }
+
+    /// A gait by its name; a blank in it counts as a dash.
+    pub fn gait(&self, name: &str) -> Option<&CheckedGait> {
+        let name = name.replace(' ', "-");
+        self.gaits.iter().find(|gait| gait.name() == name)
+    }
+
+    /// The robot as the firmware has it.
+    pub fn firmware(&self) -> &Firmware {
+        &self.firmware
+    }
+
+    /// The neutral pose.
+    pub fn neutral(&self) -> Pose {
+        self.measures.neutral().into()
+    }
+
+    /// The legs' sweeps (deg, foot forward positive) at servo angles (deg,
+    /// chassis frame), both in servo order.
+    pub fn sweeps(&self, angles: [f64; 4]) -> [f64; 4] {
+        let neutral = self.measures.neutral();
+        std::array::from_fn(|i| FORWARD[i] * wrap(angles[i] - neutral[i]))
+    }
+
+    /// Where the robot gets to when its servos take these angles (deg, chassis
+    /// frame, servo order) one after another, by the contact model, whether or
+    /// not that hangs on ties.
+    pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
+        self.ground()
+            .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
+    }
+
+    /// Where one cycle of a gait takes the robot, as [`CheckedGait::predict`] on
+    /// its own floor.
+    pub fn predict(&self, gait: &CheckedGait) -> Prediction {
+        gait.predict(self.ground())
+    }
+}
