@@ -28,7 +28,8 @@ pub struct Tables<'a> {
     /// The rise over `R - s`, made by [`stretched`]; for a loop whose crank tips
     /// part so far that [`Couplers::is_near_stretched`].
     pub stretched: Option<Flash<'a, Table>>,
-    /// The rise over `s - N`, made by [`folded`]; for unequal couplers.
+    /// The rise over `s - N`, made by [`folded`]; for couplers that
+    /// [`Couplers::differ_much`].
     pub folded: Option<Flash<'a, Table>>,
     /// The skew over `s`, made by [`skew`]; for unequal couplers.
     pub skew: Option<Flash<'a, Table>>,
@@ -62,7 +63,8 @@ impl<'a> Couplers<'a> {
     /// In the compiler, where unequal couplers lack a table.
     pub const fn new(left: i16, right: i16, tables: Tables<'a>) -> Self {
         let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
-        assert!(left == right || tables.folded.is_some() && tables.skew.is_some());
+        assert!(left == right || tables.skew.is_some());
+        assert!(!Self::differ_much(left, right) || tables.folded.is_some());
         Self {
             left,
             right,
@@ -90,6 +92,13 @@ impl<'a> Couplers<'a> {
     /// Length of the right coupler.
     pub const fn right(&self) -> i16 {
         self.right
+    }
+
+    /// True for couplers whose difference alone keeps the crank tips so far apart
+    /// that the margins are known next to it: there the rise is read from the table
+    /// of folded couplers. Of others, [`Couplers::at`] knows nothing so near.
+    pub const fn differ_much(left: i16, right: i16) -> bool {
+        2 * least_sq(left, right) > reach_sq(left, right) >> OCTAVES
     }
 
     /// True where the squared distance of the crank tips is beyond three quarters
