@@ -28,7 +28,8 @@ pub struct Tables<'a> {
     /// The rise over `R - s`, made by [`stretched`]; for a loop whose crank tips
     /// part so far that [`Couplers::is_near_stretched`].
     pub stretched: Option<Flash<'a, Table>>,
-    /// The rise over `s - N`, made by [`folded`]; for unequal couplers.
+    /// The rise over `s - N`, made by [`folded`]; for couplers that
+    /// [`Couplers::differ_much`].
     pub folded: Option<Flash<'a, Table>>,
     /// The skew over `s`, made by [`skew`]; for unequal couplers.
     pub skew: Option<Flash<'a, Table>>,
@@ -62,7 +63,8 @@ impl<'a> Couplers<'a> {
     /// In the compiler, where unequal couplers lack a table.
     pub const fn new(left: i16, right: i16, tables: Tables<'a>) -> Self {
         let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
-        assert!(left == right || tables.folded.is_some() && tables.skew.is_some());
+        assert!(left == right || tables.skew.is_some());
+        assert!(!Self::differ_much(left, right) || tables.folded.is_some());
         Self {
             left,
             right,
@@ -92,6 +94,13 @@ impl<'a> Couplers<'a> {
         self.right
     }
 
+    /// True for couplers whose difference alone keeps the crank tips so far apart
+    /// that the margins are known next to it: there the rise is read from the table
+    /// of folded couplers. Of others, [`Couplers::at`] knows nothing so near.
+    pub const fn differ_much(left: i16, right: i16) -> bool {
+        2 * least_sq(left, right) > reach_sq(left, right) >> OCTAVES
+    }
+
     /// True where the squared distance of the crank tips is beyond three quarters
     /// of `R`: there the rise is read from the table of stretched couplers.
     pub const fn is_near_stretched(left: i16, right: i16, tips_sq: u32) -> bool {
@@ -112,16 +121,16 @@ impl<'a> Couplers<'a> {
         }
         let rise = match (self.stretched, self.folded) {
             (Some(stretched), _) if Self::is_near_stretched(left, right, tips_sq) => {
-                -stretched.at(reach_sq - tips_sq)?
+                stretched.at(reach_sq - tips_sq)?
             }
             (_, Some(folded)) if tips_sq < 2 * least_sq(left, right) => {
-                -folded.at(tips_sq.checked_sub(least_sq(left, right))?)?
+                folded.at(tips_sq.checked_sub(least_sq(left, right))?)?
             }
-            _ => self.rise.at(tips_sq)?,
+            _ => self.rise.falling(tips_sq)?,
         };
         let skew = match self.skew {
-            Some(skew) if left < right => -skew.at(tips_sq)?,
-            Some(skew) => skew.at(tips_sq)?,
+            Some(skew) if left < right => -skew.falling(tips_sq)?,
+            Some(skew) => skew.falling(tips_sq)?,
             None => 0,
         };
         Some(Lean { rise, skew })
@@ -151,7 +160,7 @@ pub const fn stretched(left: i16, right: i16) -> Table {
     while index < ENTRIES {
         let short = argument(reach_sq / 4, index);
         if short < reach_sq as u64 {
-            table[index] = -rise_q10(reach_sq, least_sq, reach_sq as u64 - short, 1);
+            table[index] = rise_q10(reach_sq, least_sq, reach_sq as u64 - short, 1);
         }
         index += 1;
     }
@@ -165,7 +174,7 @@ pub const fn folded(left: i16, right: i16) -> Table {
     let mut index = 0;
     while index < ENTRIES {
         let above = argument(least_sq, index);
-        table[index] = -rise_q10(reach_sq, least_sq, least_sq as u64 + above, 1);
+        table[index] = rise_q10(reach_sq, least_sq, least_sq as u64 + above, 1);
         index += 1;
     }
     table

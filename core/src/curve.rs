@@ -17,8 +17,7 @@ pub const OCTAVES: u32 = 10;
 /// Number of entries: all octaves, and the end of the last.
 pub const ENTRIES: usize = STEPS * (OCTAVES as usize + 1) + 1;
 
-/// The entries of a function that falls as its argument grows. One that rises
-/// is kept with its sign changed.
+/// The entries of a function.
 pub type Table = [i16; ENTRIES];
 
 /// A function in flash.
@@ -34,10 +33,31 @@ impl<'a> Curve<'a> {
         Self { table, largest }
     }
 
-    /// The function's value; None below the table's first octave, where the
-    /// argument is less than 1/1024 of the largest.
+    /// The value of a function that never rises; None below the table's first
+    /// octave, where the argument is less than 1/1024 of the largest.
+    #[inline(always)]
+    pub fn falling(&self, argument: u32) -> Option<i16> {
+        let (here, next, part) = self.around(argument)?;
+        let fall = mul_unsigned(here.wrapping_sub(next) as u16, part) >> 16;
+        Some(here.wrapping_sub(fall as i16))
+    }
+
+    /// The value of any function, likewise.
     #[inline(always)]
     pub fn at(&self, argument: u32) -> Option<i16> {
+        let (here, next, part) = self.around(argument)?;
+        let change = (mul_unsigned(next.abs_diff(here), part) + 0x8000) >> 16;
+        Some(if next < here {
+            here.wrapping_sub(change as i16)
+        } else {
+            here.wrapping_add(change as i16)
+        })
+    }
+
+    /// The entries on either side of an argument, and how far it is on its way from
+    /// one to the other, 1/65536.
+    #[inline(always)]
+    fn around(&self, argument: u32) -> Option<(i16, i16, u16)> {
         if argument < self.largest >> OCTAVES || argument == 0 {
             return None;
         }
@@ -52,8 +72,7 @@ impl<'a> Curve<'a> {
         let index = usize::from(octave) * STEPS + usize::from(step);
         let here = self.table.at(index).load();
         let next = self.table.at(index + 1).load();
-        let fall = mul_unsigned(here.wrapping_sub(next) as u16, (mantissa >> 11) as u16) >> 16;
-        Some(here.wrapping_sub(fall as i16))
+        Some((here, next, (mantissa >> 11) as u16))
     }
 }
 

@@ -172,7 +172,7 @@ fn five_bar(bars: &Loop, tables: &str) -> String {
         bars.left,
         bars.right,
         some(bars.couplers.near_stretched, "STRETCHED"),
-        some(unequal, "FOLDED"),
+        some(bars.couplers.differ_much(), "FOLDED"),
         some(unequal, "SKEW"),
     )
 }
@@ -183,7 +183,7 @@ fn coupler_tables(f: &mut fmt::Formatter, end: &str, bars: &Bars) -> fmt::Result
     for (name, function, there) in [
         ("RISE", "rise", true),
         ("STRETCHED", "stretched", bars.near_stretched),
-        ("FOLDED", "folded", unequal),
+        ("FOLDED", "folded", bars.differ_much()),
         ("SKEW", "skew", unequal),
     ] {
         if there {

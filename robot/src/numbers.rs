@@ -93,6 +93,13 @@ impl Numbers {
     }
 }
 
+impl Bars {
+    /// Whether the table of folded couplers is needed.
+    pub fn differ_much(&self) -> bool {
+        self.folded.is_some()
+    }
+}
+
 impl Loop {
     fn new(bars: &kinematics::FiveBar) -> Self {
         let scale = scale::of_loop(bars);
@@ -113,7 +120,7 @@ impl Loop {
                 near_stretched,
                 rise: couplers::rise(a, b),
                 stretched: near_stretched.then(|| couplers::stretched(a, b)),
-                folded: (a != b).then(|| couplers::folded(a, b)),
+                folded: Couplers::differ_much(a, b).then(|| couplers::folded(a, b)),
                 skew: (a != b).then(|| couplers::skew(a, b)),
             },
         }

@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::{Failure, RobotFile};
 
-pub use tally::{MARGIN_BAND, STEPS_BAND, Tally};
+pub use tally::{STEPS_BAND, Tally, margin_band};
 
 /// Compare the firmware's guard with floating point at every pose there is.
 ///
@@ -85,6 +85,8 @@ pub struct Proof {
     pub findings: Vec<Finding>,
     /// Hash of the firmware's numbers.
     pub hash: u32,
+    /// How near to a margin's limit the decisions may differ, a sine.
+    pub margin_band: f64,
 }
 
 impl Proof {
@@ -100,6 +102,7 @@ impl Proof {
         Self {
             findings: walk::all(robot, guard, share, &progress),
             hash: guard.hash(),
+            margin_band: margin_band(robot.limits().type2),
         }
     }
 
@@ -206,7 +209,8 @@ fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
     if proof.wrong() == 0 {
         writeln!(
             out,
-            "no pose that is farther than {MARGIN_BAND} (a sine) or {STEPS_BAND} steps of length from a limit is decided wrong"
+            "no pose that is farther than {:.4} (a sine) or {STEPS_BAND} steps of length from a limit is decided wrong",
+            proof.margin_band
         )?;
     }
     Ok(())

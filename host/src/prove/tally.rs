@@ -3,8 +3,12 @@
 use serde::Serialize;
 
 /// How near to a margin's limit the guard may decide otherwise than floating
-/// point, a sine.
-pub const MARGIN_BAND: f64 = 0.002;
+/// point, a sine: .002; and more for a robot whose limit of type 2 (`type2`) is
+/// below a quarter, because where the couplers are nearly in line, a rounded
+/// length changes the sine of the angle between them by its reciprocal.
+pub fn margin_band(type2: f64) -> f64 {
+    (0.0005 / type2).max(0.002)
+}
 
 /// How near to the end of a stroke, or to the crossing of the crank tips, in steps
 /// of the mechanism's lengths: 1/256 mm for a robot of the paper's size.

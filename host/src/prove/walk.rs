@@ -10,7 +10,7 @@ use lizard_robot::{Firmware, Robot, servo};
 use rayon::prelude::*;
 
 use super::positions::Positions;
-use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
+use super::tally::{STEPS_BAND, Tally, margin_band};
 use super::{Finding, Share};
 
 /// Columns that floating point takes at once.
@@ -135,6 +135,7 @@ struct EndWalk<'a> {
     /// Type-2 and type-1, as robot.toml and as the firmware has them.
     limits: [f64; 2],
     fixed_limits: [i16; 2],
+    margin_band: f64,
     crossing_band: f64,
 }
 
@@ -151,6 +152,7 @@ impl<'a> EndWalk<'a> {
             exact: robot.lizard().end(end),
             limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],
+            margin_band: margin_band(robot.limits().type2),
             crossing_band: STEPS_BAND * f64::from(1u32 << guard.end_scale(part).bits).recip(),
         }
     }
@@ -209,7 +211,7 @@ impl<'a> EndWalk<'a> {
             type1_right,
         } = margins;
         // Where the couplers fold, no other margin matters.
-        if truth.closes && truth.type2 > self.limits[0] - MARGIN_BAND {
+        if truth.closes && truth.type2 > self.limits[0] - self.margin_band {
             Tally::raise(
                 &mut tally.type2,
                 (sine(type2.0).abs() - truth.type2).abs(),
@@ -224,11 +226,11 @@ impl<'a> EndWalk<'a> {
         let exact = clear >= 0.0 && crossed > 0.0;
         if fixed != exact {
             // Of what decides, how far it is beyond its limit.
-            let by_crossing = crossed / self.crossing_band < clear / MARGIN_BAND;
+            let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
             let (by, band) = if by_crossing {
                 (crossed.abs(), self.crossing_band)
             } else {
-                (clear.abs(), MARGIN_BAND)
+                (clear.abs(), self.margin_band)
             };
             tally.differ(by_crossing, by, band, || {
                 format!(
@@ -348,7 +350,7 @@ fn leg(robot: &Robot, guard: &Firmware, positions: &Positions) -> Tally {
         Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
         let clear = exact.y - robot.limits().leg;
         if (fixed.sin >= least) != (clear >= 0.0) {
-            tally.differ(false, clear.abs(), MARGIN_BAND, || {
+            tally.differ(false, clear.abs(), margin_band(robot.limits().type2), || {
                 format!("at {:.4} deg", positions.degrees[position])
             });
         }
