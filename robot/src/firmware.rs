@@ -97,9 +97,10 @@ pub(crate) fn side_scale(side: &kinematics::Slider, stroke_max: f64) -> Option<S
             slider::LONGEST,
         ),
         (side.nominal + stroke_max.max(0.0), slider::LONGEST),
-        (side.front, slider::LONGEST_ARM),
-        (side.rear, slider::LONGEST_ARM),
-        (side.offset.abs(), slider::LONGEST_ARM),
+        (
+            side.front + side.rear + side.offset.abs(),
+            slider::LONGEST_ACROSS,
+        ),
     ])
 }
 
