@@ -325,6 +325,7 @@ mod tests {
             let bars = Bars::new(left, right);
             let (reach, least) = (reach_sq(left, right), least_sq(left, right));
             prop_assert_eq!(bars.couplers().at(reach + beyond), None);
+            prop_assert_eq!(bars.couplers().at(reach), None);
             prop_assert_eq!(bars.couplers().at(least.saturating_sub(beyond)), None);
         }
     }
