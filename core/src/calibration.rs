@@ -34,3 +34,55 @@ impl Calibration {
         self.min.0 <= sweep.0 && sweep.0 <= self.max.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{STEPS_PER_DEGREE, Sample};
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn a_pulse_is_within_a_cycle_of_the_line_in_all_of_the_travel(robot in Sample::random()) {
+            for (servo, float) in robot.calibration.iter().zip(robot.measures.servos) {
+                for sweep in servo.min.0..=servo.max.0 {
+                    let turned = f64::from(sweep) / STEPS_PER_DEGREE;
+                    let us = float.neutral_us + float.us_per_degree * turned;
+                    let width = f64::from(servo.width(Sweep(sweep)).0);
+                    // Half a cycle each of the neutral width and of this one; the
+                    // gain's rounding over half a turn.
+                    prop_assert!((width - 16.0 * us).abs() <= 2.0, "{float:?} at {sweep}: {width}");
+                }
+                prop_assert_eq!(servo.width(Sweep(0)), servo.neutral);
+            }
+        }
+
+        #[test]
+        fn a_servo_reaches_both_ends_of_its_travel_and_not_a_step_more(robot in Sample::random()) {
+            for servo in &robot.calibration {
+                for sweep in i16::MIN..=i16::MAX {
+                    let within = (servo.min.0..=servo.max.0).contains(&sweep);
+                    prop_assert_eq!(servo.reaches(Sweep(sweep)), within);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn half_a_cycle_rounds_up_for_either_sense_of_a_servo() {
+        let servo = |gain| Calibration {
+            neutral: Width(20_000),
+            gain,
+            min: Sweep(-9000),
+            max: Sweep(9000),
+        };
+        // Gains of a half and of one and a half cycle a step.
+        assert_eq!(servo(8192).width(Sweep(3)), Width(20_002));
+        assert_eq!(servo(8192).width(Sweep(-3)), Width(19_999));
+        assert_eq!(servo(-24_576).width(Sweep(1)), Width(19_999));
+        assert_eq!(servo(-24_576).width(Sweep(-1)), Width(20_002));
+    }
+}

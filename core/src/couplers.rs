@@ -14,7 +14,8 @@
 //! At either end of its range the rise falls to zero as a root does, too steeply
 //! for a table over `s`: there it is a function of the distance from that end,
 //! `R - s` or `s - N`, with a table of its own. A robot that cannot get there does
-//! without.
+//! without. The rise is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over
+//! `s` is read from there on, where it falls, and stays at the largest rise below.
 
 use lizard_avr::Flash;
 
@@ -145,7 +146,10 @@ pub const fn rise(left: i16, right: i16) -> Table {
     while index < ENTRIES {
         // Rounded down, because a straight line between two points of this curve
         // lies above it.
-        let tips_sq = argument(reach_sq, index);
+        let mut tips_sq = argument(reach_sq, index);
+        if tips_sq < peak_sq(left, right) as u64 {
+            tips_sq = peak_sq(left, right) as u64;
+        }
         table[index] = rise_q10(reach_sq, least_sq, tips_sq, 0);
         index += 1;
     }
@@ -223,4 +227,133 @@ const fn least_sq(left: i16, right: i16) -> u32 {
     difference * difference / 4
 }
 
+/// Where the rise is largest, in steps of `s`.
+const fn peak_sq(left: i16, right: i16) -> u32 {
+    let (reach_sq, least_sq) = (reach_sq(left, right) as u64, least_sq(left, right) as u64);
+    (2 * reach_sq * least_sq / (reach_sq + least_sq)) as u32
+}
+
 const _: () = assert!(OCTAVES == 10, "1/1024 of R is a type-2 margin of .06");
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::five_bar::SHORTEST_COUPLER;
+    use crate::sample::Bars;
+
+    /// The longest coupler that a loop's step allows.
+    const LONGEST: i16 = 32_511;
+
+    /// Rise and skew of couplers of these lengths with their crank tips at the
+    /// distance whose quarter square is `tips_sq`, straight from the triangle.
+    fn truth(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
+        let distance = 2.0 * f64::from(tips_sq).sqrt();
+        let foot = (distance * distance + left * left - right * right) / (2.0 * distance);
+        let height_sq = left * left - foot * foot;
+        (height_sq >= 0.0).then(|| {
+            let rise = 2.0 * height_sq.sqrt() / distance;
+            [rise, 2.0 * foot / distance - 1.0]
+        })
+    }
+
+    /// What an error of rise and of skew is worth as a type-2 and as a type-1
+    /// margin: 2 a b sin = rise s, and 2 a sin = skew cross - rise dot, where both
+    /// products are at most the distance of the tips.
+    fn worth(left: f64, right: f64, tips_sq: u32, [rise, skew]: [f64; 2]) -> [f64; 2] {
+        let distance = 2.0 * f64::from(tips_sq).sqrt();
+        [
+            rise.abs() * distance * distance / (2.0 * left * right),
+            (rise.abs() + skew.abs()) * distance / (2.0 * left.min(right)),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(6000))]
+
+        #[test]
+        fn the_lean_is_the_triangles_from_folded_to_stretched_couplers(
+            shorter in SHORTEST_COUPLER..=LONGEST,
+            longer in SHORTEST_COUPLER..=LONGEST,
+            alike in 0u8..4,
+            exchanged: bool,
+            share in (0.0..1.0f64, 0u8..3),
+        ) {
+            // Equal, nearly equal, and any.
+            let longer = match alike {
+                0 => shorter,
+                1 => shorter + (longer % 100).min(LONGEST - shorter),
+                _ => longer,
+            };
+            let (left, right) = if exchanged { (longer, shorter) } else { (shorter, longer) };
+            // Even over the range, and dense at either end.
+            let share = match share {
+                (share, 0) => share,
+                (share, 1) => share.powi(4),
+                (share, _) => 1.0 - share.powi(4),
+            };
+            let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+            let tips_sq = least + (f64::from(reach - least) * share) as u32;
+            let bars = Bars::new(left, right);
+            let lean = bars.couplers().at(tips_sq);
+            let (left, right) = (f64::from(left), f64::from(right));
+            let Some([rise, skew]) = truth(left, right, tips_sq) else {
+                return Ok(());
+            };
+            let [type2, _] = worth(left, right, tips_sq, [rise, skew]);
+            if type2 < 0.1 {
+                return Ok(());
+            }
+            let lean = lean.expect("a lean, where the margin is a tenth");
+            let off = [
+                f64::from(lean.rise) / 1024.0 - rise,
+                f64::from(lean.skew) / 1024.0 - skew,
+            ];
+            let [type2, type1] = worth(left, right, tips_sq, off);
+            let ratio = (left / right).max(right / left);
+            prop_assert!(type2 <= 0.003 + 0.0006 * (ratio - 1.0), "type-2 {type2}");
+            prop_assert!(type1 <= 0.001 + 0.0016 * ratio, "type-1 {type1}");
+            // Rounding alone never calls a skew the other way.
+            prop_assert!(lean.skew == 0 || (lean.skew > 0) == (left > right));
+        }
+
+        #[test]
+        fn couplers_that_do_not_meet_have_no_lean(
+            left in SHORTEST_COUPLER..=LONGEST,
+            right in SHORTEST_COUPLER..=LONGEST,
+            beyond in 0u32..1 << 28,
+        ) {
+            let bars = Bars::new(left, right);
+            let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+            prop_assert_eq!(bars.couplers().at(reach + beyond), None);
+            prop_assert_eq!(bars.couplers().at(reach), None);
+            prop_assert_eq!(bars.couplers().at(least.saturating_sub(beyond)), None);
+        }
+    }
+
+    #[test]
+    fn couplers_that_differ_by_a_few_steps_are_couplers_too() {
+        for more in 0..300 {
+            let bars = Bars::new(12_800, 12_800 + more);
+            for tips_sq in [1 << 20, 1 << 24, 1 << 27] {
+                let lean = bars.couplers().at(tips_sq).expect("closes");
+                let [rise, _] =
+                    truth(12_800.0, 12_800.0 + f64::from(more), tips_sq).expect("closes");
+                let off = f64::from(lean.rise) / 1024.0 - rise;
+                assert!(
+                    off.abs() <= 0.002 * rise.max(1.0),
+                    "{more}: {off} of {rise}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_loop_is_near_stretched_beyond_three_quarters_of_its_squared_reach() {
+        let reach = reach_sq(20_000, 30_000);
+        let limit = reach - reach / 4;
+        assert!(!Couplers::is_near_stretched(20_000, 30_000, limit));
+        assert!(Couplers::is_near_stretched(20_000, 30_000, limit + 1));
+    }
+}

@@ -76,13 +76,101 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The argument that an entry of a table is for, where `largest` is the largest.
+/// The argument that an entry of a table is for, where `largest` is the largest;
+/// rounded down, which only a `largest` below 16384 ever needs.
 pub const fn argument(largest: u32, index: usize) -> u64 {
-    let first = 31 - lowest(largest) as usize;
-    ((STEPS + index % STEPS) as u64) << (first + index / STEPS) >> 4
+    let (lowest, place) = (lowest(largest) as usize, 31 + index / STEPS);
+    if place < lowest {
+        return 0;
+    }
+    ((STEPS + index % STEPS) as u64) << (place - lowest) >> 4
 }
 
 /// Leading zeros of an argument in the first octave.
 const fn lowest(largest: u32) -> u8 {
     (largest.leading_zeros() + OCTAVES) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lizard_avr::Flash;
+    use proptest::prelude::*;
+
+    /// What a table holds for a function of the argument's share of the largest.
+    fn table(largest: u32, function: impl Fn(f64) -> f64) -> Table {
+        core::array::from_fn(|index| {
+            let share = argument(largest, index) as f64 / f64::from(largest);
+            function(share).round().clamp(-32767.0, 32767.0) as i16
+        })
+    }
+
+    /// Falling functions that fill the table: a logarithm, a root with its sign
+    /// changed, a straight line.
+    const FUNCTIONS: [fn(f64) -> f64; 3] = [
+        |u| -2900.0 * u.log2(),
+        |u| -20_000.0 * u.sqrt(),
+        |u| 10_000.0 - 12_000.0 * u,
+    ];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn a_curve_follows_its_function_in_every_octave(
+            largest in (10u32..32, any::<u32>())
+                .prop_map(|(bits, low)| (1 << bits) | (low & ((1 << bits) - 1))),
+            octave in 0u32..=OCTAVES,
+            part in 0.5..=1.0f64,
+            which in 0usize..3,
+        ) {
+            let function = FUNCTIONS[which];
+            let table = table(largest, function);
+            let curve = Curve::new(Flash::from(&table), largest);
+            let argument = (f64::from(largest >> octave) * part) as u32;
+            if argument < (largest >> OCTAVES).max(1) {
+                return Ok(());
+            }
+            let exact = function(f64::from(argument) / f64::from(largest));
+            let got = f64::from(curve.at(argument).expect("within its octaves"));
+            // A step of a sixteenth bends the logarithm by 2.2; two roundings.
+            prop_assert!((got - exact).abs() <= 4.0, "{argument} of {largest}: {got}, {exact}");
+        }
+
+        #[test]
+        fn an_entry_is_met_exactly_at_its_argument(
+            // Below, sixteen steps of the first octaves are not all whole numbers.
+            largest in 1u32 << 14..,
+            index in 0..ENTRIES,
+        ) {
+            let table: Table = core::array::from_fn(|index| 5000 - 50 * index as i16);
+            let curve = Curve::new(Flash::from(&table), largest);
+            let at = argument(largest, index);
+            if (u64::from(largest >> OCTAVES)..=largest.into()).contains(&at) {
+                prop_assert_eq!(curve.at(at as u32), Some(table[index]));
+            }
+        }
+    }
+
+    #[test]
+    fn below_its_first_octave_and_at_nothing_a_curve_has_no_value() {
+        let table = [7; ENTRIES];
+        for largest in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
+            let curve = Curve::new(Flash::from(&table), largest);
+            let least = largest >> OCTAVES;
+            assert_eq!(curve.at(0), None);
+            assert_eq!(curve.at(least.saturating_sub(1)), None);
+            assert_eq!(curve.at(least.max(1)), Some(7));
+        }
+    }
+
+    #[test]
+    fn a_table_of_the_smallest_functions_can_be_made() {
+        for largest in [0, 1, 100, 1023, 1024] {
+            for index in 1..ENTRIES {
+                let (before, here) = (argument(largest, index - 1), argument(largest, index));
+                assert!(before <= here && before <= 2 * u64::from(largest));
+            }
+        }
+    }
 }

@@ -162,3 +162,105 @@ fn saturate(margin: i32) -> i16 {
 pub(crate) fn upper(product: i32) -> i16 {
     (product.wrapping_add(0x8000) >> 16) as i16
 }
+
+#[cfg(test)]
+mod tests {
+    use lizard_kinematics as kinematics;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{Loop, degrees, sine};
+    use crate::units::Angle;
+
+    /// Any bars, mm, whose couplers are long enough beside the rest.
+    fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
+        let crank = || 1.0..100.0f64;
+        let coupler = || 5.0..120.0f64;
+        let unequal = (0.0..100.0f64, crank(), coupler(), coupler(), crank()).prop_map(
+            |(base, crank_left, coupler_left, coupler_right, crank_right)| kinematics::FiveBar {
+                base,
+                crank_left,
+                coupler_left,
+                coupler_right,
+                crank_right,
+            },
+        );
+        (unequal, 0u8..3)
+            .prop_map(|(bars, alike)| {
+                let coupler_right = match alike {
+                    0 => bars.coupler_left,
+                    1 => bars.coupler_left + bars.base / 500.0,
+                    _ => bars.coupler_right,
+                };
+                kinematics::FiveBar {
+                    coupler_right,
+                    ..bars
+                }
+            })
+            .prop_filter("long couplers", |bars| Loop::new(bars).is_some())
+    }
+
+    fn margins(bars: &Loop, left: Angle, right: Angle) -> EndMargins {
+        let [left, right] = [left, right].map(Direction::of);
+        bars.five_bar().margins(left, right)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn the_margins_are_those_of_the_real_linkage_whatever_its_bars(
+            bars in bars(),
+            left: u16,
+            right: u16,
+        ) {
+            let [left, right] = [left, right].map(Angle);
+            let integers = Loop::new(&bars).expect("fits");
+            let got = margins(&integers, left, right);
+            let Ok(pose) = bars.forward(degrees(left), degrees(right)) else {
+                // Couplers that almost meet may do so in whole steps.
+                prop_assert!(sine(got.type2).abs() < 0.15, "{got:?}");
+                return Ok(());
+            };
+            if pose.type2 < 0.1 {
+                return Ok(());
+            }
+            prop_assert_ne!(got, EndMargins::default());
+            // A short coupler has few steps, and couplers of unlike lengths multiply
+            // what the rise is off by.
+            let couplers = [integers.couplers.left, integers.couplers.right].map(f64::from);
+            let short = couplers[0].min(couplers[1]) / LONGEST;
+            let ratio = couplers[0].max(couplers[1]) / (short * LONGEST);
+            let (type2, type1) = (0.001 + 0.0015 / short, 0.001 + 0.0007 * ratio.sqrt() / short);
+            let off = sine(got.type2).abs() - pose.type2;
+            prop_assert!(off.abs() <= type2, "type-2 off by {off}");
+            if pose.gap.x.abs() > 0.002 * (bars.base + bars.crank_left + bars.crank_right) {
+                prop_assert_eq!(got.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", got, pose);
+            }
+            let off = sine(got.type1_left) - pose.type1_left();
+            prop_assert!(off.abs() <= type1, "type-1 of the left crank off by {off}");
+            let off = sine(got.type1_right) - pose.type1_right();
+            prop_assert!(off.abs() <= type1, "type-1 of the right crank off by {off}");
+        }
+    }
+
+    #[test]
+    fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
+        let bars = kinematics::FiveBar {
+            base: 20.0,
+            crank_left: 30.0,
+            coupler_left: 40.0,
+            coupler_right: 35.0,
+            crank_right: 30.0,
+        };
+        let bars = Loop::new(&bars).expect("fits");
+        let at = |left, right| {
+            let [left, right] = [left, right].map(Angle::from_centideg);
+            margins(&bars, left, right)
+        };
+        // Both cranks outwards: 80 mm apart, more than the couplers reach.
+        assert_eq!(at(18_000, 0), EndMargins::default());
+        // Leaning over each other: the couplers close the loop upside down.
+        assert!(at(6_000, 12_000).type2 < Sine(0));
+    }
+}

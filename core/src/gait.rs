@@ -158,3 +158,155 @@ impl Channel {
         Sweep((mul(value, self.gain).wrapping_add(1 << 13) >> 14) as i16)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{GAITS, Sample};
+
+    const FULL: u16 = 1024;
+
+    fn wave(samples: impl Fn(usize) -> i16) -> Wave {
+        core::array::from_fn(samples)
+    }
+
+    /// A channel that reads a waveform as it is.
+    const PLAIN: Channel = Channel {
+        wave: 0,
+        offset: 0,
+        gain: 1 << 14,
+    };
+
+    proptest! {
+        #[test]
+        fn between_two_samples_a_sweep_is_on_the_straight_line(
+            samples in prop::collection::vec(-16_000i16..16_000, SAMPLES),
+            channel in (any::<u16>(), any::<i16>()),
+            phase: u16,
+        ) {
+            let (offset, gain) = channel;
+            let channel = Channel { wave: 0, offset, gain };
+            let table = wave(|n| samples[n]);
+            let got = f64::from(channel.sweep(Flash::from(&table), phase).0);
+            let at = f64::from(phase.wrapping_add(offset)) / 512.0;
+            let (here, next) = (samples[at as usize], samples[(at as usize + 1) % SAMPLES]);
+            let rise = f64::from(next) - f64::from(here);
+            let factor = f64::from(gain) / 16384.0;
+            let exact = factor * (f64::from(here) + rise * at.fract());
+            // Half a step before the gain, half after it, and the phase's last bit.
+            let most = 0.5 + factor.abs() * (0.5 + rise.abs() / 512.0);
+            prop_assume!(exact.abs() < 32_000.0);
+            prop_assert!((got - exact).abs() <= most, "{got} for {exact}");
+        }
+
+        #[test]
+        fn a_cycle_at_any_pace_is_one_way_and_within_the_cycle(
+            increment in -400_000i32..400_000,
+            pace in 0..=FULL,
+            phase in 0..CYCLE,
+        ) {
+            let gait = Gait { increment, ..Gait::STILL };
+            let next = gait.advance(phase, pace);
+            prop_assert!(next < CYCLE);
+            let exact = f64::from(increment) * f64::from(pace) / 1024.0;
+            let gone = (i64::from(next) - i64::from(phase)).rem_euclid(CYCLE.into());
+            let off = (gone as f64 - exact).rem_euclid(f64::from(CYCLE));
+            prop_assert!(off < 1e-6 || off > f64::from(CYCLE) - 1.0, "{off}");
+        }
+    }
+
+    #[test]
+    fn every_sample_is_met_in_its_turn_and_the_first_follows_the_last() {
+        let table = wave(|n| 100 * n as i16 - 3000);
+        for n in 0..SAMPLES {
+            let sweep = PLAIN.sweep(Flash::from(&table), (n << 9) as u16);
+            assert_eq!(sweep, Sweep(table[n]));
+        }
+        let half_past_the_last = PLAIN.sweep(Flash::from(&table), 0xff00);
+        assert_eq!(half_past_the_last.0, (table[127] + table[0]) / 2);
+    }
+
+    #[test]
+    fn halves_round_up_between_samples_and_in_the_gain() {
+        let table = wave(|n| [0, 1, 0, -1][n % 4]);
+        let at = |phase, gain| {
+            Channel { gain, ..PLAIN }
+                .sweep(Flash::from(&table), phase)
+                .0
+        };
+        assert_eq!([at(0x00fe, 1 << 14), at(0x0100, 1 << 14)], [0, 1]);
+        assert_eq!([at(0x0500, 1 << 14), at(0x0502, 1 << 14)], [0, -1]);
+        assert_eq!([at(0x0200, 8191), at(0x0200, 8192)], [0, 1]);
+        assert_eq!([at(0x0600, 8192), at(0x0600, 8193)], [0, -1]);
+    }
+
+    #[test]
+    fn an_offset_reads_ahead_and_a_negative_gain_turns_the_sense() {
+        let robot = Sample::odd();
+        let table = Flash::from(&robot.waves[1]);
+        for phase in (0..=u16::MAX).step_by(97) {
+            let ahead = Channel {
+                offset: 0x1800,
+                ..PLAIN
+            };
+            let plain = PLAIN.sweep(table, phase.wrapping_add(0x1800));
+            assert_eq!(ahead.sweep(table, phase), plain);
+            let other = Channel {
+                gain: -(1 << 14),
+                ..ahead
+            };
+            assert_eq!(other.sweep(table, phase), Sweep(-plain.0));
+            let still = Channel { gain: 0, ..ahead };
+            assert_eq!(still.sweep(table, phase), Sweep(0));
+        }
+    }
+
+    #[test]
+    fn a_pose_reads_every_servos_own_channel_of_its_own_waveform() {
+        let robot = Sample::odd();
+        for gait in &robot.gaits {
+            for phase in (0..CYCLE).step_by(99_991) {
+                let pose = gait.pose(&robot, phase);
+                for (sweep, channel) in pose.0.iter().zip(&gait.channels) {
+                    let table = Flash::from(&robot.waves[usize::from(channel.wave)]);
+                    assert_eq!(*sweep, channel.sweep(table, (phase >> 8) as u16));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_gait_with_a_negative_increment_is_read_backwards() {
+        let robot = Sample::odd();
+        let [there, back] = ["sway", "back"].map(|name| robot.gait(robot.id(name)));
+        let mut phases = Vec::from([0]);
+        for frame in 0..50 {
+            phases.push(there.advance(phases[frame], FULL));
+        }
+        let mut phase = phases[50];
+        for before in phases.iter().rev() {
+            assert_eq!(phase, *before);
+            phase = back.advance(phase, FULL);
+        }
+        assert_eq!(back.advance(0, FULL), CYCLE - there.advance(0, FULL));
+    }
+
+    #[test]
+    fn names_and_numbers_of_gaits_go_together() {
+        let robot = Sample::odd();
+        let ids: Vec<GaitId> = GaitId::all(&robot).collect();
+        assert_eq!(ids.len(), GAITS.len());
+        assert_eq!(ids[0], GaitId::STAND);
+        for (place, id) in ids.iter().enumerate() {
+            assert_eq!(id.index(), place);
+            assert_eq!(id.next(&robot), ids.get(place + 1).copied());
+            let name = robot.name(*id);
+            assert_eq!(usize::from(name.length()), GAITS[place].len());
+            assert!(name.eq(GAITS[place].bytes()));
+        }
+    }
+}

@@ -66,8 +66,7 @@ impl Clearance {
         let (rear_right, rear_left) = (a3.in_tail_frame(), a4.in_tail_frame());
         let cranks = [[a1, a2], [rear_left, rear_right]];
         let mut ends = [EndMargins::default(); 2];
-        for (margins, (end, [left, right])) in
-            ends.iter_mut().zip(End::ALL.into_iter().zip(cranks))
+        for (margins, (end, [left, right])) in ends.iter_mut().zip(End::ALL.into_iter().zip(cranks))
         {
             *margins = robot.end(end).margins(left, right);
         }
@@ -127,5 +126,204 @@ impl Clearance {
             }
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use lizard_kinematics as kinematics;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{Sample, per_mm, sine};
+    use crate::slider::Slider;
+    use crate::units::Sweep;
+
+    /// What margins of robots of ordinary proportions may be off by, and slider
+    /// lengths (mm).
+    const MARGIN: f64 = 0.008;
+    const LENGTH: f64 = 0.08;
+
+    /// Random robots with a random pose each.
+    fn posed() -> impl Strategy<Value = (Sample, Pose)> {
+        Sample::random().prop_flat_map(|robot| {
+            let pose = robot.pose();
+            (Just(robot), pose)
+        })
+    }
+
+    /// Whether the truth is clear of all its limits by more than the errors, or
+    /// beyond one of them; None in between.
+    fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
+        let Some(solution) = robot.solve(pose) else {
+            return Some(false);
+        };
+        let limits = |by: f64, mm: f64| kinematics::Limits {
+            type2: robot.measures.limits.type2 + by,
+            type1: robot.measures.limits.type1 + by,
+            leg: robot.measures.limits.leg + by,
+            stroke_min: robot.measures.limits.stroke_min + mm,
+            stroke_max: robot.measures.limits.stroke_max - mm,
+        };
+        if limits(MARGIN, LENGTH).allow(&solution) {
+            Some(true)
+        } else if !limits(-MARGIN, -LENGTH).allow(&solution) {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn every_margin_and_slider_is_measured_with_its_own_bars_and_servos(
+            (robot, pose) in posed(),
+        ) {
+            let got = Clearance::of(&robot, &pose);
+            let Some(truth) = robot.solve(&pose) else {
+                return Ok(());
+            };
+            let ends = [kinematics::End::Head, kinematics::End::Tail];
+            for (place, (what, exact)) in truth.margins.iter().enumerate() {
+                let end = match place {
+                    0 | 1 => ends[place],
+                    place => kinematics::End::of_servo((place - 2) % 4),
+                };
+                let bars = truth.end(end);
+                let is_leg = place >= 6;
+                if !is_leg && bars.type2 < 0.1 {
+                    continue;
+                }
+                let crossed = place < 2 && bars.gap.x < 0.0;
+                if place < 2 && bars.gap.x.abs() < 0.2 {
+                    continue;
+                }
+                let exact = if crossed { -exact } else { exact };
+                let off = sine(got.margins[place]) - exact;
+                prop_assert!(off.abs() <= MARGIN, "{what} is off by {off}");
+            }
+            for (place, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
+                let length = f64::from(got.sliders_sq[place]).sqrt();
+                let off = length / per_mm(robot.sides[place].scale) - exact;
+                prop_assert!(off.abs() <= LENGTH, "slider {place} is off by {off}");
+            }
+        }
+
+        #[test]
+        fn the_decision_is_that_of_floating_point(
+            (robot, pose) in posed(),
+        ) {
+            if let Some(safe) = truth(&robot, &pose) {
+                let hazard = Clearance::of(&robot, &pose).hazard(&robot);
+                prop_assert_eq!(hazard.is_none(), safe, "{:?}", hazard);
+            }
+        }
+    }
+
+    /// A robot and a clearance that has something to spare at every place.
+    fn clear() -> (Sample, Clearance) {
+        let robot = Sample::odd();
+        let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
+        assert_eq!(clearance.hazard(&robot), None);
+        (robot, clearance)
+    }
+
+    /// The ten margins by name and limit, in the order in which they are checked.
+    fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
+        use Servo::{A1, A2, A3, A4};
+        [
+            (Margin::Type2(End::Head), limits.type2),
+            (Margin::Type2(End::Tail), limits.type2),
+            (Margin::Type1(A1), limits.type1),
+            (Margin::Type1(A2), limits.type1),
+            (Margin::Type1(A3), limits.type1),
+            (Margin::Type1(A4), limits.type1),
+            (Margin::Leg(A1), limits.leg),
+            (Margin::Leg(A2), limits.leg),
+            (Margin::Leg(A3), limits.leg),
+            (Margin::Leg(A4), limits.leg),
+        ]
+    }
+
+    #[test]
+    fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
+        let (robot, clear) = clear();
+        for (place, (margin, limit)) in margins(&robot.limits).into_iter().enumerate() {
+            let mut at = clear;
+            at.margins[place] = limit;
+            assert_eq!(at.hazard(&robot), None, "{margin:?}");
+            let value = Sine(limit.0 - 1);
+            at.margins[place] = value;
+            assert_eq!(at.hazard(&robot), Some(Hazard::Margin { margin, value }));
+        }
+    }
+
+    #[test]
+    fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
+        let (robot, clear) = clear();
+        for (place, side) in Side::ALL.into_iter().enumerate() {
+            let Slider { min, max, .. } = robot.sides[place];
+            for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)]
+            {
+                let mut at = clear;
+                at.sliders_sq[place] = u32::from(length) * u32::from(length);
+                let expected = (!allowed).then_some(Hazard::Stroke { side, length });
+                assert_eq!(at.hazard(&robot), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn of_several_hazards_the_first_is_told_margins_before_strokes() {
+        let (robot, mut clearance) = clear();
+        let mut expected: Vec<Hazard> = Vec::new();
+        for (place, side) in Side::ALL.into_iter().enumerate().rev() {
+            clearance.sliders_sq[place] = 100;
+            expected.push(Hazard::Stroke { side, length: 10 });
+            assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
+        }
+        for (place, (margin, _)) in margins(&robot.limits).into_iter().enumerate().rev() {
+            let value = Sine(-1);
+            clearance.margins[place] = value;
+            expected.push(Hazard::Margin { margin, value });
+            assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
+        }
+    }
+
+    #[test]
+    fn the_smallest_margin_is_found_at_every_place() {
+        let (_, clear) = clear();
+        for place in 0..10 {
+            let mut clearance = clear;
+            clearance.margins[place] = Sine(-20_000 + place as i16);
+            assert_eq!(clearance.smallest(), Sine(-20_000 + place as i16));
+        }
+    }
+
+    #[test]
+    fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
+        let robot = Sample::odd();
+        for servo in 0..4 {
+            // Beyond the x axis of the chassis: where the end's own y is negative.
+            let neutral = f64::from(robot.neutral[servo].0) * 360.0 / 65536.0;
+            let axis = if (90.0..270.0).contains(&neutral) {
+                180.0
+            } else {
+                360.0
+            };
+            let axis = if neutral < 90.0 { 0.0 } else { axis };
+            for (aside, positive) in [(-2.0f64, false), (2.0, true)] {
+                let towards = (neutral - axis).signum();
+                let turned = axis + aside * towards - neutral;
+                let mut pose = Pose::NEUTRAL;
+                pose.0[servo] = Sweep((turned * 65536.0 / 360.0) as i16);
+                let margin = Clearance::of(&robot, &pose).margins[6 + servo];
+                assert_eq!(margin > Sine(0), positive, "A{} {margin:?}", servo + 1);
+            }
+        }
     }
 }

@@ -42,6 +42,8 @@ pub mod point_to_point;
 pub mod pose;
 pub mod robot;
 pub mod root;
+#[cfg(test)]
+mod sample;
 pub mod slider;
 pub mod step;
 pub mod text;

@@ -340,8 +340,11 @@ fn toward(pace: u16, wanted: u16) -> u16 {
         .min(pace + PACE_STEP)
 }
 
-/// Percent as a pace, to nearest, so that the slowest is within half a percent
-/// of itself: 2622/256 is 1024/100 to four digits.
+/// Percent as a pace: 2622/256 is 1024/100 to four digits. Off by less than one, so
+/// that the slowest pace is within one percent of itself.
 fn pace_of(percent: u8) -> u16 {
     ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
 }
+
+#[cfg(test)]
+mod tests;

@@ -58,3 +58,16 @@ impl Side {
     /// Both, the left one first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_servo_is_at_its_place_and_the_last_one_past_the_end() {
+        for place in 0..4 {
+            assert_eq!(Servo::at(place).index(), place);
+        }
+        assert_eq!([4, 255].map(Servo::at), [Servo::A4; 2]);
+    }
+}

@@ -68,3 +68,63 @@ impl Pose {
         most
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::robot::Robot;
+    use crate::sample::Sample;
+
+    fn posed() -> impl Strategy<Value = (Sample, Pose)> {
+        Sample::random().prop_flat_map(|robot| {
+            let pose = robot.pose();
+            (Just(robot), pose)
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in posed()) {
+            let angles = pose.angles(&robot.neutral());
+            prop_assert_eq!(Pose::at(&angles, &robot.neutral(), &robot.calibration()), Ok(pose));
+        }
+
+        #[test]
+        fn the_first_servo_that_does_not_reach_its_angle_is_named(
+            (robot, mut pose) in posed(),
+            beyond: [bool; 4],
+        ) {
+            for (place, beyond) in beyond.into_iter().enumerate() {
+                if beyond {
+                    pose.0[place] = Sweep(robot.calibration[place].max.0 + 1);
+                }
+            }
+            let angles = pose.angles(&robot.neutral());
+            let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
+            let got = Pose::at(&angles, &robot.neutral(), &robot.calibration());
+            prop_assert_eq!(got.err(), first);
+        }
+
+        #[test]
+        fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in posed()) {
+            let pulses = pose.pulses(&robot.calibration());
+            for place in 0..4 {
+                let width = robot.calibration[place].width(pose.0[place]);
+                prop_assert_eq!(pulses.0[place], width);
+            }
+        }
+
+        #[test]
+        fn the_farthest_way_is_that_of_any_servo_either_way(
+            from: [i16; 4],
+            to: [i16; 4],
+        ) {
+            let ways = (0..4).map(|place| from[place].abs_diff(to[place]));
+            let [from, to] = [from, to].map(|sweeps| Pose(sweeps.map(Sweep)));
+            prop_assert_eq!(Some(from.farthest(&to)), ways.max());
+            prop_assert_eq!(from.farthest(&to), to.farthest(&from));
+        }
+    }
+}

@@ -102,3 +102,41 @@ impl<R: Robot + ?Sized> Robot for &R {
         (**self).hash()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::sample::{GAITS, Sample};
+
+    /// What a robot's gaits are called, by the trait alone.
+    fn names<R: Robot>(robot: R) -> Vec<Vec<u8>> {
+        GaitId::all(&robot)
+            .map(|id| robot.name(id).collect())
+            .collect()
+    }
+
+    #[test]
+    fn a_reference_to_a_robot_is_that_robot() {
+        let robot = Sample::odd();
+        let reference = &robot;
+        assert_eq!(names(reference), GAITS.map(|name| name.as_bytes().to_vec()));
+        for (place, side) in Side::ALL.into_iter().enumerate() {
+            assert_eq!((&reference).side(side), robot.sides[place]);
+        }
+        assert_eq!((&reference).limits(), robot.limits);
+        assert_eq!((&reference).slew(), robot.slew);
+        assert_eq!((&reference).neutral(), robot.neutral);
+        assert_eq!((&reference).calibration(), robot.calibration);
+        assert_eq!((&reference).hash(), robot.hash);
+    }
+
+    #[test]
+    fn a_gait_is_fetched_by_its_place() {
+        let robot = Sample::odd();
+        for (id, gait) in GaitId::all(&robot).zip(&robot.gaits) {
+            assert_eq!(robot.gait(id), *gait);
+        }
+    }
+}

@@ -11,8 +11,8 @@ use crate::five_bar::upper;
 use crate::trig::Direction;
 use crate::units::Scale;
 
-/// The longest that a side may be, in steps: the chassis and both arms; and the
-/// slider.
+/// The longest that a side may be, in steps: the chassis, both arms and the offset
+/// together; and the slider.
 pub const LONGEST: f64 = 255.0 * 256.0;
 
 /// The longest that both arms and the offset may be together, in steps: what they
@@ -73,5 +73,105 @@ impl Slider {
     pub fn travel(&self, length: u16) -> i32 {
         self.scale
             .hundredths(i32::from(length) - i32::from(self.nominal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_kinematics as kinematics;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{degrees, per_mm, side_of};
+    use crate::units::Angle;
+
+    /// A side of any robot that hobby servos move, mm.
+    fn sides() -> impl Strategy<Value = kinematics::Slider> {
+        (
+            1.0..300.0f64,
+            1.0..100.0f64,
+            1.0..100.0f64,
+            -40.0..40.0f64,
+            50.0..200.0f64,
+        )
+            .prop_map(|(base, front, rear, offset, nominal)| kinematics::Slider {
+                offset,
+                base,
+                front,
+                rear,
+                nominal,
+            })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+
+        #[test]
+        fn the_length_is_the_distance_of_the_arm_tips(
+            side in sides(),
+            front: u16,
+            rear: u16,
+            mirrored: bool,
+        ) {
+            let integers = side_of(&side, -10.0, 10.0);
+            let [front, rear] = [front, rear].map(Angle);
+            // Cranks in the frame of their end; the slider's rear one in the tail's.
+            let got = if mirrored {
+                let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
+                integers.mirrored().length_sq(front, rear)
+            } else {
+                integers.length_sq(Direction::of(front), Direction::of(rear))
+            };
+            let (of, turn) = if mirrored {
+                (kinematics::Side::Right, -90.0)
+            } else {
+                (kinematics::Side::Left, 90.0)
+            };
+            prop_assert_eq!(of.sign() * 90.0, turn);
+            let pose = side.forward(-degrees(rear) - turn, degrees(front) + turn).expect("a length");
+            let mm = f64::from(got).sqrt() / per_mm(integers.scale);
+            // Six lengths, each rounded to a step, and sines of 4.5e-5.
+            let most = 6.0 / per_mm(integers.scale) + 1e-4 * (side.front + side.rear);
+            prop_assert!((mm - pose.d).abs() <= most, "{mm} for {} mm", pose.d);
+        }
+
+        #[test]
+        fn the_travel_is_told_from_nominal_in_hundredths_of_a_millimetre(
+            side in sides(),
+            length: u16,
+        ) {
+            let side = side_of(&side, -10.0, 10.0);
+            let exact = (f64::from(length) - f64::from(side.nominal)) * 100.0 / per_mm(side.scale);
+            prop_assert!((f64::from(side.travel(length)) - exact).abs() <= 0.5);
+        }
+
+        #[test]
+        fn a_stroke_has_its_ends_and_not_a_step_more(
+            min in 1u16..60_000,
+            more in 1u16..5_000,
+        ) {
+            let max = min + more;
+            let side = Slider { min, max, ..side_of(&a_side(), -10.0, 10.0) };
+            let square = |length: u16| u32::from(length) * u32::from(length);
+            prop_assert!(side.allows(square(min)) && side.allows(square(max)));
+            prop_assert!(!side.allows(square(min) - 1) && !side.allows(square(max) + 1));
+        }
+    }
+
+    fn a_side() -> kinematics::Slider {
+        kinematics::Slider {
+            offset: 3.0,
+            base: 141.0,
+            front: 28.0,
+            rear: 33.0,
+            nominal: 91.0,
+        }
+    }
+
+    #[test]
+    fn a_mirrored_side_is_itself_again_and_only_its_offset_changes_sign() {
+        let side = side_of(&a_side(), -10.0, 10.0);
+        assert_eq!(side.mirrored().offset, -side.offset);
+        assert_eq!(side.mirrored().mirrored(), side);
     }
 }

@@ -91,3 +91,50 @@ const fn quarter_wave() -> [i16; STEPS + 1] {
     table[STEPS] = i16::MAX;
     table
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::{degrees, sine};
+    use crate::units::Sine;
+
+    #[test]
+    fn sine_and_cosine_are_within_4_5e_5_at_every_angle() {
+        let (mut most, mut length) = (0.0f64, 0.0f64);
+        for angle in (0..=u16::MAX).map(Angle) {
+            let direction = Direction::of(angle);
+            let got = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
+            let (sin, cos) = degrees(angle).to_radians().sin_cos();
+            most = most.max((got[0] - sin).abs()).max((got[1] - cos).abs());
+            length = length.max((got[0].hypot(got[1]) - 1.0).abs());
+        }
+        assert!(most <= 4.5e-5, "{most}");
+        assert!(length <= 6e-5, "{length}");
+    }
+
+    #[test]
+    fn the_four_right_angles_are_exact() {
+        let one = i16::MAX;
+        for (angle, sin, cos) in [
+            (0, 0, one),
+            (0x4000, one, 0),
+            (0x8000, 0, -one),
+            (0xc000, -one, 0),
+        ] {
+            assert_eq!(Direction::of(Angle(angle)), Direction { sin, cos });
+        }
+    }
+
+    #[test]
+    fn quadrants_and_mirror_images_agree_to_the_bit() {
+        for angle in 0..=u16::MAX {
+            let here = Direction::of(Angle(angle));
+            let quarter_on = Direction::of(Angle(angle.wrapping_add(0x4000)));
+            assert_eq!((quarter_on.cos, quarter_on.sin), (-here.sin, here.cos));
+            let mirrored = Direction::of(Angle(0x8000u16.wrapping_sub(angle)));
+            assert_eq!(here.mirrored(), mirrored);
+            let below = Direction::of(Angle(angle.wrapping_neg()));
+            assert_eq!(here.in_tail_frame(), below);
+        }
+    }
+}

@@ -138,3 +138,94 @@ pub const fn phase16(phase: u32) -> u16 {
 pub fn thousandths_from_phase(phase: u32) -> u16 {
     (mul_unsigned(phase16(phase), 1000) >> 16) as u16
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The distance of two angles, deg, the short way round.
+    fn apart(a: f64, b: f64) -> f64 {
+        let off = (a - b).rem_euclid(360.0);
+        off.min(360.0 - off)
+    }
+
+    fn degrees(angle: Angle) -> f64 {
+        f64::from(angle.0) * 360.0 / 65536.0
+    }
+
+    #[test]
+    fn an_angle_of_the_console_is_within_seven_tenths_of_a_step() {
+        for centideg in -71_999..72_000 {
+            let angle = Angle::from_centideg(centideg);
+            let off = apart(degrees(angle), f64::from(centideg) / 100.0);
+            // Half a step is 0.0027 deg.
+            assert!(off <= 0.004, "{centideg}: {off} deg");
+        }
+    }
+
+    #[test]
+    fn every_hundredth_of_a_degree_comes_back_as_it_went() {
+        for centideg in 0..36_000u16 {
+            let angle = Angle::from_centideg(centideg.into());
+            assert_eq!(angle.centideg(), centideg);
+        }
+    }
+
+    #[test]
+    fn every_angle_is_told_to_the_nearest_hundredth_of_a_degree() {
+        for angle in (0..=u16::MAX).map(Angle) {
+            let centideg = angle.centideg();
+            assert!(centideg < 36_000);
+            let off = apart(f64::from(centideg) / 100.0, degrees(angle));
+            assert!(off <= 0.005 + 1e-9, "{angle:?}: {off}");
+        }
+    }
+
+    #[test]
+    fn a_sweep_leads_from_one_angle_to_the_other_and_counts_counter_clockwise() {
+        for from in (0..=u16::MAX).step_by(771).map(Angle) {
+            for sweep in (i16::MIN..=i16::MAX).map(Sweep) {
+                assert_eq!(from.sweep_to(from.swept(sweep)), sweep);
+            }
+        }
+        assert_eq!(Angle(0xffff).swept(Sweep(2)), Angle(1));
+        assert_eq!(Angle(1).sweep_to(Angle(0xffff)), Sweep(-2));
+    }
+
+    #[test]
+    fn every_margin_is_told_to_the_nearest_thousandth() {
+        for raw in i16::MIN..=i16::MAX {
+            let exact = f64::from(raw) * 1000.0 / 32768.0;
+            let told = f64::from(Sine(raw).thousandths());
+            assert!((told - exact).abs() <= 0.5, "{raw}: {told}");
+        }
+    }
+
+    #[test]
+    fn every_length_in_every_scale_is_told_to_the_nearest_hundredth_of_a_millimetre() {
+        for bits in 0..=14 {
+            let scale = Scale { bits };
+            for length in (-65_535..=65_535)
+                .step_by(7)
+                .chain([-65_535, -1, 0, 1, 65_535])
+            {
+                let exact = f64::from(length) * 100.0 / f64::from(1 << bits);
+                let told = f64::from(scale.hundredths(length));
+                assert!((told - exact).abs() <= 0.5, "{length} at {bits}: {told}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_phase_is_told_in_thousandths_rounded_down_so_that_none_is_a_whole_cycle() {
+        for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
+            let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
+            let told = thousandths_from_phase(phase);
+            // Tables and the console see the first sixteen bits.
+            let below = exact - f64::from(told);
+            assert!((0.0..1.0 + 1000.0 / 65536.0).contains(&below), "{phase}");
+            assert!(told < 1000);
+            assert_eq!(u32::from(phase16(phase)), phase / 256);
+        }
+    }
+}
