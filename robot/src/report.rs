@@ -81,8 +81,9 @@ impl fmt::Display for Report {
             self.flash,
             self.hash
         )?;
-        f.write_str("              cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg\n")?;
-        f.write_str("gait              s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn\n")?;
+        let width = widest(self.rows.iter().map(|row| row.name.as_str()));
+        writeln!(f, "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg", "")?;
+        writeln!(f, "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn", "gait")?;
         for row in &self.rows {
             let Row {
                 name,
@@ -93,7 +94,7 @@ impl fmt::Display for Report {
             } = row;
             write!(
                 f,
-                "{name:<12} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
+                "{name:<width$} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
                 audit.peak.speed,
                 NAMES[audit.peak.servo],
                 error.max,
@@ -117,6 +118,11 @@ impl fmt::Display for Report {
         }
         Ok(())
     }
+}
+
+/// Width of a column that holds these names.
+pub(crate) fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    names.map(str::len).fold(12, usize::max)
 }
 
 /// A part of a prediction with its sign; a dash where it is undecided.

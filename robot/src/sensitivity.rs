@@ -4,7 +4,7 @@
 use std::fmt;
 
 use crate::ground::{Feet, Ground, Prediction};
-use crate::report::{UNDECIDED, known};
+use crate::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
 /// Friction backward over forward: even pads, pads that grip when pushed back,
@@ -63,21 +63,22 @@ impl Sensitivity {
 impl fmt::Display for Sensitivity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("One cycle: mm ahead, and deg counter-clockwise where it turns.\n\n")?;
-        write!(f, "{:<12}", "friction")?;
+        let width = widest(self.rows.iter().map(|row| row.name.as_str()));
+        write!(f, "{:<width$}", "friction")?;
         RATIOS
             .iter()
             .try_for_each(|ratio| write!(f, "{ratio:>15}"))?;
         f.write_str("\n")?;
         for row in &self.rows {
-            line(f, &row.name, &row.ratios)?;
+            line(f, width, &row.name, &row.ratios)?;
         }
-        write!(f, "\n{:<12}", "mount, deg")?;
+        write!(f, "\n{:<width$}", "mount, deg")?;
         MOUNTS
             .iter()
             .try_for_each(|mount| write!(f, "{mount:>15}"))?;
         f.write_str("\n")?;
         for row in &self.rows {
-            line(f, &row.name, &row.mounts)?;
+            line(f, width, &row.name, &row.mounts)?;
         }
         let mut all = self
             .rows
@@ -90,8 +91,8 @@ impl fmt::Display for Sensitivity {
     }
 }
 
-fn line(f: &mut fmt::Formatter, name: &str, ways: &[Prediction]) -> fmt::Result {
-    let mut line = format!("{name:<12}");
+fn line(f: &mut fmt::Formatter, width: usize, name: &str, ways: &[Prediction]) -> fmt::Result {
+    let mut line = format!("{name:<width$}");
     for way in ways {
         let turn = match way.turn {
             Some(turn) if turn.abs() < 0.05 => String::new(),
