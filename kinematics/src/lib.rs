@@ -37,6 +37,7 @@ extern crate self as lizard_kinematics;
 
 mod angle;
 mod conditioning;
+mod conditions;
 mod constraints;
 mod end;
 mod fault;

@@ -2,11 +2,6 @@
 
 use core::fmt;
 
-use crate::end::End;
-use crate::five_bar::FiveBarPose;
-use crate::leg;
-use crate::lizard::Solution;
-
 /// A condition that a limit is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
@@ -109,41 +104,5 @@ impl Margins {
             .fold((Check::Type2Head, self.type2[0]), |least, next| {
                 if next.1 < least.1 { next } else { least }
             })
-    }
-}
-
-impl Solution {
-    /// The value of every condition of a safe pose: margins, strokes, crank tips
-    /// across.
-    pub fn conditions(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
-        self.margins
-            .iter()
-            .chain(core::iter::zip(Check::STROKE, [self.left.s, self.right.s]))
-            .chain(core::iter::zip(
-                Check::UNCROSSED,
-                [self.head.gap.x, self.tail.gap.x],
-            ))
-    }
-}
-
-impl FiveBarPose {
-    /// The value of every condition of a safe pose that this end alone decides:
-    /// type-2, type-1 and leg margins, the left crank's first, and the crank tips
-    /// across.
-    pub fn conditions(&self, end: End) -> [(Check, f64); 6] {
-        let of_end = |[head, tail]: [Check; 2]| match end {
-            End::Head => head,
-            End::Tail => tail,
-        };
-        let [arm_left, arm_right] = end.pick(Check::TYPE1);
-        let [leg_left, leg_right] = end.pick(Check::LEG);
-        [
-            (of_end(Check::TYPE2), self.type2),
-            (arm_left, self.type1_left()),
-            (arm_right, self.type1_right()),
-            (leg_left, leg::margin(self.left)),
-            (leg_right, leg::margin(self.right)),
-            (of_end(Check::UNCROSSED), self.gap.x),
-        ]
     }
 }

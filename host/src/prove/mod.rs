@@ -145,6 +145,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         print(&proof, share, &mut out)?;
     }
+    out.flush()?;
     match proof.wrong() {
         0 => Ok(()),
         wrong => Err(Failure::Impossible(format!(
