@@ -253,3 +253,177 @@ fn print_servo<W: uWrite + ?Sized>(servo: Servo, out: &mut W) -> Result<(), W::E
     out.write_char('A')?;
     out.write_char(char::from(b'1' + servo.index() as u8))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::format;
+    use std::string::{String, ToString};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::Sample;
+
+    fn printed(value: u32, decimals: usize) -> String {
+        let mut text = String::new();
+        let Ok(()) = number(&mut text, value, decimals);
+        text
+    }
+
+    /// The same with the standard library: digits, and a point before the last.
+    fn expected(value: u32, decimals: usize) -> String {
+        let digits = format!("{value:0>width$}", width = decimals + 1);
+        let (whole, rest) = digits.split_at(digits.len() - decimals);
+        if decimals == 0 {
+            whole.to_string()
+        } else {
+            format!("{whole}.{rest}")
+        }
+    }
+
+    #[test]
+    fn numbers_around_every_decade_are_printed_as_the_standard_library_would() {
+        let edges = (0..10).flat_map(|n| {
+            let decade = 10u32.pow(n);
+            [decade - 1, decade, decade + 1]
+        });
+        for value in edges.chain([u32::MAX - 1, u32::MAX]) {
+            for decimals in 0..=3 {
+                assert_eq!(printed(value, decimals), expected(value, decimals));
+            }
+        }
+    }
+
+    #[test]
+    fn a_negative_number_has_its_sign_and_zero_has_none() {
+        for value in (-33_000..33_000).chain([i32::MIN, i32::MAX]) {
+            let mut text = String::new();
+            let Ok(()) = signed(&mut text, value, 3);
+            let sign = if value < 0 { "-" } else { "" };
+            assert_eq!(text, format!("{sign}{}", expected(value.unsigned_abs(), 3)));
+        }
+    }
+
+    #[test]
+    fn angles_have_two_decimals_and_commas_between_them() {
+        let mut text = String::new();
+        let centideg = [0, 4_141, 31_860, 35_999];
+        let Ok(()) = angles(&mut text, &centideg.map(Angle::from_centideg));
+        assert_eq!(text, "0.00,41.41,318.60,359.99");
+    }
+
+    proptest! {
+        #[test]
+        fn any_number_is_printed_as_the_standard_library_would(value: u32, decimals in 0usize..=3) {
+            prop_assert_eq!(printed(value, decimals), expected(value, decimals));
+        }
+    }
+
+    /// A refusal as the console of the odd robot prints it, with its code.
+    fn told(refusal: Refusal) -> String {
+        let motion = Motion::new(Sample::odd());
+        let mut text = format!("{} ", refusal.code());
+        let Ok(()) = refusal.print(&motion, &mut text);
+        text
+    }
+
+    #[test]
+    fn every_refusal_has_its_code_and_its_sentence() {
+        use Servo::{A1, A2, A3, A4};
+        // The ends of the travel, in whole steps within it: A1 turns 71 deg clockwise of
+        // 132.37 and 83 the other way; the servo of A2 is reversed.
+        for (refusal, sentence) in [
+            (
+                Refusal::Misread(Misread::Unknown),
+                "1 unknown command, send help for the list",
+            ),
+            (
+                Refusal::Misread(Misread::Surplus),
+                "2 this command takes no argument",
+            ),
+            (
+                Refusal::Misread(Misread::Incomplete),
+                "2 this command wants one more word",
+            ),
+            (
+                Refusal::Misread(Misread::SpeedWants),
+                "2 speed wants a whole number, 10..100",
+            ),
+            (
+                Refusal::Misread(Misread::SpeedRange),
+                "3 speed must be 10..100",
+            ),
+            (
+                Refusal::Misread(Misread::WatchWants),
+                "2 watch wants a whole number, 0..10000",
+            ),
+            (
+                Refusal::Misread(Misread::WatchRange),
+                "3 watch must be 0..10000",
+            ),
+            (
+                Refusal::Misread(Misread::PoseWants),
+                "2 pose wants four angles in degrees, at most two decimals",
+            ),
+            (
+                Refusal::Misread(Misread::PoseRange(A1)),
+                "3 A1 reaches 61.37..215.36",
+            ),
+            (Refusal::Travel(A2), "3 A2 reaches 341.92..135.91"),
+            (Refusal::Travel(A3), "3 A3 reaches 235.64..18.64"),
+            (Refusal::Travel(A4), "3 A4 reaches 134.18..307.18"),
+            (Refusal::TooLong, "6 a line has at most 63 characters"),
+            (Refusal::Resting, "7 servos are resting, send stand first"),
+        ] {
+            assert_eq!(told(refusal), sentence);
+        }
+    }
+
+    #[test]
+    fn every_hazard_is_told_with_its_value_and_its_own_limit() {
+        let margin = |margin, value| Hazard::Margin {
+            margin,
+            value: Sine(value),
+        };
+        let stroke = |side, length| Hazard::Stroke { side, length };
+        let robot = Sample::odd();
+        // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
+        assert_eq!(robot.sides.map(|side| side.scale.bits), [8, 8]);
+        for (hazard, sentence) in [
+            (
+                margin(Margin::Type2(End::Head), 1000),
+                "4 type-2 margin of the head is 0.031, at least 0.340",
+            ),
+            (
+                margin(Margin::Type2(End::Tail), -33),
+                "4 type-2 margin of the tail is -0.001, at least 0.340",
+            ),
+            (
+                margin(Margin::Type1(Servo::A1), 0),
+                "4 type-1 margin of A1 is 0.000, at least 0.220",
+            ),
+            (
+                margin(Margin::Type1(Servo::A3), -9830),
+                "4 type-1 margin of A3 is -0.300, at least 0.220",
+            ),
+            (
+                margin(Margin::Leg(Servo::A2), 2000),
+                "4 leg margin of A2 is 0.061, at least 0.130",
+            ),
+            (
+                margin(Margin::Leg(Servo::A4), -32_767),
+                "4 leg margin of A4 is -1.000, at least 0.130",
+            ),
+            (
+                stroke(Side::Left, 256 * 131),
+                "5 left slider is at 40.00 mm, stroke -21.00..38.00",
+            ),
+            (
+                stroke(Side::Right, 256 * 70),
+                "5 right slider is at -28.00 mm, stroke -21.00..38.00",
+            ),
+        ] {
+            assert_eq!(told(Refusal::Unsafe(hazard)), sentence);
+        }
+    }
+}

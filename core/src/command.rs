@@ -237,3 +237,6 @@ fn number(word: &[u8]) -> (Option<u16>, &[u8]) {
 fn digit(byte: u8) -> Option<u16> {
     byte.is_ascii_digit().then(|| u16::from(byte - b'0'))
 }
+
+#[cfg(test)]
+mod tests;

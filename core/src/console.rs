@@ -359,3 +359,6 @@ fn print_banner<W: uWrite + ?Sized>(out: &mut W, hash: u32) -> Result<(), W::Err
     }
     Text::BannerEnd.print(out)
 }
+
+#[cfg(test)]
+mod tests;

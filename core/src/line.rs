@@ -70,3 +70,110 @@ impl Line {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::string::{String, ToString};
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Every line that bytes end: its text, or nothing for one that was too long.
+    fn ended(bytes: &[u8]) -> Vec<Option<String>> {
+        let mut line = Line::new();
+        let mut ended = Vec::new();
+        for byte in bytes {
+            match line.push(*byte) {
+                None => {}
+                Some(Ended::TooLong) => ended.push(None),
+                Some(Ended::Line) => {
+                    ended.push(Some(line.text().iter().copied().map(char::from).collect()));
+                }
+            }
+        }
+        ended
+    }
+
+    /// The same, told by another reader of lines.
+    fn expected(bytes: &[u8]) -> Vec<Option<String>> {
+        let mut lines = Vec::new();
+        for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
+            let mut kept = String::new();
+            let mut too_long = false;
+            for byte in line {
+                match byte {
+                    0x08 | 0x7f => drop(kept.pop()),
+                    _ if kept.chars().count() == 63 => too_long = true,
+                    _ => kept.push(char::from(*byte)),
+                }
+            }
+            let text = kept.trim_matches([' ', '\t', '\x0c']).to_ascii_lowercase();
+            lines.push((!too_long).then_some(text));
+        }
+        lines.pop(); // has not ended yet
+        lines.retain(|line| line.as_deref() != Some(""));
+        lines
+    }
+
+    #[test]
+    fn cr_lf_and_both_end_a_line_once_and_empty_lines_are_none() {
+        for end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
+            let bytes = std::format!("{end}one{end}two{end}");
+            let both = ["one", "two"].map(|text| Some(text.to_string()));
+            assert_eq!(ended(bytes.as_bytes()), both, "{end:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_has_63_characters_at_most_and_the_next_one_is_a_new_one() {
+        for length in [62, 63, 64, 65, 200, 5000] {
+            let text = "x".repeat(length);
+            let bytes = std::format!("{text}\rstand\r");
+            let first = (length <= 63).then_some(text);
+            assert_eq!(ended(bytes.as_bytes()), [first, Some("stand".to_string())]);
+        }
+        // Blanks count: who sends so many has lost the rest of the line.
+        assert_eq!(ended(std::format!("{:>64}\r", "stand").as_bytes()), [None]);
+    }
+
+    #[test]
+    fn what_is_typed_wrong_can_be_taken_back_and_more_than_there_is_takes_nothing() {
+        for back in ["\x08", "\x7f"] {
+            let (five, walk) = (back.repeat(5), Some("walk".to_string()));
+            assert_eq!(
+                ended(std::format!("walt{back}k\r").as_bytes()),
+                [walk.clone()]
+            );
+            assert_eq!(ended(std::format!("{five}walk\r").as_bytes()), [walk]);
+            assert_eq!(ended(std::format!("stand{five}\r").as_bytes()), []);
+        }
+    }
+
+    #[test]
+    fn a_line_is_read_in_lower_case_without_the_blanks_around_it() {
+        assert_eq!(
+            ended(b"  Arc \t LEFT\t \n"),
+            [Some("arc \t left".to_string())]
+        );
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn any_bytes_end_the_lines_that_they_end(
+            pieces in prop::collection::vec(
+                prop_oneof![
+                    prop::collection::vec(any::<u8>(), 0..40),
+                    "[ -~\x08\x7f\t]{0,80}[\r\n]{0,2}".prop_map(String::into_bytes),
+                ],
+                0..8,
+            ),
+        ) {
+            let bytes = pieces.concat();
+            prop_assert_eq!(ended(&bytes), expected(&bytes));
+        }
+    }
+}

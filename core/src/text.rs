@@ -152,3 +152,45 @@ const fn starts() -> [u16; COUNT + 1] {
     }
     starts
 }
+
+#[cfg(test)]
+mod tests {
+    use std::string::String;
+
+    use super::*;
+
+    #[test]
+    fn a_sentence_is_printed_whole_and_has_its_length() {
+        for (text, expected) in [
+            (Text::Banner, "# lizard "),
+            (Text::Version, env!("CARGO_PKG_VERSION")),
+            (Text::QuestionMark, "?"),
+            (Text::Unknown, "unknown command, send help for the list"),
+            (Text::Resting, "servos are resting, send stand first"),
+        ] {
+            let mut printed = String::new();
+            let Ok(()) = text.print(&mut printed);
+            assert_eq!(printed, expected);
+            assert_eq!(usize::from(text.len()), expected.len());
+        }
+    }
+
+    #[test]
+    fn a_word_is_itself_and_neither_shorter_nor_longer() {
+        assert!(Text::Stop.is(b"stop"));
+        for other in ["", "s", "sto", "stoq", "stops", "rest"] {
+            assert!(!Text::Stop.is(other.as_bytes()), "{other}");
+        }
+    }
+
+    #[test]
+    fn every_sentence_is_one_line_without_control_characters() {
+        for sentence in SENTENCES {
+            assert!(
+                sentence
+                    .bytes()
+                    .all(|byte| byte == b' ' || byte.is_ascii_graphic())
+            );
+        }
+    }
+}

@@ -303,13 +303,8 @@ fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
             let share = |n: usize| f64::from(motion.pose.0[n].0) / f64::from(FAR[n]);
             assert!((share(0) - share(3)).abs() < 0.002);
         }
-        let here = *motion.pose();
         motion.tick();
         assert!(motion.next.is_none());
-        assert!(
-            motion.pose().farthest(&here) < 40,
-            "it gathers speed slowly"
-        );
         motion.run(LONG_ENOUGH);
         assert_eq!(motion.pose(), &Pose(BACK.map(Sweep)));
     }

@@ -1,0 +1,241 @@
+//! Every word of the console, every way to write a number, and every mistake.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::*;
+use crate::sample::{GAITS, Sample};
+
+fn read(line: &str) -> Result<Command, Misread> {
+    parse(line.as_bytes(), &Sample::odd())
+}
+
+#[test]
+fn every_word_is_its_command() {
+    for (line, command) in [
+        ("help", Command::Help),
+        ("?", Command::Help),
+        ("stop", Command::Stop),
+        ("rest", Command::Rest),
+        ("status", Command::Status),
+        ("speed 10", Command::Speed(10)),
+        ("speed 100", Command::Speed(100)),
+        ("speed 0042", Command::Speed(42)),
+        ("watch 0", Command::Watch(0)),
+        ("watch 10000", Command::Watch(10_000)),
+    ] {
+        assert_eq!(read(line), Ok(command), "{line}");
+    }
+}
+
+#[test]
+fn the_words_of_the_console_are_those_that_it_reads() {
+    for word in WORDS {
+        let mut line = String::new();
+        let Ok(()) = word.print(&mut line);
+        assert_ne!(read(&line), Err(Misread::Unknown), "{line}");
+    }
+    assert_eq!(WORDS.len(), 8);
+}
+
+#[test]
+fn every_gait_is_a_command_and_any_blanks_between_its_words_will_do() {
+    let robot = Sample::odd();
+    for name in GAITS {
+        let command = Ok(Command::Gait(robot.id(name)));
+        for blank in [" ", "   ", "\t", " \t "] {
+            let line = name.replace(' ', blank);
+            assert_eq!(parse(line.as_bytes(), &robot), command, "{line:?}");
+        }
+    }
+}
+
+#[test]
+fn a_name_that_is_cut_short_or_goes_on_is_no_name() {
+    // `sway` is a gait, and so is `sway left`.
+    for (line, misread) in [
+        ("sway lef", Misread::Surplus),
+        ("sway leftt", Misread::Surplus),
+        ("sway left now", Misread::Surplus),
+        ("sway sway", Misread::Surplus),
+        ("swayleft", Misread::Unknown),
+        ("sway-left", Misread::Unknown),
+        ("sways", Misread::Unknown),
+        ("swa", Misread::Unknown),
+        ("left", Misread::Unknown),
+        ("stand up", Misread::Surplus),
+        ("s", Misread::Unknown),
+    ] {
+        assert_eq!(read(line), Err(misread), "{line}");
+    }
+}
+
+#[test]
+fn the_first_words_of_a_longer_name_want_one_more() {
+    let robot = Sample::odd().with_gait("arc to left");
+    let read = |line: &str| parse(line.as_bytes(), &robot);
+    assert_eq!(read("arc"), Err(Misread::Incomplete));
+    assert_eq!(read("arc to"), Err(Misread::Incomplete));
+    assert_eq!(
+        read("arc  to\tleft"),
+        Ok(Command::Gait(robot.id("arc to left")))
+    );
+    assert_eq!(read("arc t"), Err(Misread::Unknown));
+    assert_eq!(read("arc left"), Err(Misread::Unknown));
+    assert_eq!(read("arc to left too"), Err(Misread::Surplus));
+}
+
+#[test]
+fn what_is_no_command_is_unknown() {
+    for line in [
+        "dance", "halt", "??", "-", "speed10", "watch0", "pose1", "stop.", "\0", "\u{e9}", "12",
+        "helpp", "hel", "statu",
+    ] {
+        assert_eq!(read(line), Err(Misread::Unknown), "{line:?}");
+    }
+}
+
+#[test]
+fn a_command_without_arguments_takes_none() {
+    for line in ["stop now", "rest 5", "help me", "? ?", "status all"] {
+        assert_eq!(read(line), Err(Misread::Surplus), "{line}");
+    }
+}
+
+#[test]
+fn speed_and_watch_want_one_whole_number() {
+    for argument in [
+        "", " fast", " 5o", " 50%", " 50.5", " -50", " +50", " 50 60", " 0x20", " 5 0",
+    ] {
+        assert_eq!(read(&format!("speed{argument}")), Err(Misread::SpeedWants));
+        assert_eq!(read(&format!("watch{argument}")), Err(Misread::WatchWants));
+    }
+}
+
+#[test]
+fn every_speed_and_every_watch_is_read_and_no_other() {
+    for number in (0..=70_000).chain([655_350, 99_999_999]) {
+        let speed = match number {
+            10..=100 => Ok(Command::Speed(number as u8)),
+            _ => Err(Misread::SpeedRange),
+        };
+        assert_eq!(read_number("speed", number), speed);
+        let watch = match number {
+            0..=10_000 => Ok(Command::Watch(number as u16)),
+            _ => Err(Misread::WatchRange),
+        };
+        assert_eq!(read_number("watch", number), watch);
+    }
+    assert_eq!(read("speed 99999999999999999999"), Err(Misread::SpeedRange));
+}
+
+fn read_number(word: &str, number: u32) -> Result<Command, Misread> {
+    thread_robot(|robot| parse(format!("{word} {number}").as_bytes(), robot))
+}
+
+/// One robot for many lines: making one takes longer than reading a line.
+fn thread_robot<T>(of: impl FnOnce(&Sample) -> T) -> T {
+    std::thread_local!(static ROBOT: Sample = Sample::odd());
+    ROBOT.with(of)
+}
+
+#[test]
+fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
+    for (digits, value) in [
+        ("65519", 65_519),
+        ("65529", 65_529),
+        ("65530", u16::MAX),
+        ("65536", u16::MAX),
+        ("70000", u16::MAX),
+        ("655360", u16::MAX),
+    ] {
+        assert_eq!(number(digits.as_bytes()), (Some(value), &b""[..]));
+    }
+    assert_eq!(number(b"12x"), (Some(12), &b"x"[..]));
+    assert_eq!(number(b"x"), (None, &b"x"[..]));
+}
+
+/// `pose` with one angle among three others.
+fn pose_with(place: usize, angle: &str) -> String {
+    let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
+    words[place] = angle.to_string();
+    format!("pose {}", words.join(" "))
+}
+
+fn angle_read(place: usize, angle: &str) -> Result<i32, Misread> {
+    match thread_robot(|robot| parse(pose_with(place, angle).as_bytes(), robot)) {
+        Ok(Command::Pose(angles)) => Ok(angles[place].centideg().into()),
+        Ok(other) => panic!("{other:?}"),
+        Err(misread) => Err(misread),
+    }
+}
+
+#[test]
+fn every_hundredth_of_a_degree_a_turn_either_way_is_read_and_told_again() {
+    for centideg in (-36_100..36_100)
+        .step_by(3)
+        .chain([-36_000, -1, 36_000, 36_001])
+    {
+        let sign = if centideg < 0 { "-" } else { "" };
+        let size: i32 = i32::abs(centideg);
+        let angle = format!("{sign}{}.{:02}", size / 100, size % 100);
+        let place = size as usize % 4;
+        let expected = if size > 36_000 {
+            Err(Misread::PoseRange(Servo::at(place)))
+        } else {
+            Ok(centideg.rem_euclid(36_000))
+        };
+        assert_eq!(angle_read(place, &angle), expected, "{angle}");
+    }
+}
+
+#[test]
+fn an_angle_may_be_written_in_several_ways() {
+    for (ways, centideg) in [
+        (["7.5", "7.50", "+7.5", "007.5", "-352.5"], 750),
+        (["7", "7.", "7.0", "7.00", "+7"], 700),
+        (["0", "-0", "360", "-360", "-0.00"], 0),
+    ] {
+        for way in ways {
+            assert_eq!(angle_read(1, way), Ok(centideg), "{way}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_angle_is_not_taken_for_one() {
+    for word in [
+        "", "a", ".5", "-", "+", "--1", "+-1", "1e2", "138.5x", "138.591", "138,59", "1.x", "1.5.",
+        "1.-5", ".", "0x10",
+    ] {
+        assert_eq!(angle_read(2, word), Err(Misread::PoseWants), "{word}");
+    }
+    for line in [
+        "pose",
+        "pose 1",
+        "pose 1 2 3",
+        "pose 1 2 3 4 5",
+        "pose 1 2 3 4 x",
+        "pose 1 999 3 4 5",
+    ] {
+        assert_eq!(read(line), Err(Misread::PoseWants), "{line}");
+    }
+}
+
+#[test]
+fn four_angles_go_to_the_servos_in_their_order_and_the_first_too_large_is_named() {
+    let Ok(Command::Pose(angles)) = read("pose 138.59   41.42\t318.60 221.44") else {
+        panic!("a pose");
+    };
+    let centideg: Vec<u16> = angles.iter().map(|angle| angle.centideg()).collect();
+    assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
+    assert_eq!(
+        read("pose 1 361 3 -400"),
+        Err(Misread::PoseRange(Servo::A2))
+    );
+    assert_eq!(
+        read("pose 1 2 3 99999999"),
+        Err(Misread::PoseRange(Servo::A4))
+    );
+}

@@ -1,0 +1,559 @@
+//! The console as somebody at the other end of the line meets it.
+
+use std::collections::HashMap;
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::sample::{GAITS, Sample};
+use crate::units::Width;
+
+/// Frames until the robot stands and may begin to move.
+const WAKING: u32 = 21;
+
+/// A console, and what its other end reads.
+struct Dialogue {
+    console: Console<Sample>,
+    counters: Counters,
+}
+
+impl Dialogue {
+    /// At power-on, the banner not yet read.
+    fn new(robot: Sample) -> Self {
+        Self {
+            console: Console::new(robot),
+            counters: Counters::default(),
+        }
+    }
+
+    /// With the banner read and the robot awake.
+    fn standing() -> Self {
+        Self::awake(Sample::odd())
+    }
+
+    fn awake(robot: Sample) -> Self {
+        let mut dialogue = Self::new(robot);
+        assert_eq!(dialogue.read().len(), 1, "the banner");
+        dialogue.run(WAKING);
+        dialogue
+    }
+
+    /// Every line that waits, each checked for its form.
+    fn read(&mut self) -> Vec<String> {
+        let mut lines = Vec::new();
+        while self.console.has_output() {
+            let mut text = String::new();
+            let Ok(()) = self.console.write_line(&mut text, self.counters);
+            assert!(text.len() <= usize::from(LONGEST_LINE), "{text}");
+            let line = text.strip_suffix("\r\n").expect("a whole line");
+            let plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
+            assert!(line.bytes().all(plain), "{line:?}");
+            assert!(line.starts_with("# ") || is_final(line), "{line:?}");
+            lines.push(line.to_string());
+            assert!(lines.len() < 400, "it never stops");
+        }
+        lines
+    }
+
+    /// Sends bytes, each when there is nothing to write, as main does.
+    fn send(&mut self, bytes: &[u8]) -> Vec<String> {
+        let mut lines = self.read();
+        for byte in bytes {
+            self.console.receive(*byte);
+            lines.extend(self.read());
+        }
+        lines
+    }
+
+    /// Sends a line and returns its final line, the only one and the last.
+    fn say(&mut self, line: &str) -> String {
+        let said = self.send(format!("{line}\r").as_bytes());
+        let (last, before) = said.split_last().expect("an answer");
+        assert!(is_final(last), "{last}");
+        assert!(before.iter().all(|line| line.starts_with("# ")), "{said:?}");
+        last.clone()
+    }
+
+    fn frame(&mut self) -> (Pulses, Vec<String>) {
+        let pulses = self.console.frame();
+        (pulses, self.read())
+    }
+
+    fn run(&mut self, frames: u32) -> Vec<String> {
+        (0..frames).flat_map(|_| self.frame().1).collect()
+    }
+
+    /// A value of the status line.
+    fn status(&mut self, key: &str) -> String {
+        let line = self.say("status");
+        pairs(line.strip_prefix("ok ").expect("a status"))[key].clone()
+    }
+}
+
+/// True for the one line that ends an answer.
+fn is_final(line: &str) -> bool {
+    let code = line
+        .strip_prefix("err ")
+        .and_then(|rest| rest.split_once(' '));
+    line.starts_with("ok ")
+        || code.is_some_and(|(code, reason)| {
+            matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7") && !reason.is_empty()
+        })
+}
+
+/// `key=value` with blanks between, each key once.
+fn pairs(text: &str) -> HashMap<String, String> {
+    let mut pairs = HashMap::new();
+    for word in text.split(' ') {
+        let (key, value) = word.split_once('=').expect("key=value");
+        assert!(!key.is_empty() && !value.is_empty(), "{text}");
+        assert!(pairs.insert(key.to_string(), value.to_string()).is_none());
+    }
+    pairs
+}
+
+/// The neutral pose of the odd robot, as a command.
+const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
+
+#[test]
+fn the_banner_names_version_and_tables_once() {
+    for hash in [0, 0x1f0a_9c3e, 0x0000_00f0, u32::MAX, 0x9999_9999] {
+        let mut dialogue = Dialogue::new(Sample {
+            hash,
+            ..Sample::odd()
+        });
+        let version = env!("CARGO_PKG_VERSION");
+        let banner = format!("# lizard {version} tables {hash:08x}, send help for the commands");
+        assert_eq!(dialogue.read(), [banner]);
+        assert!(dialogue.run(50).is_empty());
+    }
+}
+
+#[test]
+fn what_is_obeyed_is_answered_by_ok_and_the_line_as_it_was_understood() {
+    let commands = [
+        "stop",
+        "rest",
+        "speed 10",
+        "speed 100",
+        "watch 3",
+        "watch 0",
+        NEUTRAL,
+    ];
+    for command in commands.into_iter().chain(GAITS) {
+        assert_eq!(Dialogue::standing().say(command), format!("ok {command}"));
+        let shouted = format!("  {}\t", command.to_uppercase());
+        assert_eq!(Dialogue::standing().say(&shouted), format!("ok {command}"));
+    }
+}
+
+#[test]
+fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
+    let mut dialogue = Dialogue::standing();
+    let said = dialogue.send(b"help\r");
+    let gaits = format!("# gaits: {}", GAITS.join("|"));
+    let expected = [
+        gaits.as_str(),
+        "# stop: freeze in this pose",
+        "# rest: end the pulses, stand wakes the servos",
+        "# speed <10..100>: percent of a gait's pace",
+        "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame",
+        "# status: gait, phase, pose, smallest margin, counters",
+        "# watch <n>: report the pose every n frames, 0 ends it",
+        "ok help",
+    ];
+    assert_eq!(said, expected);
+    assert_eq!(dialogue.send(b"?\r"), expected);
+}
+
+#[test]
+fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_long() {
+    for (count, length) in [(4, 48), (40, 5), (8, 23), (249, 1), (249, 48), (6, 21)] {
+        let mut robot = Sample::odd();
+        for number in 0..count {
+            robot = robot.with_gait(&format!("{number:x>length$}")[..length]);
+        }
+        let names: Vec<String> = crate::gait::GaitId::all(&robot)
+            .map(|id| robot.name(id).map(char::from).collect())
+            .collect();
+        let said = Dialogue::awake(robot).send(b"help\r");
+        let lines: Vec<&str> = said
+            .iter()
+            .filter_map(|line| line.strip_prefix("# gaits: "))
+            .collect();
+        let told: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
+        assert_eq!(told, names);
+        // A line ends only where the next name has no room: with the line end,
+        // the prefix and the bar.
+        for pair in lines.windows(2) {
+            let next = pair[1].split('|').next().expect("a name");
+            let whole = "# gaits: ".len() + pair[0].len() + 1 + next.len() + "\r\n".len();
+            assert!(whole > usize::from(LONGEST_LINE), "{pair:?}");
+        }
+    }
+}
+
+#[test]
+fn status_tells_everything_as_key_and_value() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.counters = Counters {
+        late: 7,
+        rx_lost: 65_535,
+    };
+    dialogue.say("speed 42");
+    dialogue.say("sway left");
+    dialogue.run(200);
+    let line = dialogue.say("status");
+    let motion = dialogue.console.motion();
+    let phase = u64::from(motion.phase()) * 1000 >> 24;
+    let angles: Vec<String> = motion
+        .pose()
+        .angles(&motion.robot().neutral())
+        .iter()
+        .map(|angle| {
+            let centideg = angle.centideg();
+            format!("{}.{:02}", centideg / 100, centideg % 100)
+        })
+        .collect();
+    let margin = Clearance::of(motion.robot(), motion.pose())
+        .smallest()
+        .thousandths();
+    let expected = format!(
+        "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
+         late=7 rx_lost=65535 guard=clear",
+        angles.join(","),
+        motion.frames(),
+    );
+    assert_eq!(line, expected);
+}
+
+#[test]
+fn status_names_what_the_robot_does() {
+    let mut dialogue = Dialogue::standing();
+    assert_eq!(dialogue.status("gait"), "stand");
+    for (command, name) in [
+        ("sway", "sway"),
+        ("sway left", "sway-left"),
+        (NEUTRAL, "pose"),
+        ("stop", "stop"),
+        ("rest", "rest"),
+        ("stand", "stand"),
+    ] {
+        dialogue.say(command);
+        assert_eq!(dialogue.status("gait"), name);
+    }
+}
+
+#[test]
+fn the_longest_status_that_there_can_be_fits_a_line() {
+    let name = "longest name of a gait that any robot may have..";
+    assert_eq!(name.len(), crate::gait::LONGEST_NAME);
+    let robot = Sample::odd().with_gait(name);
+    let mut dialogue = Dialogue::awake(robot);
+    dialogue.counters = Counters {
+        late: u16::MAX,
+        rx_lost: u16::MAX,
+    };
+    assert_eq!(dialogue.say(name), format!("ok {name}"));
+    let line = dialogue.say("status");
+    // Each number as long as it gets.
+    let values = pairs(line.strip_prefix("ok ").expect("a status"));
+    let most = [
+        ("phase", "0.999"),
+        ("pose", "359.99,359.99,359.99,359.99"),
+        ("margin", "-1.000"),
+        ("speed", "100"),
+        ("frames", "4294967295"),
+        ("guard", "clear"),
+    ];
+    let more: usize = most
+        .iter()
+        .map(|(key, most)| most.len() - values[*key].len())
+        .sum();
+    assert!(line.len() + more + "\r\n".len() <= usize::from(LONGEST_LINE));
+}
+
+#[test]
+fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
+    for every in [1u32, 2, 7, 50] {
+        let mut dialogue = Dialogue::standing();
+        dialogue.say("sway");
+        dialogue.say(&format!("watch {every}"));
+        let begin = dialogue.console.motion().frames();
+        let mut times = Vec::new();
+        for _ in 0..200 {
+            for line in dialogue.frame().1 {
+                let report = pairs(line.strip_prefix("# ").expect("a report"));
+                let time: u32 = report["t"].parse().expect("a number");
+                assert_eq!(time, dialogue.console.motion().frames());
+                assert_eq!(report["pose"], dialogue.status("pose"));
+                assert_eq!(report.len(), 2);
+                times.push(time - begin);
+            }
+        }
+        let expected: Vec<u32> = (1..=200).filter(|time| time % every == 0).collect();
+        assert_eq!(times, expected);
+        dialogue.say("watch 0");
+        assert!(dialogue.run(200).is_empty());
+    }
+}
+
+#[test]
+fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginning() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("watch 5");
+    dialogue.say("rest");
+    assert_eq!(dialogue.run(50).len(), 10);
+    dialogue.run(3);
+    dialogue.say("watch 10");
+    assert!(dialogue.run(9).is_empty());
+    assert_eq!(dialogue.run(1).len(), 1);
+}
+
+#[test]
+fn a_report_that_nobody_read_is_written_once_and_a_new_watch_forgets_it() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("watch 2");
+    for _ in 0..20 {
+        dialogue.console.frame();
+    }
+    assert_eq!(dialogue.read().len(), 1);
+    dialogue.console.frame();
+    dialogue.console.frame();
+    assert!(dialogue.console.has_output());
+    for byte in b"watch 0\r" {
+        dialogue.console.receive(*byte);
+    }
+    assert_eq!(dialogue.read(), ["ok watch 0"]);
+}
+
+/// A robot that the guard has just stopped, with nothing read since.
+fn guarded() -> Dialogue {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("stray");
+    for _ in 0..200 {
+        dialogue.console.frame();
+        if dialogue.console.motion().hazard().is_some() {
+            return dialogue;
+        }
+    }
+    panic!("stray is safe");
+}
+
+#[test]
+fn why_the_guard_holds_the_robot_is_told_once_and_status_goes_on_saying_so() {
+    let mut dialogue = guarded();
+    let told = dialogue.read();
+    assert_eq!(told.len(), 1);
+    assert!(
+        told[0].starts_with("# held in the last safe pose: "),
+        "{told:?}"
+    );
+    assert!(told[0].contains(" margin of ") || told[0].contains(" slider is at "));
+    assert!(dialogue.run(100).is_empty());
+    assert_eq!(dialogue.status("guard"), "held");
+    dialogue.say("stand");
+    dialogue.run(1);
+    assert_eq!(dialogue.status("guard"), "clear");
+    dialogue.run(100);
+    dialogue.say("stray");
+    assert_eq!(
+        dialogue.run(200).len(),
+        1,
+        "and again, when it happens again"
+    );
+}
+
+#[test]
+fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
+    let mut dialogue = guarded();
+    for byte in b"stand\r" {
+        dialogue.console.receive(*byte);
+    }
+    for _ in 0..3 {
+        dialogue.console.frame();
+    }
+    let said = dialogue.read();
+    assert_eq!(said.len(), 2);
+    assert_eq!(said[0], "ok stand");
+    assert!(said[1].starts_with("# held in the last safe pose: "));
+    assert!(!dialogue.console.has_output());
+    assert_eq!(dialogue.status("guard"), "clear");
+}
+
+#[test]
+fn what_waits_is_written_in_one_order_banner_answer_reason_report() {
+    let mut console = Dialogue::new(Sample::odd());
+    for byte in b"watch 1\r" {
+        console.console.receive(*byte);
+    }
+    console.console.held = Some(Hazard::Stroke {
+        side: crate::part::Side::Left,
+        length: 1,
+    });
+    console.console.frame();
+    let said = console.read();
+    let starts = ["# lizard ", "ok watch 1", "# held ", "# t=1 pose="];
+    assert_eq!(said.len(), starts.len());
+    for (line, start) in said.iter().zip(starts) {
+        assert!(line.starts_with(start), "{line}");
+    }
+}
+
+#[test]
+fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
+    let unsafe_pose = "pose 95 90 309.64 226.18";
+    for line in ["sway", "sway left", "stop", NEUTRAL, unsafe_pose] {
+        let mut dialogue = Dialogue::standing();
+        assert_eq!(dialogue.say("rest"), "ok rest");
+        assert_eq!(
+            dialogue.say(line),
+            "err 7 servos are resting, send stand first"
+        );
+        for _ in 0..50 {
+            assert_eq!(dialogue.frame().0, Pulses::default(), "{line}");
+        }
+        assert_eq!(dialogue.status("gait"), "rest");
+        // What moves nothing is answered, and a mistake is still a mistake.
+        for line in ["speed 50", "watch 0", "rest", "help"] {
+            assert_eq!(dialogue.say(line), format!("ok {line}"));
+        }
+        assert_eq!(
+            dialogue.say("pose 1 2 3 4"),
+            "err 3 A1 reaches 61.37..215.36"
+        );
+        assert!(dialogue.say("dance").starts_with("err 1 "));
+        assert_eq!(dialogue.say("stand"), "ok stand");
+        dialogue.run(25);
+        assert!(dialogue.frame().0.0.iter().all(|width| *width > Width(0)));
+    }
+}
+
+#[test]
+fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
+    let mut dialogue = Dialogue::standing();
+    assert_eq!(
+        dialogue.say("pose 400 1 1 1"),
+        "err 3 A1 reaches 61.37..215.36"
+    );
+    assert_eq!(
+        dialogue.say("pose 132 47 200 226"),
+        "err 3 A3 reaches 235.64..18.64"
+    );
+    let refused = dialogue.say("pose 132.37 4 309.64 226.18");
+    assert!(
+        refused.starts_with("err 4 ") || refused.starts_with("err 5 "),
+        "{refused}"
+    );
+    assert_eq!(dialogue.status("gait"), "stand");
+}
+
+#[test]
+fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
+    let mut dialogue = Dialogue::standing();
+    for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
+        let line = format!("pose {pose}");
+        assert_eq!(dialogue.say(&line), format!("ok {line}"));
+        dialogue.run(120);
+        assert_eq!(dialogue.status("pose"), pose.replace(' ', ","));
+    }
+}
+
+#[test]
+fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
+    let mut dialogue = Dialogue::standing();
+    let refused = "err 6 a line has at most 63 characters";
+    assert_eq!(dialogue.say(&"stand".repeat(13)), refused);
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+/// Lines that are refused, in whatever state the robot is.
+const REFUSED: [&str; 9] = [
+    "dance",
+    "sway fast",
+    "speed 9",
+    "speed",
+    "watch 10001",
+    "pose 1 2 3",
+    "pose 400 1 1 1",
+    "pose 132.37 1 309.64 226.18",
+    "pose 170 130 309.64 226.18",
+];
+
+/// Bytes of a person, of a program gone mad, and of a broken cable.
+fn bytes() -> impl Strategy<Value = Vec<u8>> {
+    let mut lines = GAITS.to_vec();
+    lines.extend([
+        "help", "stop", "rest", "speed 33", "watch 9", "watch 0", "status", NEUTRAL,
+    ]);
+    lines.extend(REFUSED);
+    let line = prop::sample::select(lines).prop_map(|line| format!("{line}\r").into_bytes());
+    let piece = prop_oneof![
+        4 => line,
+        1 => prop::collection::vec(any::<u8>(), 0..40),
+        1 => "[ -~\x08\x7f\t]{0,80}[\r\n]{0,2}".prop_map(String::into_bytes),
+        2 => "(pose|speed|watch|sway|POSE)( [+-]?[0-9]{0,6}\\.?[0-9]{0,3}){0,5}\r\n"
+            .prop_map(String::into_bytes),
+    ];
+    prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
+}
+
+/// The final lines that bytes are owed.
+fn owed(bytes: &[u8]) -> usize {
+    let mut line = Line::new();
+    bytes
+        .iter()
+        .filter(|byte| line.push(**byte).is_some())
+        .count()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn every_line_of_any_bytes_gets_one_final_line_whatever_the_frames_between(
+        bytes in bytes(),
+        frames in 0u32..3,
+    ) {
+        let (mut at_once, mut apart) = (Dialogue::standing(), Dialogue::standing());
+        let finals = |said: Vec<String>| -> Vec<String> {
+            said.into_iter().filter(|line| is_final(line)).collect()
+        };
+        let once = finals(at_once.send(&bytes));
+        prop_assert_eq!(once.len(), owed(&bytes));
+        let mut said = Vec::new();
+        for byte in &bytes {
+            said.extend(apart.send(&[*byte]));
+            said.extend(apart.run(frames));
+        }
+        // All but status say the same at any time.
+        let timeless = |said: Vec<String>| -> Vec<String> {
+            said.into_iter().filter(|line| !line.contains('=')).collect()
+        };
+        prop_assert_eq!(timeless(finals(said)), timeless(once));
+    }
+
+    #[test]
+    fn a_refused_line_changes_nothing(
+        history in prop::collection::vec((prop::sample::select(GAITS.to_vec()), 0u32..90), 0..4),
+        speed in 10u8..=100,
+        line in prop::sample::select(REFUSED.to_vec()),
+    ) {
+        let [mut asked, mut spared] = [(); 2].map(|()| Dialogue::standing());
+        for dialogue in [&mut asked, &mut spared] {
+            dialogue.say(&format!("speed {speed}"));
+            for (gait, frames) in &history {
+                dialogue.say(gait);
+                dialogue.run(*frames);
+            }
+        }
+        prop_assert!(asked.say(line).starts_with("err "));
+        for _ in 0..40 {
+            prop_assert_eq!(asked.frame(), spared.frame());
+        }
+        prop_assert_eq!(asked.say("status"), spared.say("status"));
+    }
+}
