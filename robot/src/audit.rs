@@ -1,11 +1,18 @@
 //! Every sample of every gait, as the firmware will send it, through the
-//! forward solution: head, tail, sides and legs against all limits.
+//! forward solution: head, tail, sides and legs against all limits. Then through
+//! the firmware's own guard, which would hold a gait that is nearer to a limit than
+//! its integers resolve.
 
 use lizard_core::gait::SAMPLES;
+use lizard_core::guard::Clearance;
+use lizard_core::hazard::{Hazard, Margin};
+use lizard_core::pose::Pose;
+use lizard_core::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::accuracy::{self, ALL_PHASES};
 use crate::error::Problem;
+use crate::firmware::Firmware;
 use crate::gait::Gait;
 use crate::measure::Measures;
 use crate::servo::NAMES;
@@ -57,14 +64,28 @@ pub struct Audit {
 }
 
 /// Checks a gait against the limits of its robot.
-pub(crate) fn check(gait: &TabledGait, robot: &Measures) -> Result<Audit, Problem> {
+///
+/// # Errors
+/// The first travel or loop that a sample breaks; else, over all samples, the
+/// worst of the first limit broken; else what the firmware's guard would hold the
+/// gait for; else a frame that is too fast, or a table that is too coarse.
+pub(crate) fn check(
+    gait: &TabledGait,
+    robot: &Measures,
+    firmware: &Firmware,
+) -> Result<Audit, Problem> {
     let peak = fastest(gait.gait());
     let mut found: Option<Audit> = None;
     let mut worst: Option<(f64, Violation)> = None;
+    let mut held: Option<(f64, Check)> = None;
     for phase in phases(gait) {
         let angles = gait.angles(phase);
+        let sweeps = Pose(gait.sweeps(phase).map(Sweep));
         let phase = f64::from(phase) / PHASES;
         travels(robot, angles, phase)?;
+        if let Some(hazard) = Clearance::of(firmware, &sweeps).hazard(firmware) {
+            held.get_or_insert((phase, condition(&hazard)));
+        }
         let solution = robot
             .lizard
             .solve(&angles.into())
@@ -85,6 +106,12 @@ pub(crate) fn check(gait: &TabledGait, robot: &Measures) -> Result<Audit, Proble
         return Err(Problem::Unsafe {
             phase,
             violation: violation.to_string(),
+        });
+    }
+    if let Some((phase, what)) = held {
+        return Err(Problem::TooNear {
+            phase,
+            what: what.name(),
         });
     }
     if peak.speed > robot.pace.gait_slew {
@@ -113,6 +140,18 @@ pub(crate) fn check(gait: &TabledGait, robot: &Measures) -> Result<Audit, Proble
         error: f64::NAN,
         limit: ERROR_LIMIT,
     })
+}
+
+/// What the firmware's guard found, as the float calls it.
+fn condition(hazard: &Hazard) -> Check {
+    match *hazard {
+        Hazard::Margin { margin, .. } => match margin {
+            Margin::Type2(end) => Check::TYPE2[end as usize],
+            Margin::Type1(servo) => Check::TYPE1[servo.index()],
+            Margin::Leg(servo) => Check::LEG[servo.index()],
+        },
+        Hazard::Stroke { side, .. } => Check::STROKE[side as usize],
+    }
 }
 
 /// Whether a violation is the same limit's, and worse.

@@ -56,6 +56,7 @@ impl Problem {
                 | Self::Circle(_)
                 | Self::OutOfReach { .. }
                 | Self::Unsafe { .. }
+                | Self::TooNear { .. }
                 | Self::Travel { .. }
                 | Self::HalfTurn { .. }
                 | Self::TooFast { .. }
@@ -106,7 +107,7 @@ pub enum Problem {
         expected: &'static str,
     },
     /// A number outside what the robot or the fixed point can bear.
-    #[error("is {value}; it must be within {min} to {max} {unit}")]
+    #[error("is {}; it must be within {min} to {max} {unit}", short(*value))]
     Range {
         /// The number found.
         value: f64,
@@ -141,7 +142,7 @@ pub enum Problem {
     },
     /// A coupler that is short beside the rest of its loop.
     #[error(
-        "is {value} mm; beside the rest of its loop it must be at least {least:.1} mm, else 16-bit integers do not hold its angle"
+        "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {least:.1} mm, or for shorter cranks and a shorter base"
     )]
     ShortCoupler {
         /// Its value, mm.
@@ -150,7 +151,9 @@ pub enum Problem {
         least: f64,
     },
     /// More waveforms than a byte numbers.
-    #[error("is the gait that needs one waveform too many; gaits may share {most} in all")]
+    #[error(
+        "needs one waveform too many: the firmware numbers them with a byte, so gaits may share {most}; those that differ only in amplitude, start, gain, period or direction share one"
+    )]
     ManyWaves {
         /// How many there may be.
         most: usize,
@@ -170,7 +173,8 @@ pub enum Problem {
     },
     /// A servo without gain cannot be aimed.
     #[error(
-        "is {0}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise"
+        "is {}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
+        short(*.0)
     )]
     Gain(f64),
     /// The robot would refuse to stand.
@@ -180,8 +184,12 @@ pub enum Problem {
     #[error("is no gait name: {0}")]
     Name(&'static str),
     /// A gait name that is too long for a line of the console.
-    #[error("is no gait name: it must have at most {most} characters")]
+    #[error(
+        "is no gait name: it has {length} characters, but `status` must fit into a line of the console with it, so it may have {most}"
+    )]
     LongName {
+        /// How many it has.
+        length: usize,
         /// How many it may have.
         most: usize,
     },
@@ -244,6 +252,16 @@ pub enum Problem {
         /// What is violated, its value and its limit.
         violation: String,
     },
+    /// A gait sample nearer to a limit than the firmware's integers resolve.
+    #[error(
+        "at phase {phase:.4}: margin or travel {what} is so near to its limit that the firmware's integers take it to be beyond; leave it a little room"
+    )]
+    TooNear {
+        /// Phase, 0 to 1.
+        phase: f64,
+        /// The condition, as `lizard solve` calls it.
+        what: &'static str,
+    },
     /// A gait sample outside a servo's travel.
     #[error(
         "at phase {phase:.4} servo {servo} would be at {angle:.2} deg, outside its travel of {min:.2} to {max:.2} deg"
@@ -267,7 +285,7 @@ pub enum Problem {
         servo: &'static str,
     },
     /// More gaits than a byte numbers.
-    #[error("holds {found} gaits; the firmware takes at most {most}")]
+    #[error("holds {found} gaits; the firmware numbers them with a byte, so leave at most {most}")]
     Many {
         /// How many there are.
         found: usize,
@@ -302,6 +320,16 @@ pub enum Problem {
         /// deg.
         limit: f64,
     },
+}
+
+/// A number as its author wrote it, or with an exponent where that would fill a
+/// line with zeros.
+fn short(value: f64) -> String {
+    if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
 }
 
 /// What would have been right: the nearest word, or all of them.

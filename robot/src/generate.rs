@@ -196,3 +196,183 @@ fn coupler_tables(f: &mut fmt::Formatter, end: &str, bars: &Bars) -> fmt::Result
     }
     f.write_char('\n')
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{all, with};
+    use lizard_avr::Flash;
+    use lizard_core::part::{End, Side};
+    use lizard_core::robot::Robot as _;
+
+    /// The whole numbers in a text, outside of words.
+    fn numbers(text: &str) -> Vec<i64> {
+        let apart = |c: char| !(c.is_ascii_alphanumeric() || c == '-' || c == '_');
+        text.split(apart)
+            .filter_map(|word| word.parse().ok())
+            .collect()
+    }
+
+    /// What a constant of the source is set to.
+    fn value<'a>(source: &'a str, name: &str) -> &'a str {
+        let start = format!("const {name}:");
+        let from = source.find(&start).unwrap_or_else(|| panic!("no {name}"));
+        let from = from + source[from..].find('=').expect("a value") + 1;
+        let to = from + source[from..].find(";\n").expect("an end");
+        &source[from..to]
+    }
+
+    fn held<T: Copy>(flash: Flash<'_, [T]>) -> Vec<T> {
+        (0..flash.len())
+            .map(|i| flash.get(i).expect("within").load())
+            .collect()
+    }
+
+    #[test]
+    fn the_source_says_what_the_run_time_robot_is() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            let source = firmware.source();
+            let of = |name: &str| numbers(value(&source, name));
+            let wide = |values: &[i64]| values.to_vec();
+
+            assert_eq!(of("PINS"), firmware.pins().map(i64::from), "{name}");
+            assert_eq!(of("NEUTRAL"), firmware.neutral().map(|a| i64::from(a.0)));
+            let calibration = firmware.calibration().map(|c| {
+                [
+                    i64::from(c.neutral.0),
+                    i64::from(c.gain),
+                    i64::from(c.min.0),
+                    i64::from(c.max.0),
+                ]
+            });
+            assert_eq!(of("CALIBRATION"), calibration.concat());
+            let limits = firmware.limits();
+            assert_eq!(
+                of("LIMITS"),
+                [limits.type2, limits.type1, limits.leg].map(|s| i64::from(s.0))
+            );
+            assert_eq!(of("SLEW"), wide(&[i64::from(firmware.slew().per_frame)]));
+            for (name, side) in [("LEFT", Side::Left), ("RIGHT", Side::Right)] {
+                let s = firmware.side(side);
+                let slider = [
+                    i64::from(s.scale.bits),
+                    i64::from(s.offset),
+                    i64::from(s.base),
+                    i64::from(s.front),
+                    i64::from(s.rear),
+                    i64::from(s.nominal),
+                    i64::from(s.min),
+                    i64::from(s.max),
+                ];
+                assert_eq!(of(name), slider);
+            }
+            let l = robot.lizard().links;
+            for (name, end, mm) in [
+                ("HEAD", End::Head, [l.l0, l.l1, l.l4, l.l2, l.l3]),
+                ("TAIL", End::Tail, [l.l5, l.l6, l.l9, l.l7, l.l8]),
+            ] {
+                let per_mm = f64::from(1u32 << firmware.end_scale(end).bits);
+                assert_eq!(of(name), mm.map(|mm| (mm * per_mm).round() as i64));
+            }
+
+            let gaits: Vec<i64> = held(firmware.gaits())
+                .iter()
+                .flat_map(|gait| {
+                    let mut all = vec![
+                        i64::from(gait.name_start),
+                        i64::from(gait.name_length),
+                        i64::from(gait.increment),
+                    ];
+                    for channel in gait.channels {
+                        all.extend([
+                            i64::from(channel.wave),
+                            i64::from(channel.offset),
+                            i64::from(channel.gain),
+                        ]);
+                    }
+                    all
+                })
+                .collect();
+            assert_eq!(of("GAITS"), gaits, "{name}");
+            let waves: Vec<i64> = held(firmware.waves())
+                .concat()
+                .into_iter()
+                .map(i64::from)
+                .collect();
+            assert_eq!(of("WAVES"), waves, "{name}");
+            let names = String::from_utf8(held(firmware.names())).expect("ASCII");
+            assert_eq!(value(&source, "NAMES"), format!(" *b{names:?}"));
+        }
+    }
+
+    #[test]
+    fn a_mechanism_that_differs_has_constants_of_its_own() {
+        for (name, robot) in all() {
+            let source = robot.firmware().source();
+            let alike = (name != "unequal").to_string();
+            assert_eq!(value(&source, "ENDS_ALIKE").trim(), alike, "{name}");
+            assert_eq!(value(&source, "SIDES_ALIKE").trim(), alike, "{name}");
+            // The tail's tables are the head's where its couplers are.
+            let tables = if name == "unequal" { "TAIL" } else { "HEAD" };
+            assert!(value(&source, "TAIL").contains(&format!("rise: {tables}_RISE")));
+            assert!(value(&source, "HEAD").contains("rise: HEAD_RISE"));
+            assert_eq!(source.contains("TAIL_RISE: Table"), name == "unequal");
+        }
+        // Couplers alike, cranks not: two loops, one set of tables.
+        let wider = with("paper", &[("l6 = 30.0 ", "l6 = 31.0 ")]).expect("a longer crank");
+        let source = wider.firmware().source();
+        assert_eq!(value(&source, "ENDS_ALIKE").trim(), "false");
+        assert!(value(&source, "TAIL").contains("rise: HEAD_RISE"));
+    }
+
+    #[test]
+    fn every_table_that_is_named_is_there_with_its_couplers() {
+        for (name, robot) in all() {
+            let source = robot.firmware().source();
+            for end in ["HEAD", "TAIL"] {
+                let bars = value(&source, end);
+                let [.., a, b] = numbers(bars)[..] else {
+                    panic!("{bars}")
+                };
+                let names = bars.split(|c: char| !(c.is_ascii_uppercase() || c == '_'));
+                for table in names.filter(|word| word.contains('_') && word.len() > 4) {
+                    assert_eq!(numbers(value(&source, table)), [a, b], "{name} {table}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_hash_is_that_of_the_lines_below_it() {
+        for (_, robot) in all() {
+            let source = robot.firmware().source();
+            let (head, body) = source.split_once(";\n").expect("the hash's line");
+            let hash = crc32fast::hash(body.as_bytes());
+            assert!(head.ends_with(&format!("HASH: u32 = {hash:#010x}")));
+            assert_eq!(hash, robot.firmware().hash());
+        }
+    }
+
+    #[test]
+    fn the_hash_covers_all_that_the_firmware_gets_and_nothing_else() {
+        let hash =
+            |changes: &[(&str, &str)]| with("paper", changes).expect("valid").firmware().hash();
+        let paper = hash(&[]);
+        for change in [
+            ("pin = \"D9\"", "pin = \"D6\""),
+            ("\nslew = 300.0", "\nslew = 250.0"),
+            ("amplitude = 15.0", "amplitude = 14.9"),
+            ("period = 4.0", "period = 4.1"),
+            ("stroke_max = 45.0", "stroke_max = 44.0"),
+            ("[gait.look]", "[gait.gaze]\nlike = \"walk\"\n[gait.look]"),
+        ] {
+            assert_ne!(hash(&[change]), paper, "{change:?}");
+        }
+        assert_eq!(
+            hash(&[("_forward = 1.0", "_forward = 1.2")]),
+            paper,
+            "the floor is no part of it"
+        );
+        assert_eq!(hash(&[("hip_side = 35.0", "hip_side = 36.0")]), paper);
+    }
+}

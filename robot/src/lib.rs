@@ -33,6 +33,8 @@ mod sensitivity;
 pub mod servo;
 mod table;
 mod tabled_gait;
+#[cfg(test)]
+mod testing;
 mod units;
 mod waveform;
 

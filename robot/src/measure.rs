@@ -71,11 +71,14 @@ impl Measures {
             let bars = self.lizard.end(end);
             let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
             let least = f64::from(SHORTEST_COUPLER) / per_mm;
+            // As the sentence shows it: what it asks for must do.
+            let shown = (10.0 * least).ceil() / 10.0;
             for (key, value) in names
                 .into_iter()
                 .zip([bars.coupler_left, bars.coupler_right])
             {
                 if value < least {
+                    let least = shown;
                     return Err(Problem::ShortCoupler { value, least }.at(key));
                 }
             }
@@ -126,7 +129,7 @@ fn links(root: &Section) -> Checked<Links> {
         l.l15,
         "links.l10",
         l.l10,
-        "the chassis is a rectangle",
+        "the chassis is a rectangle, so its two sides are equally long",
     )?;
     Ok(l)
 }
@@ -150,7 +153,7 @@ fn leg(root: &Section) -> Checked<(Leg, Feet)> {
         coupler: bar("coupler")?,
         follower: bar("follower")?,
     };
-    let parallelogram = "a leg is a parallelogram";
+    let parallelogram = "a leg is a parallelogram, so its opposite links are equally long";
     equal(
         "leg.coupler",
         leg.coupler,

@@ -184,3 +184,165 @@ fn ceil(value: f64) -> i64 {
 fn floor(value: f64) -> i64 {
     (value + SLACK).floor() as i64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{all, robot, with};
+    use lizard_core::part::{End, Side};
+    use lizard_core::robot::Robot as _;
+
+    /// 256 steps to a millimetre: the scale of every mechanism of the unequal robot.
+    const PER_MM: f64 = 256.0;
+
+    #[test]
+    fn every_link_goes_where_it_belongs() {
+        let robot = robot("unequal");
+        let l = robot.lizard().links;
+        let numbers = Numbers::new(
+            &crate::measure::Measures {
+                lizard: *robot.lizard(),
+                servos: *robot.servos(),
+                limits: *robot.limits(),
+                pace: *robot.pace(),
+                ground: *robot.ground(),
+            },
+            Tables::new(&[]).expect("no gait"),
+        );
+        let loops = [
+            [l.l0, l.l1, l.l4, l.l2, l.l3],
+            [l.l5, l.l6, l.l9, l.l7, l.l8],
+        ];
+        for (bars, mm) in numbers.ends.iter().zip(loops) {
+            let Bars { left, right, .. } = bars.couplers;
+            let steps = [bars.base, bars.left, bars.right, left, right];
+            assert_eq!(steps.map(f64::from), mm.map(|mm| mm * PER_MM));
+            assert_eq!(bars.scale.bits, 8);
+        }
+        let aside = (l.l5 - l.l0) / 2.0;
+        let sides = [
+            [aside, l.l10, l.l14, l.l11, l.l12 + l.l13],
+            [-aside, l.l15, l.l19, l.l16, l.l17 + l.l18],
+        ];
+        for (side, mm) in numbers.sides.iter().zip(sides) {
+            let steps = [
+                f64::from(side.offset),
+                f64::from(side.base),
+                f64::from(side.front),
+                f64::from(side.rear),
+                f64::from(side.nominal),
+            ];
+            assert_eq!(steps, mm.map(|mm| mm * PER_MM));
+            assert_eq!(side.scale.bits, 8);
+        }
+        assert_eq!(numbers.pins, [6, 14, 19, 12]);
+    }
+
+    #[test]
+    fn least_margins_are_rounded_up_each_its_own() {
+        let limits = robot("unequal").firmware().limits();
+        assert_eq!(
+            [limits.type2, limits.type1, limits.leg],
+            [10_486, 8_848, 12_452].map(Sine)
+        );
+        // An exact one stays.
+        let exact = with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]).expect("0.25");
+        assert_eq!(exact.firmware().limits().type2, Sine(8192));
+    }
+
+    #[test]
+    fn strokes_are_rounded_inwards() {
+        let changes = [
+            ("stroke_min = -19.0", "stroke_min = -19.001"),
+            ("stroke_max = 41.0", "stroke_max = 41.001"),
+        ];
+        let inward = with("unequal", &changes).expect("a stroke");
+        for side in [Side::Left, Side::Right] {
+            let slider = inward.firmware().side(side);
+            let nominal = slider.nominal;
+            assert_eq!(slider.min, nominal - 19 * 256, "{side:?}");
+            assert_eq!(slider.max, nominal + 41 * 256, "{side:?}");
+        }
+    }
+
+    #[test]
+    fn a_travel_ends_at_the_last_step_within_the_servos_pulses() {
+        for (name, robot) in all() {
+            let calibrations = robot.firmware().calibration();
+            for (servo, calibration) in robot.servos().iter().zip(calibrations) {
+                let pulse = |sweep: i32| {
+                    servo.neutral_us + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0
+                };
+                let within = |sweep: i32| {
+                    (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse(sweep))
+                };
+                let (min, max) = (i32::from(calibration.min.0), i32::from(calibration.max.0));
+                assert!(within(min) && !within(min - 1), "{name} {servo:?} {min}");
+                assert!(within(max) && !within(max + 1), "{name} {servo:?} {max}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_servo_has_its_own_gain_and_neutral() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            for (i, servo) in robot.servos().iter().enumerate() {
+                let calibration = firmware.calibration()[i];
+                for sweep in
+                    (i32::from(calibration.min.0)..i32::from(calibration.max.0)).step_by(97)
+                {
+                    let cycles = 16.0
+                        * (servo.neutral_us
+                            + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0);
+                    let width = calibration.width(Sweep(sweep as i16));
+                    // A half of a cycle each: the neutral, the gain over the travel, the
+                    // product.
+                    let off = (f64::from(width.0) - cycles).abs();
+                    assert!(off <= 1.5, "{name} A{}: {off} cycles at {sweep}", i + 1);
+                }
+                let neutral = f64::from(firmware.neutral()[i].0) * 360.0 / 65536.0;
+                assert!((neutral - servo.neutral).abs() <= 0.5 * 360.0 / 65536.0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_slew_limit_is_rounded_down() {
+        // 260 deg/s are 946.6 steps in a frame.
+        assert_eq!(robot("unequal").firmware().slew(), Slew::new(946));
+        assert_eq!(robot("paper").firmware().slew(), Slew::new(1092));
+    }
+
+    #[test]
+    fn the_slowest_robot_is_one_that_the_core_can_move() {
+        let slow = with("paper", &[("\nslew = 300.0", "\nslew = 10.0")]).expect("slow");
+        assert!(slow.firmware().slew().per_frame >= Slew::SLOWEST);
+    }
+
+    #[test]
+    fn only_unequal_couplers_and_wide_cranks_have_further_tables() {
+        for (name, robot) in all() {
+            let source = robot.firmware().source();
+            for end in ["HEAD", "TAIL"] {
+                let there = source.contains(&format!("{end}_SKEW: Table"));
+                assert_eq!(there, name == "unequal", "{name} {end}");
+                assert_eq!(source.contains(&format!("{end}_FOLDED: Table")), there);
+            }
+        }
+    }
+
+    #[test]
+    fn a_larger_robot_has_a_coarser_step_where_its_lengths_need_one() {
+        let (paper, large) = (robot("paper"), robot("large"));
+        for end in [End::Head, End::Tail] {
+            assert_eq!(paper.firmware().end_scale(end).bits, 8);
+            assert_eq!(large.firmware().end_scale(end).bits, 8);
+        }
+        for side in [Side::Left, Side::Right] {
+            let (small, long) = (paper.firmware().side(side), large.firmware().side(side));
+            assert_eq!(long.scale.bits, 7);
+            assert_eq!(4 * u32::from(long.nominal), 3 * u32::from(small.nominal));
+        }
+    }
+}

@@ -82,8 +82,16 @@ impl fmt::Display for Report {
             self.hash
         )?;
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
-        writeln!(f, "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg", "")?;
-        writeln!(f, "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn", "gait")?;
+        writeln!(
+            f,
+            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg",
+            ""
+        )?;
+        writeln!(
+            f,
+            "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn",
+            "gait"
+        )?;
         for row in &self.rows {
             let Row {
                 name,

@@ -93,7 +93,7 @@ impl Robot {
         let firmware = Firmware::new(Numbers::new(&measures, tables));
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
             let gait = TabledGait::new(gait, index, firmware.tables());
-            match audit::check(&gait, &measures) {
+            match audit::check(&gait, &measures, &firmware) {
                 Ok(audit) => Ok(CheckedGait::new(gait, audit)),
                 Err(problem) => Err(problem.at(key(gait.name()))),
             }

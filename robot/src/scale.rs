@@ -48,3 +48,81 @@ fn finest(lengths: &[(f64, f64)]) -> Scale {
         .find(fits)
         .expect("a bar is at most a metre long")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Whether bars fit at so many bits, in the words of the core: 127 and 255 times
+    /// 256 steps.
+    fn loop_fits(bars: &FiveBar, bits: u8) -> bool {
+        let steps = |mm: f64| mm * f64::from(1u32 << bits);
+        let all = bars.base + bars.crank_left + bars.crank_right;
+        [all, bars.coupler_left, bars.coupler_right]
+            .into_iter()
+            .all(|mm| steps(mm) < 127.0 * 256.0)
+    }
+
+    fn side_fits(side: &Slider, stroke_max: f64, bits: u8) -> bool {
+        let steps = |mm: f64| mm * f64::from(1u32 << bits);
+        let arms = side.front + side.rear + side.offset.abs();
+        steps(arms) < 127.0 * 256.0
+            && steps(side.base + arms) < 255.0 * 256.0
+            && steps(side.nominal + stroke_max) < 255.0 * 256.0
+    }
+
+    fn length() -> impl Strategy<Value = f64> {
+        (0.0..3.0f64).prop_map(|decade| 10f64.powf(decade))
+    }
+
+    proptest! {
+        #[test]
+        fn a_loops_scale_is_the_finest_that_fits(
+            [base, crank_left, coupler_left, coupler_right, crank_right] in prop::array::uniform5(length()),
+        ) {
+            let bars = FiveBar { base, crank_left, coupler_left, coupler_right, crank_right };
+            let bits = of_loop(&bars).bits;
+            prop_assert!(loop_fits(&bars, bits));
+            prop_assert!(bits == 14 || !loop_fits(&bars, bits + 1), "{bits}");
+        }
+
+        #[test]
+        fn a_sides_scale_is_the_finest_that_fits(
+            [base, front, rear, nominal, stroke] in prop::array::uniform5(length()),
+            offset in -500.0..500.0f64,
+        ) {
+            let side = Slider { offset, base, front, rear, nominal };
+            let bits = of_side(&side, stroke).bits;
+            prop_assert!(side_fits(&side, stroke, bits));
+            prop_assert!(bits == 14 || !side_fits(&side, stroke, bits + 1), "{bits}");
+        }
+    }
+
+    #[test]
+    fn a_length_that_just_does_not_fit_halves_the_step_less() {
+        // 127 mm together: exactly the bound at 256 steps, which is not below it.
+        let bars = |base| FiveBar {
+            base,
+            crank_left: 40.0,
+            coupler_left: 60.0,
+            coupler_right: 60.0,
+            crank_right: 40.0,
+        };
+        assert_eq!(of_loop(&bars(46.99)).bits, 8);
+        assert_eq!(of_loop(&bars(47.0)).bits, 7);
+    }
+
+    #[test]
+    fn the_smallest_and_the_largest_robot_have_a_scale() {
+        let bars = |mm| FiveBar {
+            base: mm,
+            crank_left: mm,
+            coupler_left: mm,
+            coupler_right: mm,
+            crank_right: mm,
+        };
+        assert_eq!(of_loop(&bars(1.0)).bits, 13);
+        assert_eq!(of_loop(&bars(LONGEST_BAR)).bits, 3);
+    }
+}

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use lizard_robot::Sensitivity;
+use lizard_robot::{Report, Sensitivity};
 
+use crate::paper;
 use crate::predictions::{EXPECTED, predict};
-use crate::robot;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gaits.md");
 const END: &str = "<!-- end -->";
@@ -14,7 +14,7 @@ fn predictions() -> String {
     let mut rows =
         "| gait | predicted here | chosen by | rigid bodies |\n|---|---|---|---|\n".to_string();
     for (name, forward, turn, far_forward, far_turn) in EXPECTED {
-        let here = predict(robot(), name);
+        let here = predict(paper(), name);
         let cell = |forward: f64, turn: f64, decimals: usize| match (
             forward.abs() > 0.01,
             turn.abs() > 0.01,
@@ -49,11 +49,15 @@ fn filled(page: &str, marker: &str, text: &str) -> String {
 #[test]
 fn the_page_on_gaits_shows_what_the_commands_print() {
     let page = std::fs::read_to_string(PAGE).expect(PAGE);
-    let mut now = filled(&page, "lizard gaits", &fenced(robot().report().to_string()));
+    let mut now = filled(
+        &page,
+        "lizard gaits",
+        &fenced(Report::of(paper()).to_string()),
+    );
     now = filled(
         &now,
         "lizard gaits --sensitivity",
-        &fenced(Sensitivity::of(robot()).to_string()),
+        &fenced(Sensitivity::of(paper()).to_string()),
     );
     now = filled(&now, "predictions", &predictions());
     if std::env::var_os("BLESS_GAITS").is_some() {

@@ -1,22 +1,19 @@
-//! Snapshots of the tables, so that a changed gait shows as a diff.
+//! Snapshots of the tables of the paper's robot, so that a changed gait shows as a diff.
 
 use std::fmt::Write;
 
-use crate::robot;
+use lizard_robot::CheckedGait;
+
+use crate::paper;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
-const ROWS: u16 = 64;
+const ROWS: u32 = 64;
 
 /// Phase and the four servo angles as the firmware reads them, deg.
-fn snapshot(index: usize) -> String {
-    let robot = robot();
-    let gait = &robot.gaits[index];
+fn snapshot(gait: &CheckedGait) -> String {
     let mut text = "phase,A1,A2,A3,A4\n".to_string();
     for row in 0..ROWS {
-        let [a1, a2, a3, a4] =
-            robot
-                .tables
-                .angles(gait, index, row * (65536 / u32::from(ROWS)) as u16);
+        let [a1, a2, a3, a4] = gait.table_angles((row * (65536 / ROWS)) as u16);
         let phase = f64::from(row) / f64::from(ROWS);
         writeln!(text, "{phase:.6},{a1:.2},{a2:.2},{a3:.2},{a4:.2}").expect("a String takes all");
     }
@@ -24,11 +21,11 @@ fn snapshot(index: usize) -> String {
 }
 
 #[test]
-fn every_gait_is_as_its_snapshot_says() {
+fn every_gait_of_the_papers_robot_is_as_its_snapshot_says() {
     let bless = std::env::var_os("BLESS_GAITS").is_some();
-    for (index, gait) in robot().gaits.iter().enumerate() {
-        let path = format!("{FOLDER}/{}.csv", gait.name);
-        let now = snapshot(index);
+    for gait in paper().gaits() {
+        let path = format!("{FOLDER}/{}.csv", gait.name());
+        let now = snapshot(gait);
         if bless {
             std::fs::write(&path, &now).expect(&path);
         }
@@ -40,7 +37,7 @@ fn every_gait_is_as_its_snapshot_says() {
         {
             panic!(
                 "{} has changed.\n  was {then}\n  is  {now}\nIf that is meant, run BLESS_GAITS=1 cargo test -p lizard-robot golden and commit {path}.",
-                gait.name
+                gait.name()
             );
         }
         assert_eq!(
@@ -53,7 +50,7 @@ fn every_gait_is_as_its_snapshot_says() {
 
 #[test]
 fn no_snapshot_outlives_its_gait() {
-    let robot = robot();
+    let robot = paper();
     for entry in std::fs::read_dir(FOLDER).expect(FOLDER) {
         let name = entry.expect(FOLDER).file_name();
         let name = name.to_string_lossy();

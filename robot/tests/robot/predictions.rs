@@ -1,10 +1,10 @@
-//! Where the gaits go, against the figures they were chosen by, and the exact
+//! Where the gaits of the paper's robot go, against the figures they were chosen by, and the exact
 //! consequences of the contact model.
 
-use lizard_robot::{Robot, Travel};
+use lizard_robot::{Report, Robot, Travel};
 use proptest::prelude::*;
 
-use crate::{gait, robot, with};
+use crate::{gait, paper, paper_with};
 
 /// A cycle of a gait: forward mm, turn deg. From a separate implementation of
 /// the same model, and from a rigid-body engine with dragging pads.
@@ -40,8 +40,8 @@ fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
 }
 
 #[test]
-fn every_gait_goes_where_it_was_meant_to() {
-    let robot = robot();
+fn every_gait_of_the_papers_robot_goes_where_it_was_meant_to() {
+    let robot = paper();
     for (name, forward, turn, ..) in EXPECTED {
         assert_near(name, predict(robot, name), forward, turn);
     }
@@ -49,7 +49,7 @@ fn every_gait_goes_where_it_was_meant_to() {
 
 #[test]
 fn a_rigid_body_engine_agrees_within_a_twentieth() {
-    let robot = robot();
+    let robot = paper();
     for (name, _, _, forward, turn) in EXPECTED {
         let travel = predict(robot, name);
         assert!(
@@ -65,20 +65,19 @@ fn a_rigid_body_engine_agrees_within_a_twentieth() {
 
 #[test]
 fn the_tables_at_fifty_frames_a_second_go_the_same_way() {
-    let robot = robot();
+    let robot = paper();
     for (name, forward, turn, ..) in EXPECTED {
-        let (index, gait) = robot.gait(name).expect(name);
-        let frames = robot.tables.frames(gait, index);
-        let angles = frames.map(|(_, phase)| robot.tables.angles(gait, index, phase));
+        let gait = gait(robot, name);
+        let angles = gait.frames().map(|(_, phase)| gait.table_angles(phase));
         assert_near(name, robot.travel(angles), forward, turn);
     }
 }
 
 #[test]
 fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
-    let robot = robot();
+    let robot = paper();
     assert_eq!(robot.predict(gait(robot, "look")).forward, None);
-    let report = robot.report().to_string();
+    let report = Report::of(robot).to_string();
     let look = report.lines().find(|line| line.starts_with("look"));
     let cells: Vec<&str> = look.expect("look").split_whitespace().collect();
     assert_eq!(cells[cells.len() - 3], "-", "{cells:?}");
@@ -87,7 +86,7 @@ fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
 
 #[test]
 fn a_table_read_backwards_leads_back() {
-    let robot = robot();
+    let robot = paper();
     let forth = predict(robot, "walk");
     let back = predict(robot, "back");
     assert!(
@@ -98,7 +97,7 @@ fn a_table_read_backwards_leads_back() {
     let arc = gait(robot, "arc-left");
     let cycle: Vec<[f64; 4]> = (0..=500).map(|i| arc.sweeps(i as f64 / 500.0)).collect();
     let home = robot
-        .ground
+        .ground()
         .travel(cycle.iter().chain(cycle.iter().rev()).copied());
     assert!(
         home.forward.hypot(home.left) < 1e-5 && home.turn.abs() < 1e-6,
@@ -108,7 +107,7 @@ fn a_table_read_backwards_leads_back() {
 
 #[test]
 fn left_and_right_are_mirror_images() {
-    let robot = robot();
+    let robot = paper();
     for (a, b) in [("left", "right"), ("arc left", "arc right")] {
         let (a, b) = (predict(robot, a), predict(robot, b));
         assert!((a.forward - b.forward).abs() < 1e-6);
@@ -118,12 +117,12 @@ fn left_and_right_are_mirror_images() {
 
 #[test]
 fn a_sine_trot_gets_nowhere() {
-    let robot = robot();
+    let robot = paper();
     let sine = |i: i32| {
         let psi = 20.0 * (f64::from(i) * std::f64::consts::TAU / 400.0).sin();
         [psi, -psi, psi, -psi]
     };
-    let travel = robot.ground.travel((0..=400).map(sine));
+    let travel = robot.ground().travel((0..=400).map(sine));
     assert!(
         travel.forward.abs() < 1e-5 && travel.left.abs() < 1e-5 && travel.turn.abs() < 1e-5,
         "{travel:?}"
@@ -132,17 +131,17 @@ fn a_sine_trot_gets_nowhere() {
 
 #[test]
 fn a_finer_cycle_changes_no_prediction_by_a_hundredth() {
-    let robot = robot();
-    for gait in &robot.gaits {
-        let at = |i| gait.sweeps(gait.phase(gait.period * f64::from(i) / 1000.0));
-        let coarse = robot.ground.travel((0..=1000).map(at));
-        let at = |i| gait.sweeps(gait.phase(gait.period * f64::from(i) / 2000.0));
-        let fine = robot.ground.travel((0..=2000).map(at));
+    let robot = paper();
+    for gait in robot.gaits() {
+        let at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
+        let coarse = robot.ground().travel((0..=1000).map(at));
+        let at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 2000.0));
+        let fine = robot.ground().travel((0..=2000).map(at));
         let off = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
         assert!(
             off < 0.01 && (coarse.turn - fine.turn).abs() < 0.01,
             "{} {off}",
-            gait.name
+            gait.name()
         );
     }
 }
@@ -155,7 +154,7 @@ fn forward(robot: &Robot, name: &str) -> f64 {
 #[test]
 fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
     for mount in ["41.0", "49.0"] {
-        let robot = with("mount = 0.0", &format!("mount = {mount}")).expect("a mount");
+        let robot = paper_with("mount = 0.0", &format!("mount = {mount}")).expect("a mount");
         assert!((4.0..=6.0).contains(&forward(&robot, "walk")));
         assert!((21.0..=24.5).contains(&forward(&robot, "crawl")));
     }
@@ -163,9 +162,10 @@ fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
 
 #[test]
 fn pads_that_grip_backward_help_forward_gaits_until_reverse_collapses() {
-    let even = robot();
-    let ratio =
-        |ratio: &str| with("_forward = 1.0", &format!("_forward = {ratio}")).expect("a ratio");
+    let even = paper();
+    let ratio = |ratio: &str| {
+        paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("a ratio")
+    };
     for rho in ["1.1", "1.25", "1.5"] {
         let robot = ratio(rho);
         assert!(forward(&robot, "walk") > forward(even, "walk"));
@@ -187,8 +187,8 @@ proptest! {
     fn a_path_that_retraces_itself_leads_home(
         path in prop::collection::vec(prop::array::uniform4(-20.0f64..20.0), 2..6),
     ) {
-        let robot = robot();
-        let travel = robot.ground.travel(path.iter().chain(path.iter().rev()).copied());
+        let robot = paper();
+        let travel = robot.ground().travel(path.iter().chain(path.iter().rev()).copied());
         prop_assert!(travel.forward.abs() < 1e-4 && travel.left.abs() < 1e-4 && travel.turn.abs() < 1e-4, "{:?}", travel);
     }
 }

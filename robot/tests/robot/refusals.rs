@@ -2,7 +2,7 @@
 
 use lizard_robot::Robot;
 
-use crate::{text, with};
+use crate::{paper_text, paper_with};
 
 mod gaits;
 mod measures;
@@ -17,7 +17,7 @@ fn mistakes() -> impl Iterator<Item = &'static Mistake> {
 #[test]
 fn every_mistake_gets_its_sentence() {
     for (from, to, expected) in mistakes() {
-        let error = with(from, to)
+        let error = paper_with(from, to)
             .err()
             .unwrap_or_else(|| panic!("{to:?} was accepted"));
         let line = error.line.expect("a line");
@@ -32,7 +32,7 @@ fn every_mistake_gets_its_sentence() {
 #[test]
 fn every_mistake_gets_the_line_of_its_key_or_table() {
     for (from, to, _) in mistakes() {
-        let text = text().replacen(from, to, 1);
+        let text = paper_text().replacen(from, to, 1);
         let error = Robot::parse(&text).expect_err(to);
         let line = text.lines().nth(error.line.expect("a line") - 1).expect(to);
         let mut names = error.key.split(['.', '[']).filter(|name| *name != "gait");
@@ -82,7 +82,7 @@ fn what_is_no_text_file_is_refused_without_reading_it_to_its_end() {
         refused(&latin),
         "FILE: is not UTF-8 text: line 2 holds other bytes"
     );
-    let mut long = text().into_bytes();
+    let mut long = paper_text().into_bytes();
     long.resize(lizard_robot::LONGEST as usize, b'\n');
     let long = file("long", &long);
     assert!(Robot::load(&long).is_ok(), "1 MiB is allowed");
@@ -93,8 +93,8 @@ fn what_is_no_text_file_is_refused_without_reading_it_to_its_end() {
 
 #[test]
 fn a_byte_order_mark_changes_nothing() {
-    let marked = format!("\u{feff}{}", text());
-    assert_eq!(Robot::parse(&marked), Robot::parse(&text()));
+    let marked = format!("\u{feff}{}", paper_text());
+    assert_eq!(Robot::parse(&marked), Robot::parse(&paper_text()));
 }
 
 #[test]
@@ -118,13 +118,13 @@ fn the_limits_of_every_range_are_allowed() {
             "[gait.walk-slow1]\nlike = \"walk\"\nperiod = 60\n[gait.walk]",
         ),
     ] {
-        if let Err(error) = with(from, to) {
+        if let Err(error) = paper_with(from, to) {
             panic!("{to:?}: {error}");
         }
     }
 }
 
 #[test]
-fn the_project_robot_is_accepted() {
-    assert!(Robot::parse(&text()).is_ok());
+fn the_papers_robot_is_accepted() {
+    assert!(Robot::parse(&paper_text()).is_ok());
 }

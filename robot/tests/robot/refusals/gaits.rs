@@ -25,8 +25,8 @@ mirror = "walk""#,
     ),
     (
         "[gait.walk]",
-        "[gait.walk-very-slowly]",
-        "gait.walk-very-slowly is no gait name: it must have at most 12 characters",
+        "[gait.walk-very-very-very-slowly-through-the-wet-grasses]",
+        "gait.walk-very-very-very-slowly-through-the-wet-grasses is no gait name: it has 50 characters, but `status` must fit into a line of the console with it, so it may have 48",
     ),
     (
         "[gait.walk]",

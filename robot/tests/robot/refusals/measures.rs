@@ -20,34 +20,39 @@ pub const MISTAKES: &[Mistake] = &[
         "links.l13 is missing; it must be a number",
     ),
     (
-        "l3 = 50.0 ",
-        "l3 = 51.0 ",
-        "links.l3 is 51, but links.l2 is 50; the two couplers of a loop are equally long",
-    ),
-    (
-        "l8 = 50.0 ",
-        "l8 = 40.0 ",
-        "links.l8 is 40, but links.l7 is 50; the two couplers of a loop are equally long",
-    ),
-    (
         "l15 = 135.0",
         "l15 = 134.0",
-        "links.l15 is 134, but links.l10 is 135; the chassis is a rectangle",
-    ),
-    (
-        "l0 = 20.0 ",
-        "l0 = 70.0 ",
-        "links.l0: the head's l0 + l1 + l4 is 130 mm; the firmware's fixed point holds less than 127 mm",
-    ),
-    (
-        "l11 = 30.0",
-        "l11 = 100.0",
-        "links.l10: the left side's l10 + l11 + l14 + |l5 - l0|/2 is 265 mm; the firmware's fixed point holds less than 255 mm",
+        "links.l15 is 134, but links.l10 is 135; the chassis is a rectangle, so its two sides are equally long",
     ),
     (
         "l7 = 50.0 ",
         "l7 = -50.0 ",
-        "links.l7 is -50; it must be within 17 to 255 mm",
+        "links.l7 is -50; it must be within 1 to 1000 mm",
+    ),
+    (
+        "l10 = 135.0",
+        "l10 = 1000.001",
+        "links.l10 is 1000.001; it must be within 1 to 1000 mm",
+    ),
+    (
+        "l10 = 135.0",
+        "l10 = 1e308",
+        "links.l10 is 1e308; it must be within 1 to 1000 mm",
+    ),
+    (
+        "l10 = 135.0",
+        "l10 = 1e309",
+        "links.l10 is 1e309; it must be a number",
+    ),
+    (
+        "l2 = 50.0 ",
+        "l2 = 16.0 ",
+        "links.l2 is 16 mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least 16.1 mm, or for shorter cranks and a shorter base",
+    ),
+    (
+        "l8 = 50.0 ",
+        "l8 = 15.0 ",
+        "links.l8 is 15 mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least 16.1 mm, or for shorter cranks and a shorter base",
     ),
     (
         "l7 = 50.0 ",
@@ -57,12 +62,12 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "coupler = 50.0",
         "coupler = 49.0",
-        "leg.coupler is 49, but leg.ground is 50; a leg is a parallelogram",
+        "leg.coupler is 49, but leg.ground is 50; a leg is a parallelogram, so its opposite links are equally long",
     ),
     (
         "follower = 45.0",
         "follower = 44.0",
-        "leg.follower is 44, but leg.crank is 45; a leg is a parallelogram",
+        "leg.follower is 44, but leg.crank is 45; a leg is a parallelogram, so its opposite links are equally long",
     ),
     (
         "hip_side = 35.0",
@@ -149,6 +154,17 @@ pub const MISTAKES: &[Mistake] = &[
         "neutral = 60.0",
         "servo: the neutral pose is not safe: margin type1_a1 -0.018 is below 0.300",
     ),
+    // Beyond its change point a parallelogram may have come out crossed.
+    (
+        "neutral = 138.590378",
+        "neutral = 209.0",
+        "servo: the neutral pose is not safe: margin leg_lf -0.485 is below 0.300",
+    ),
+    (
+        "us_per_degree = 10.0",
+        "us_per_degree = 1e300",
+        "servo.A1.us_per_degree is 1e300; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
+    ),
     (
         "neutral = 138.590378",
         "neutral = -221.4",
@@ -170,9 +186,9 @@ pub const MISTAKES: &[Mistake] = &[
         "limits.stroke_min is 60; it must be less than stroke_max, which is 45",
     ),
     (
-        "stroke_max = 45.0",
-        "stroke_max = 200.0",
-        "limits.stroke_max is 200; it must be within -90 to 165 mm, so that the slider stays within 0 to 255 mm",
+        "stroke_min = -15.0",
+        "stroke_min = -90.5",
+        "limits.stroke_min is -90.5; it must be within -90 to 1000 mm, so that the slider keeps a length",
     ),
     (
         "gait_slew = 310.0",

@@ -1,0 +1,39 @@
+//! Robots for the unit tests, from the files in robots/.
+
+use crate::{Error, Robot};
+
+/// The robots whose files are complete.
+pub const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
+
+/// The text of a robot's file.
+pub fn text(name: &str) -> String {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).expect(&path)
+}
+
+/// A robot with some of its file replaced, each time the first that fits.
+pub fn with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
+    let mut text = text(name);
+    for (from, to) in changes {
+        assert!(text.contains(from), "{name}.toml has no {from:?}");
+        text = text.replacen(from, to, 1);
+    }
+    Robot::parse(&text)
+}
+
+/// A robot as its file has it.
+pub fn robot(name: &str) -> Robot {
+    with(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// All robots.
+pub fn all() -> impl Iterator<Item = (&'static str, Robot)> {
+    NAMES.into_iter().map(|name| (name, robot(name)))
+}
+
+/// The text of a robot's file up to its gaits.
+pub fn body(name: &str) -> String {
+    let text = text(name);
+    let gaits = text.find("[gait.stand]").expect("stand");
+    text[..gaits].to_string()
+}
