@@ -10,7 +10,7 @@ use lizard_core::couplers::{self, Couplers};
 use lizard_core::curve::Table;
 use lizard_core::five_bar::FiveBar;
 use lizard_core::gait::{Channel, Gait, Wave};
-use lizard_core::guard::Limits;
+use lizard_core::limits::Limits;
 use lizard_core::part::{End, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;

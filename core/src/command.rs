@@ -154,7 +154,7 @@ fn pose(mut words: Words) -> Result<Command, Misread> {
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
 fn gait<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut misread = Misread::Unknown;
-    for id in GaitId::all(robot) {
+    for id in GaitId::all(robot.gaits().len()) {
         match compare(Words(line), robot.name(id)) {
             Some(Misread::Unknown) => {}
             Some(other) => misread = other,

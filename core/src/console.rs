@@ -257,7 +257,7 @@ impl<R: Robot> Console<R> {
         const ROOM: u8 = LONGEST_LINE - 2;
         let robot = self.motion.robot();
         Text::HelpGaits.print(out)?;
-        let mut length = Text::HelpGaits.len();
+        let mut length = Text::HelpGaits.length();
         let mut gait = first;
         loop {
             let name = robot.name(gait);
@@ -267,7 +267,7 @@ impl<R: Robot> Console<R> {
             }
             out.write_char(if gait == first { ' ' } else { '|' })?;
             answer::ascii(out, name)?;
-            match gait.next(robot) {
+            match gait.next(robot.gaits().len()) {
                 Some(next) => gait = next,
                 None => return Ok(None),
             }

@@ -9,7 +9,6 @@
 use lizard_avr::{Flash, mul};
 
 use crate::pose::Pose;
-use crate::robot::Robot;
 use crate::units::{CYCLE, Sweep, phase16};
 
 /// Samples of a waveform.
@@ -77,7 +76,7 @@ pub struct Channel {
 /// One gait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gait {
-    /// Where its name begins in [`Robot::names`].
+    /// Where its name begins in [`crate::robot::Robot::names`].
     pub name_start: u16,
     /// The name's length, at most [`LONGEST_NAME`].
     pub name_length: u8,
@@ -96,9 +95,9 @@ impl GaitId {
     /// The gait that holds the neutral pose.
     pub const STAND: Self = Self(0);
 
-    /// All gaits of a robot, in their order.
-    pub fn all<R: Robot>(robot: &R) -> impl Iterator<Item = Self> + use<R> {
-        (0..robot.gaits().len() as u8).map(Self)
+    /// All gaits of a robot that has `count` of them, in their order.
+    pub fn all(count: usize) -> impl Iterator<Item = Self> {
+        (0..count as u8).map(Self)
     }
 
     /// Its place.
@@ -106,9 +105,9 @@ impl GaitId {
         self.0 as usize
     }
 
-    /// The next gait of a robot, if there is one.
-    pub fn next<R: Robot>(self, robot: &R) -> Option<Self> {
-        (self.index() + 1 < robot.gaits().len()).then(|| Self(self.0 + 1))
+    /// The next of `count` gaits, if there is one.
+    pub fn next(self, count: usize) -> Option<Self> {
+        (self.index() + 1 < count).then(|| Self(self.0 + 1))
     }
 }
 
@@ -125,11 +124,11 @@ impl Gait {
         }; 4],
     };
 
-    /// Where the servos stand at `phase` (1/2^24 cycle).
-    pub fn pose<R: Robot>(&self, robot: &R, phase: u32) -> Pose {
+    /// Where the servos stand at `phase` (1/2^24 cycle), by a robot's waveforms.
+    pub fn pose(&self, waves: Flash<[Wave]>, phase: u32) -> Pose {
         let mut pose = Pose::NEUTRAL;
         for (sweep, channel) in pose.0.iter_mut().zip(&self.channels) {
-            if let Some(wave) = robot.waves().get(usize::from(channel.wave)) {
+            if let Some(wave) = waves.get(usize::from(channel.wave)) {
                 *sweep = channel.sweep(wave, phase16(phase));
             }
         }
@@ -161,6 +160,7 @@ impl Channel {
 
 #[cfg(test)]
 mod tests {
+    use crate::robot::Robot as _;
     use std::vec::Vec;
 
     use proptest::prelude::*;
@@ -270,7 +270,7 @@ mod tests {
         let robot = Sample::odd();
         for gait in &robot.gaits {
             for phase in (0..CYCLE).step_by(99_991) {
-                let pose = gait.pose(&robot, phase);
+                let pose = gait.pose(robot.waves(), phase);
                 for (sweep, channel) in pose.0.iter().zip(&gait.channels) {
                     let table = Flash::from(&robot.waves[usize::from(channel.wave)]);
                     assert_eq!(*sweep, channel.sweep(table, (phase >> 8) as u16));
@@ -298,12 +298,12 @@ mod tests {
     #[test]
     fn names_and_numbers_of_gaits_go_together() {
         let robot = Sample::odd();
-        let ids: Vec<GaitId> = GaitId::all(&robot).collect();
+        let ids: Vec<GaitId> = GaitId::all(robot.gaits().len()).collect();
         assert_eq!(ids.len(), GAITS.len());
         assert_eq!(ids[0], GaitId::STAND);
         for (place, id) in ids.iter().enumerate() {
             assert_eq!(id.index(), place);
-            assert_eq!(id.next(&robot), ids.get(place + 1).copied());
+            assert_eq!(id.next(robot.gaits().len()), ids.get(place + 1).copied());
             let name = robot.name(*id);
             assert_eq!(usize::from(name.length()), GAITS[place].len());
             assert!(name.eq(GAITS[place].bytes()));

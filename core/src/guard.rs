@@ -19,17 +19,6 @@ use crate::root::root;
 use crate::trig::Direction;
 use crate::units::Sine;
 
-/// The smallest margins allowed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Between the couplers of head and tail.
-    pub type2: Sine,
-    /// Between each crank and its coupler.
-    pub type1: Sine,
-    /// Of each parallelogram leg.
-    pub leg: Sine,
-}
-
 /// The ten margins in the order in which they are checked.
 const MARGINS: usize = 10;
 
@@ -131,6 +120,7 @@ impl Clearance {
 
 #[cfg(test)]
 mod tests {
+    use crate::limits::Limits;
     use std::vec::Vec;
 
     use lizard_kinematics as kinematics;

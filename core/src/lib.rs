@@ -35,6 +35,7 @@ pub mod five_bar;
 pub mod gait;
 pub mod guard;
 pub mod hazard;
+pub mod limits;
 pub mod line;
 pub mod motion;
 pub mod part;

@@ -144,7 +144,7 @@ mod tests {
             let (five, walk) = (back.repeat(5), Some("walk".to_string()));
             assert_eq!(
                 ended(std::format!("walt{back}k\r").as_bytes()),
-                [walk.clone()]
+                std::slice::from_ref(&walk)
             );
             assert_eq!(ended(std::format!("{five}walk\r").as_bytes()), [walk]);
             assert_eq!(ended(std::format!("stand{five}\r").as_bytes()), []);

@@ -281,7 +281,7 @@ impl<R: Robot> Motion<R> {
             } => {
                 *pace = toward(*pace, if braking { 0 } else { pace_of(self.speed) });
                 *phase = gait.advance(*phase, *pace);
-                gait.pose(&self.robot, *phase)
+                gait.pose(self.robot.waves(), *phase)
             }
         };
         if let Some(hazard) = Clearance::of(&self.robot, &pose).hazard(&self.robot) {
@@ -310,7 +310,7 @@ impl<R: Robot> Motion<R> {
         };
         let (to, gait) = match target {
             Target::Pose(pose) => (pose, None),
-            Target::Gait(id) => (self.robot.gait(id).pose(&self.robot, 0), Some(id)),
+            Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
         };
         self.state = State::Moving {
             path: PointToPoint::new(&self.pose, &to, self.robot.slew()),

@@ -18,7 +18,7 @@ use crate::couplers::{self, Couplers};
 use crate::curve::Table;
 use crate::five_bar::{self, FiveBar};
 use crate::gait::{Channel, Gait, GaitId, SAMPLES, Wave};
-use crate::guard::Limits;
+use crate::limits::Limits;
 use crate::part::{End, Side};
 use crate::point_to_point::Slew;
 use crate::pose::Pose;
@@ -311,7 +311,7 @@ impl Sample {
 
     /// A gait by its name.
     pub fn id(&self, name: &str) -> GaitId {
-        GaitId::all(self)
+        GaitId::all(self.gaits().len())
             .find(|id| self.name(*id).eq(name.bytes()))
             .expect("a gait of that name")
     }

@@ -106,7 +106,7 @@ impl Text {
     }
 
     /// Its length in bytes.
-    pub fn len(self) -> u8 {
+    pub fn length(self) -> u8 {
         self.place().len() as u8
     }
 
@@ -171,7 +171,7 @@ mod tests {
             let mut printed = String::new();
             let Ok(()) = text.print(&mut printed);
             assert_eq!(printed, expected);
-            assert_eq!(usize::from(text.len()), expected.len());
+            assert_eq!(usize::from(text.length()), expected.len());
         }
     }
 

@@ -56,10 +56,8 @@ fn no_pair_of_positions_outside_the_band_is_decided_wrong_for_any_robot() {
 
 #[test]
 fn a_guard_with_another_robots_lengths_does_not_pass() {
-    let text = std::fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../robots/paper.toml"
-    ));
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
     let text = text.expect("the paper's robot is there");
     let robot = Robot::parse(&text).expect("it is right");
     let longer = text
@@ -71,7 +69,10 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
         one_in: 4096,
         offset: 1,
     };
-    assert_eq!(Proof::of(&robot, robot.firmware(), share, |_| {}).wrong(), 0);
+    assert_eq!(
+        Proof::of(&robot, robot.firmware(), share, |_| {}).wrong(),
+        0
+    );
     let proof = Proof::of(&robot, longer.firmware(), share, |_| {});
     for (finding, seen) in proof.findings.iter().zip([true, false, true, true]) {
         assert_eq!(finding.tally.wrong > 0, seen, "{}", finding.part);

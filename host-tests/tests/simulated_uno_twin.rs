@@ -68,7 +68,12 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
         assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
-        let commands = twin::play(&robot().firmware, &recording.received_by_uno, log.first, log.widths.len());
+        let commands = twin::play(
+            &robot().firmware,
+            &recording.received_by_uno,
+            log.first,
+            log.widths.len(),
+        );
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }

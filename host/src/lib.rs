@@ -14,9 +14,9 @@ pub mod gaits;
 #[cfg(feature = "paper")]
 pub mod paper;
 pub mod pose_args;
-mod robot_file;
 #[cfg(feature = "paper")]
 pub mod prove;
+mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
 

@@ -8,11 +8,11 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 #[cfg(not(all(feature = "simulator", feature = "paper")))]
 use lizard_host::absent;
-#[cfg(feature = "paper")]
-use lizard_host::{paper, prove};
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim};
 use lizard_host::{draw, gaits};
+#[cfg(feature = "paper")]
+use lizard_host::{paper, prove};
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
 ///

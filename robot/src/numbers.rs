@@ -13,7 +13,7 @@ use lizard_core::calibration::Calibration;
 use lizard_core::couplers::{self, Couplers};
 use lizard_core::curve::Table;
 use lizard_core::five_bar::FiveBar;
-use lizard_core::guard::Limits;
+use lizard_core::limits::Limits;
 use lizard_core::point_to_point::Slew;
 use lizard_core::slider::Slider;
 use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};

@@ -176,7 +176,7 @@ fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_lon
         for number in 0..count {
             robot = robot.with_gait(&format!("{number:x>length$}")[..length]);
         }
-        let names: Vec<String> = crate::gait::GaitId::all(&robot)
+        let names: Vec<String> = crate::gait::GaitId::all(robot.gaits().len())
             .map(|id| robot.name(id).map(char::from).collect())
             .collect();
         let said = Dialogue::awake(robot).send(b"help\r");
@@ -208,7 +208,7 @@ fn status_tells_everything_as_key_and_value() {
     dialogue.run(200);
     let line = dialogue.say("status");
     let motion = dialogue.console.motion();
-    let phase = u64::from(motion.phase()) * 1000 >> 24;
+    let phase = (u64::from(motion.phase()) * 1000) >> 24;
     let angles: Vec<String> = motion
         .pose()
         .angles(&motion.robot().neutral())

@@ -272,13 +272,13 @@ fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gathers_pace() {
             motion.tick();
         }
         assert_eq!(motion.state, State::cycling(&motion.robot, id));
-        assert_eq!(motion.pose(), &gait.pose(&motion.robot, 0));
+        assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), 0));
         let mut phase = 0;
         for pace in [147, 294, 441, 588, 735, 882, 1024, 1024] {
             motion.tick();
             phase = gait.advance(phase, pace);
             assert_eq!((motion.pace(), motion.phase()), (pace, phase));
-            assert_eq!(motion.pose(), &gait.pose(&motion.robot, phase));
+            assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
         }
     }
 }
@@ -348,7 +348,7 @@ fn another_gait_lets_the_old_one_brake_along_its_cycle_first() {
         motion.tick();
         phase = gait.advance(phase, pace);
         assert_eq!((motion.pace(), motion.phase()), (pace, phase));
-        assert_eq!(motion.pose(), &gait.pose(&motion.robot, phase));
+        assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
         assert_eq!(motion.gait(), Some("swing"), "where it is heading");
     }
     motion.tick();
@@ -479,7 +479,7 @@ fn a_stopped_gait_begins_anew_at_its_first_pose() {
     let first = motion
         .robot
         .gait(motion.robot.id("sway"))
-        .pose(&motion.robot, 0);
+        .pose(motion.robot.waves(), 0);
     assert_eq!((motion.pose(), motion.phase()), (&first, 0));
 }
 
@@ -519,7 +519,7 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held_with_the_reason(
     let reasons: Vec<Hazard> = (0..CYCLE)
         .step_by(1000)
         .filter_map(|phase| {
-            let pose = gait.pose(&motion.robot, phase);
+            let pose = gait.pose(motion.robot.waves(), phase);
             Clearance::of(&motion.robot, &pose).hazard(&motion.robot)
         })
         .collect();

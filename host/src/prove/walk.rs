@@ -29,7 +29,11 @@ pub fn all(
         findings.push(Finding {
             part: end.name().to_string(),
             servos: names(end.servos()),
-            tally: EndWalk::new(robot, guard, end).walk(end.pick(positions.each_ref()), share, progress),
+            tally: EndWalk::new(robot, guard, end).walk(
+                end.pick(positions.each_ref()),
+                share,
+                progress,
+            ),
         });
     }
     for side in Side::ALL {
@@ -212,10 +216,7 @@ impl<'a> EndWalk<'a> {
         } = margins;
         // Where the couplers fold, no other margin matters.
         if truth.closes && truth.type2 > self.limits[0] - self.margin_band {
-            Tally::raise(
-                &mut tally.type2,
-                (sine(type2.0).abs() - truth.type2).abs(),
-            );
+            Tally::raise(&mut tally.type2, (sine(type2.0).abs() - truth.type2).abs());
             for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
                 Tally::raise(&mut tally.type1, (sine(fixed.0) - exact).abs());
             }
@@ -350,9 +351,12 @@ fn leg(robot: &Robot, guard: &Firmware, positions: &Positions) -> Tally {
         Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
         let clear = exact.y - robot.limits().leg;
         if (fixed.sin >= least) != (clear >= 0.0) {
-            tally.differ(false, clear.abs(), margin_band(robot.limits().type2), || {
-                format!("at {:.4} deg", positions.degrees[position])
-            });
+            tally.differ(
+                false,
+                clear.abs(),
+                margin_band(robot.limits().type2),
+                || format!("at {:.4} deg", positions.degrees[position]),
+            );
         }
     }
     tally

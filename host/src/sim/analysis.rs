@@ -411,7 +411,7 @@ mod tests {
             };
             let legs = way(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
             let whole = robot
-                .ground
+                .ground()
                 .travel(run.instants().filter_map(|at| at.sweeps));
             let [first, second, all] = &legs[..] else {
                 panic!("two commands and the whole: {legs:?}")
