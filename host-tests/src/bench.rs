@@ -10,28 +10,9 @@ use std::sync::LazyLock;
 
 use lizard_host::board::{Board, BoardError};
 use lizard_host::sim::frame::{Frame, servo_pins};
-use lizard_robot::Robot;
 use simulated_uno::{Call, Fidelity, Uno};
 
-/// The robot under test: the file that `LIZARD_ROBOT` names, seen from the root
-/// of the repository, or the repository's robot.toml. `make test ROBOT=...` sets
-/// it, and builds the firmware from the same file.
-///
-/// # Panics
-/// If the file is missing or wrong, with its words.
-#[must_use]
-pub fn robot() -> &'static Robot {
-    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-        let path = root().join(given.unwrap_or_else(|| "robot.toml".into()));
-        Robot::load(path).unwrap_or_else(|error| panic!("{error}"))
-    });
-    &ROBOT
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
+use crate::robots::{robot, root};
 
 /// A simulated UNO with the firmware in flash and a person at its console.
 pub struct FirmwareBench(Board);

@@ -1,9 +1,12 @@
-//! What the tests share: a bench with the running firmware on it, and little
-//! AVR programs to test the bench itself.
+//! What the tests share: the robots that they run over, a bench with the running
+//! firmware on it, and little AVR programs to test the bench itself.
 
 pub mod avr_gcc;
 mod bench;
+pub mod random_robot;
+mod robots;
 
-pub use bench::{FirmwareBench, bench_of, robot};
+pub use bench::{FirmwareBench, bench_of};
 pub use lizard_host::sim::frame::{FRAME, Frame};
 pub use lizard_host::sim::lines::Line;
+pub use robots::{Named, paper, rng, robot, robots, seed};

@@ -1,14 +1,16 @@
 //! Why the guard is not built on the conditions that the paper prints,
 //! sin(theta2 + theta3) = 0 (and its kin of the tail) and sin(2 theta11) = 0.
 
-use lizard::clearance::Clearance;
-use lizard::hazard::Kind;
-use lizard::pose::Pose;
-use lizard::robot::SERVOS;
-use lizard::units::angle_from_centideg;
-use lizard_host_tests::robot;
+use lizard_core::gait::GaitId;
+use lizard_core::guard::Clearance;
+use lizard_core::hazard::{Hazard, Margin};
+use lizard_core::part::End;
+use lizard_core::pose::Pose;
+use lizard_core::robot::Robot as _;
+use lizard_core::units::{Angle, Sweep};
+use lizard_host_tests::paper;
 
-use crate::truth::angles;
+use crate::truth::{angles, is_safe};
 
 /// The head's crank angles where the crank tips meet, deg: the one place where
 /// the couplers fold and the head swings free.
@@ -26,9 +28,9 @@ struct Printed {
 
 impl Printed {
     fn of(pose: &Pose) -> Self {
-        let solution = robot()
-            .lizard
-            .solve(&angles(pose).into())
+        let solution = paper()
+            .lizard()
+            .solve(&angles(paper().firmware(), pose).into())
             .expect("the loops close");
         let size = |degrees: f64| degrees.to_radians().sin().abs();
         Self {
@@ -39,7 +41,7 @@ impl Printed {
     }
 
     fn stops(&self) -> bool {
-        let limit = robot().limits.type2;
+        let limit = paper().limits().type2;
         self.head < limit || self.tail < limit || self.left < limit
     }
 }
@@ -48,25 +50,26 @@ fn head_at(theta1: f64, theta4: f64) -> Pose {
     let mut pose = Pose::NEUTRAL;
     for (servo, degrees) in [theta1, theta4].into_iter().enumerate() {
         let centideg = (100.0 * degrees).round() as i32;
-        pose.0[servo] = SERVOS[servo].sweep_to(angle_from_centideg(centideg));
+        let neutral = paper().firmware().neutral()[servo];
+        pose.0[servo] = neutral.sweep_to(Angle::from_centideg(centideg));
     }
     pose
 }
 
 #[test]
-fn the_printed_conditions_would_stop_the_robot_at_home() {
+fn the_conditions_printed_in_the_paper_would_stop_the_robot_at_home() {
     let home = Printed::of(&Pose::NEUTRAL);
     assert!(home.head < 1e-3 && home.tail < 1e-3 && home.left < 1e-3);
     assert!(home.stops());
-    assert!(Clearance::of(&Pose::NEUTRAL).hazard().is_none());
+    assert!(is_safe(paper().firmware(), &Pose::NEUTRAL));
 }
 
 #[test]
-fn the_printed_condition_calls_every_symmetric_head_singular() {
+fn the_condition_printed_in_the_paper_calls_every_symmetric_head_singular() {
     let mut stopped = 0;
     for sweep in -4000..4000 {
-        let pose = Pose([sweep, -sweep, 0, 0]);
-        if Clearance::of(&pose).hazard().is_none() {
+        let pose = Pose([sweep, -sweep, 0, 0].map(Sweep));
+        if is_safe(paper().firmware(), &pose) {
             // Neutral angles are rounded to the core's step of 0.0055 deg.
             assert!(Printed::of(&pose).head < 1e-3, "{sweep}");
             stopped += 1;
@@ -76,37 +79,41 @@ fn the_printed_condition_calls_every_symmetric_head_singular() {
 }
 
 #[test]
-fn the_printed_conditions_would_stop_every_gait() {
-    for id in lizard::gait::GaitId::all() {
-        let gait = id.load();
+fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
+    let firmware = paper().firmware();
+    for id in GaitId::all(firmware) {
+        let gait = firmware.gait(id);
         let stopped = (0..256u32)
-            .filter(|n| Printed::of(&gait.pose(n << 16)).stops())
+            .filter(|n| Printed::of(&gait.pose(firmware, n << 16)).stops())
             .count();
-        assert!(stopped > 64, "{:?}: {stopped} of 256", gait.name);
+        assert!(stopped > 64, "{id:?}: {stopped} of 256");
     }
 }
 
 #[test]
-fn the_printed_condition_is_blind_to_the_real_singularity_and_the_guard_is_not() {
+fn the_condition_printed_in_the_paper_is_blind_to_the_real_singularity_and_the_guard_is_not() {
     let mut best = 0.0f64;
     for around in 0..360 {
         let (dy, dx) = f64::from(around).to_radians().sin_cos();
         let pose = head_at(MEET[0] + dx, MEET[1] + dy);
         best = best.max(Printed::of(&pose).head);
-        let hazard = Clearance::of(&pose).hazard().expect("a degree beside it");
-        assert_eq!(
-            (hazard.check.kind(), hazard.check.which()),
-            (Kind::Type2, 0)
-        );
+        assert_eq!(named(&pose), Some(Margin::Type2(End::Head)), "a degree beside it");
     }
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {best:.3}");
     assert!(best > 0.95);
     // On the spot, too, and at its mirror image in the tail.
-    for pose in [head_at(MEET[0], MEET[1]), {
-        let head = head_at(MEET[0], MEET[1]).0;
-        Pose([0, 0, -head[1], -head[0]])
-    }] {
-        let hazard = Clearance::of(&pose).hazard().expect("couplers fold");
-        assert_eq!(hazard.check.kind(), Kind::Type2);
+    let head = head_at(MEET[0], MEET[1]);
+    assert_eq!(named(&head), Some(Margin::Type2(End::Head)));
+    let Pose([a1, a2, ..]) = head;
+    let tail = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
+    assert_eq!(named(&tail), Some(Margin::Type2(End::Tail)));
+}
+
+/// The margin that the guard finds too small.
+fn named(pose: &Pose) -> Option<Margin> {
+    let firmware = paper().firmware();
+    match Clearance::of(firmware, pose).hazard(firmware) {
+        Some(Hazard::Margin { margin, .. }) => Some(margin),
+        _ => None,
     }
 }

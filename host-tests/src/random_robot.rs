@@ -1,0 +1,323 @@
+//! Random robots without symmetry, each one valid.
+//!
+//! In the paper's robot left equals right, head equals tail and every limit of a
+//! margin is .3, so a mistake that exchanges two of them changes nothing. Here
+//! every length, servo and limit is another one. A robot is written as the text of
+//! a robot.toml and read by [`Robot::parse`], which refuses what is not valid: a
+//! robot that comes out of here is one that a builder could have.
+
+use std::fmt::Write;
+
+use fastrand::Rng;
+use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
+use lizard_robot::Robot;
+
+/// Drafts of one robot before the search is given up.
+const DRAFTS: usize = 1000;
+
+/// The pins that a servo may be on.
+const PINS: [&str; 17] = [
+    "D2", "D3", "D4", "D5", "D6", "D7", "D8", "D9", "D10", "D11", "D12", "A0", "A1", "A2", "A3",
+    "A4", "A5",
+];
+
+/// Names of servos and of legs, in servo order.
+const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
+const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
+
+/// A valid robot and the text that it was read from.
+///
+/// # Panics
+/// If no draft becomes a valid robot: the generator is wrong.
+#[must_use]
+pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
+    (0..DRAFTS)
+        .find_map(|_| {
+            let body = Body::random(rng)?;
+            let mut text = body.text();
+            Robot::parse(&text).ok()?;
+            for gait in gaits(rng, &body) {
+                text = accepted(text, &gait);
+            }
+            let robot = Robot::parse(&text).ok()?;
+            Some((text, robot))
+        })
+        .expect("one draft in a few is a valid robot")
+}
+
+/// Everything but the gaits.
+struct Body {
+    scale: f64,
+    links: [f64; 20],
+    neutral: [f64; 4],
+    limits: Limits,
+    servos: [String; 4],
+    slew: [f64; 2],
+    lizard: Lizard,
+}
+
+impl Body {
+    /// A robot that stands; None where no safe neutral pose was found.
+    fn random(rng: &mut Rng) -> Option<Self> {
+        let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
+        let mut length = |least: f64, most: f64| round(scale * between(rng, least, most));
+        let chassis = length(100.0, 170.0);
+        // l0 and l5 bases; l1, l4, l6, l9 cranks; l2, l3, l7, l8 couplers; l10 and
+        // l15 chassis; l11, l14, l16, l19 arms; l12, l13, l17, l18 slider halves.
+        let mut links: [f64; 20] = std::array::from_fn(|link| match link {
+            0 | 5 => length(12.0, 36.0),
+            1 | 4 | 6 | 9 => length(22.0, 38.0),
+            2 | 3 | 7 | 8 => length(40.0, 66.0),
+            10 | 15 => chassis,
+            11 | 14 | 16 | 19 => length(14.0, 40.0),
+            _ => length(40.0, 50.0),
+        });
+        let (ground, leg) = (length(30.0, 70.0), length(30.0, 60.0));
+        let mut limits = Limits {
+            type2: fine(between(rng, 0.1, 0.5)),
+            type1: fine(between(rng, 0.0, 0.4)),
+            leg: fine(between(rng, 0.0, 0.5)),
+            stroke_min: -round(scale * between(rng, 8.0, 30.0)),
+            stroke_max: round(scale * between(rng, 8.0, 50.0)),
+        };
+        let mut lizard = Lizard {
+            links: Links::from(links),
+            leg: Leg {
+                ground,
+                crank: leg,
+                coupler: ground,
+                follower: leg,
+            },
+        };
+        let neutral = neutral(rng, &lizard, &limits)?;
+        // The sliders' nominal lengths follow from the neutral pose.
+        let solution = lizard.solve(&neutral.into()).ok()?;
+        for (side, halves) in [(Side::Left, [12, 13]), (Side::Right, [17, 18])] {
+            let room = 0.5 * limits.stroke_max.min(-limits.stroke_min);
+            let nominal = solution.side(side).d + between(rng, -room, room);
+            let first = between(rng, 0.35, 0.65);
+            links[halves[0]] = round(nominal * first);
+            links[halves[1]] = round(nominal * (1.0 - first));
+            // A slider keeps a length.
+            limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal));
+        }
+        lizard.links = Links::from(links);
+        let mut pins = PINS;
+        rng.shuffle(&mut pins);
+        let servos = std::array::from_fn(|servo| {
+            let sign = if rng.bool() { 1.0 } else { -1.0 };
+            let trim = |rng: &mut Rng, us: f64| (us + between(rng, -60.0, 60.0)).round();
+            format!(
+                "pin = \"{}\"\nneutral = {}\nneutral_us = {}\nus_per_degree = {}\nmin_us = {}\nmax_us = {}\n",
+                pins[servo],
+                neutral[servo],
+                trim(rng, 1500.0),
+                sign * fine(between(rng, 6.0, 14.0)),
+                trim(rng, 600.0),
+                trim(rng, 2400.0),
+            )
+        });
+        Some(Self {
+            scale,
+            links,
+            neutral,
+            limits,
+            servos,
+            slew: [
+                between(rng, 120.0, 500.0).round(),
+                between(rng, 150.0, 800.0).round(),
+            ],
+            lizard,
+        })
+    }
+
+    /// The text of a robot that only stands.
+    fn text(&self) -> String {
+        let mut text = String::from("[links]\n");
+        let Lizard { leg, .. } = self.lizard;
+        for (link, length) in self.links.iter().enumerate() {
+            line(&mut text, &format!("l{link} = {length}"));
+        }
+        line(
+            &mut text,
+            &format!(
+                "[leg]\nground = {0}\ncrank = {1}\ncoupler = {0}\nfollower = {1}",
+                leg.ground, leg.crank
+            ),
+        );
+        line(
+            &mut text,
+            &format!(
+                "hip_forward = {}\nhip_side = {}\nmount = 7.5",
+                round(self.scale * 55.0),
+                round(self.scale * 35.0)
+            ),
+        );
+        for (name, servo) in SERVOS.iter().zip(&self.servos) {
+            line(&mut text, &format!("[servo.{name}]\n{servo}"));
+        }
+        let Limits {
+            type2,
+            type1,
+            leg,
+            stroke_min,
+            stroke_max,
+        } = self.limits;
+        let [slew, gait_slew] = self.slew;
+        line(
+            &mut text,
+            &format!(
+                "[limits]\ntype2 = {type2}\ntype1 = {type1}\nleg = {leg}\n\
+                 stroke_min = {stroke_min}\nstroke_max = {stroke_max}\n\
+                 slew = {slew}\ngait_slew = {gait_slew}\n\
+                 [ground]\nfriction_back_over_forward = 0.8\n\
+                 [gait.stand]\nperiod = 1.0\nwaveform = \"still\""
+            ),
+        );
+        text
+    }
+}
+
+/// A safe neutral pose with some room around it, deg; None if there is none near.
+fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
+    /// Of every margin, to its limit.
+    const ROOM: f64 = 0.12;
+    (0..200).find_map(|_| {
+        let [left, right, rear_left, rear_right] =
+            [(); 4].map(|()| round(between(rng, 8.0, 80.0)));
+        let neutral = [180.0 - left, right, 360.0 - rear_right, 180.0 + rear_left];
+        let solution = lizard.solve(&neutral.into()).ok()?;
+        let roomy = Limits {
+            type2: limits.type2 + ROOM,
+            type1: limits.type1 + ROOM,
+            leg: limits.leg + ROOM,
+            stroke_min: f64::NEG_INFINITY,
+            stroke_max: f64::INFINITY,
+        };
+        roomy.allow(&solution).then_some(neutral)
+    })
+}
+
+/// A gait's text for a size from 0 to 1; or a gait that has no size of its own.
+type Sized = Box<dyn Fn(f64) -> String>;
+
+/// Gaits of every kind.
+fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
+    let mut gaits = Vec::new();
+    let period = |rng: &mut Rng| round(between(rng, 0.7, 3.0));
+    let legs = |values: [f64; 4]| {
+        let pairs: Vec<String> = LEGS
+            .iter()
+            .zip(values)
+            .map(|(leg, value)| format!("{leg} = {value}"))
+            .collect();
+        format!("{{ {} }}", pairs.join(", "))
+    };
+    let mut any = |least: f64, most: f64| -> [f64; 4] {
+        std::array::from_fn(|_| fine(between(rng, least, most)))
+    };
+    let (starts, gains, halves) = (any(0.0, 1.0), any(0.4, 1.0), any(-1.0, 1.0));
+    let wave = format!(
+        "[gait.wander]\nperiod = {}\nwaveform = \"wave\"\nduty = {}\nstart = {}\ngain = {}",
+        period(rng),
+        fine(between(rng, 0.5, 0.85)),
+        legs(starts),
+        legs(gains),
+    );
+    let mut order = LEGS;
+    rng.shuffle(&mut order);
+    let held = format!(
+        "[gait.creep-along]\nperiod = {}\nwaveform = \"held\"\norder = {order:?}\ngain = {}",
+        period(rng),
+        legs(halves),
+    );
+    for wavy in [wave, held] {
+        gaits.push(Box::new(move |size| format!("{wavy}\namplitude = {}", fine(30.0 * size))) as Sized);
+    }
+    gaits.push(Box::new(|_| "[gait.retreat]\nreverse = \"wander\"".into()));
+    gaits.push(Box::new(|_| "[gait.advance]\nreverse = \"retreat\"".into()));
+    gaits.push(Box::new(|_| "[gait.other-hand]\nmirror = \"creep-along\"".into()));
+    let curve = format!("[gait.curve]\nlike = \"wander\"\nperiod = {}", period(rng));
+    gaits.push(Box::new(move |size| {
+        format!("{curve}\ngain = {}", legs([size, 1.0, 0.5 * size, -0.5 * size].map(fine)))
+    }));
+    // Around where the end point stands in the neutral pose.
+    let Ok(solution) = body.lizard.solve(&body.neutral.into()) else {
+        return gaits;
+    };
+    for (name, end) in [("look", End::Head), ("wag", End::Tail)] {
+        let point = solution.end(end).end_point;
+        let (period, reach) = (round(between(rng, 2.0, 5.0)), 12.0 * body.scale);
+        let shift = fine(rng.f64());
+        gaits.push(Box::new(move |size| {
+            format!(
+                "[gait.{name}]\nperiod = {period}\n[gait.{name}.{end}]\ncentre = [{}, {}]\n\
+                 x = [{{ k = 1, amplitude = {} }}]\ny = [{{ k = 2, amplitude = {}, shift = {shift} }}]",
+                round(point.x),
+                round(point.y),
+                round(reach * size),
+                round(0.5 * reach * size)
+            )
+        }));
+    }
+    gaits
+}
+
+/// The text of a robot with one more gait, as large as the robot allows; without
+/// the gait if even a small one is refused.
+fn accepted(text: String, gait: &Sized) -> String {
+    [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
+        .into_iter()
+        .map(|size| format!("{text}{}\n", gait(size)))
+        .find(|longer| Robot::parse(longer).is_ok())
+        .unwrap_or(text)
+}
+
+fn line(text: &mut String, line: &str) {
+    // Into a String nothing fails.
+    let _ = writeln!(text, "{line}");
+}
+
+fn between(rng: &mut Rng, least: f64, most: f64) -> f64 {
+    least + (most - least) * rng.f64()
+}
+
+/// As a person writes a length or an angle.
+fn round(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0
+}
+
+/// As a person writes a factor.
+fn fine(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn random_robots_are_valid_differ_in_every_length_and_limit_and_move() {
+        let mut rng = Rng::with_seed(1);
+        let mut gaits = 0;
+        for _ in 0..20 {
+            let (text, robot) = random_robot(&mut rng);
+            let l = robot.lizard().links;
+            let pairs = [
+                (l.l0, l.l5),
+                (l.l1, l.l4),
+                (l.l2, l.l3),
+                (l.l6, l.l9),
+                (l.l7, l.l8),
+                (l.l11, l.l14),
+                (l.l16, l.l19),
+                (robot.limits().type1, robot.limits().leg),
+                (robot.limits().type1, robot.limits().type2),
+            ];
+            assert!(pairs.iter().all(|(one, other)| one != other), "{text}");
+            gaits += robot.gaits().len();
+        }
+        println!("{gaits} gaits of 20 robots");
+        assert!(gaits > 20 * 6);
+    }
+}

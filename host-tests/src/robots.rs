@@ -1,0 +1,102 @@
+//! The robots that tests run over.
+
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use fastrand::Rng;
+use lizard_robot::Robot;
+
+use crate::random_robot::random_robot;
+
+/// Random robots of a run.
+const RANDOM: u64 = 16;
+
+/// A robot and where it comes from.
+#[derive(Debug)]
+pub struct Named {
+    /// Its file, or its seed.
+    pub name: String,
+    /// The robot.
+    pub robot: Robot,
+}
+
+/// The root of the repository.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The robot under test: the file that `LIZARD_ROBOT` names, seen from the root
+/// of the repository, or the repository's robot.toml. `make test ROBOT=...` sets
+/// it, and builds the firmware from the same file.
+///
+/// # Panics
+/// If the file is missing or wrong, with its words.
+#[must_use]
+pub fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
+        let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+        load(&root().join(given.unwrap_or_else(|| "robot.toml".into())))
+    });
+    &ROBOT
+}
+
+/// The paper's robot, for tests that hold its figures.
+///
+/// # Panics
+/// If robots/paper.toml is missing or wrong.
+#[must_use]
+pub fn paper() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&root().join("robots/paper.toml")));
+    &ROBOT
+}
+
+/// The robot under test, every file of robots/, and random robots: the same ones
+/// in every run with the same [`seed`].
+///
+/// # Panics
+/// If one of the files is wrong, with its words; its name is in them.
+#[must_use]
+pub fn robots() -> &'static [Named] {
+    static ROBOTS: LazyLock<Vec<Named>> = LazyLock::new(|| {
+        let mut robots = vec![Named {
+            name: "the robot under test".into(),
+            robot: robot().clone(),
+        }];
+        let folder = root().join("robots");
+        let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
+            .expect("the folder robots/")
+            .map(|entry| entry.expect("a file").path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+            .collect();
+        files.sort();
+        assert!(!files.is_empty(), "{} has robots", folder.display());
+        robots.extend(files.iter().map(|path| Named {
+            name: path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into()),
+            robot: load(path),
+        }));
+        robots.extend((0..RANDOM).map(|n| Named {
+            name: format!("random robot {n} of seed {}", seed()),
+            robot: random_robot(&mut rng(n)).1,
+        }));
+        robots
+    });
+    &ROBOTS
+}
+
+/// What random numbers begin from: `PROPTEST_RNG_SEED`, or 1.
+#[must_use]
+pub fn seed() -> u64 {
+    let given = std::env::var("PROPTEST_RNG_SEED").ok();
+    given.and_then(|seed| seed.parse().ok()).unwrap_or(1)
+}
+
+/// Random numbers of their own for each `stream`, the same in every run with the
+/// same [`seed`].
+#[must_use]
+pub fn rng(stream: u64) -> Rng {
+    Rng::with_seed(seed().wrapping_mul(1_000_003).wrapping_add(stream))
+}
+
+fn load(path: &Path) -> Robot {
+    Robot::load(path).unwrap_or_else(|error| panic!("{error}"))
+}

@@ -1,0 +1,264 @@
+//! A robot at its console: lines go in, and every frame that comes is checked for
+//! all that no frame may do.
+
+use fastrand::Rng;
+use lizard_core::console::{Console, Counters};
+use lizard_core::gait::GaitId;
+use lizard_core::motion::{Activity, Motion};
+use lizard_core::pose::{Pose, Pulses};
+use lizard_core::robot::Robot as _;
+use lizard_core::units::CYCLE;
+use lizard_host_tests::Named;
+use lizard_robot::{CheckedGait, Firmware, Robot};
+
+use crate::truth::{Verdict, angles, is_safe, pose_within};
+
+/// Frames until all servos are awake.
+pub const WAKING: u32 = 20;
+
+/// A step of angle in a frame, as deg/s.
+pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
+
+/// Frames in which a motion gathers or loses all its pace.
+const GATHERING: f64 = 7.0;
+
+/// What rounding may add to a change of speed, in steps of angle a frame.
+const ROUNDING: f64 = 4.0;
+
+/// The most that a servo's speed may change from one frame to the next, deg/s, but
+/// for `stop`, `rest` and the guard, which freeze it.
+///
+/// A point-to-point move changes speed the most where its shortest, of eight frames,
+/// begins or ends: `6 way / 8^2` a frame, with a mean pace of 2/3 of the slew limit.
+/// That is half the slew limit, also where one move ends and the next leads straight
+/// back. A gait has its own changes, and gathers or loses its pace on top of them.
+pub fn jerk(robot: &Robot) -> f64 {
+    let moves = robot.pace().slew / 2.0;
+    let gaits = GaitId::all(robot.firmware()).map(|id| {
+        let (speed, change) = fastest(robot, id);
+        change.max(speed / GATHERING + robot.pace().slew / 4.0) + speed / GATHERING
+    });
+    gaits.fold(moves, f64::max) + ROUNDING * STEP_PER_FRAME
+}
+
+/// The largest speed of a gait at full pace, and the largest change of speed from a
+/// frame to the next, deg/s.
+fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
+    let firmware = robot.firmware();
+    let gait = firmware.gait(id);
+    let sweeps = |phase: u32| gait.pose(firmware, phase % CYCLE).0.map(|sweep| f64::from(sweep.0));
+    let frame = gait.increment.unsigned_abs();
+    let (mut speed, mut change) = (0.0f64, 0.0f64);
+    for phase in (0..CYCLE).step_by(CYCLE as usize / 4096) {
+        let [a, b, c] = [phase, phase + frame, phase + 2 * frame].map(sweeps);
+        for servo in 0..4 {
+            speed = speed.max((b[servo] - a[servo]).abs());
+            change = change.max((c[servo] - 2.0 * b[servo] + a[servo]).abs());
+        }
+    }
+    (speed * STEP_PER_FRAME, change * STEP_PER_FRAME)
+}
+
+/// Frames in which any command comes to its end: waking, braking, the longest move
+/// at the slew limit, gathering pace.
+pub fn long_enough(robot: &Robot) -> u32 {
+    let travels = robot.firmware().calibration();
+    let ways = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
+    let farthest = ways.into_iter().fold(0.0, f64::max);
+    let frames = 1.5 * farthest * STEP_PER_FRAME / robot.pace().slew;
+    WAKING + 30 + (1.05 * frames) as u32
+}
+
+/// A robot whose every frame is checked as it is sent.
+pub struct Walker<'a> {
+    name: &'a str,
+    robot: &'a Robot,
+    console: Console<&'a Firmware>,
+    /// Degrees a second of each servo in the last frame.
+    speeds: [f64; 4],
+    /// True if the next frame may stop dead.
+    may_stop: bool,
+    most_jerk: f64,
+    /// The largest change of speed so far, deg/s.
+    pub jerk: f64,
+}
+
+impl<'a> Walker<'a> {
+    /// A robot at power-on, its banner read.
+    pub fn new(Named { name, robot }: &'a Named) -> Self {
+        let mut walker = Self {
+            name,
+            robot,
+            console: Console::new(robot.firmware()),
+            speeds: [0.0; 4],
+            may_stop: false,
+            most_jerk: jerk(robot),
+            jerk: 0.0,
+        };
+        walker.read();
+        walker
+    }
+
+    /// A robot that is awake and stands.
+    pub fn standing(named: &'a Named) -> Self {
+        let mut walker = Self::new(named);
+        walker.run(WAKING + 1);
+        walker
+    }
+
+    pub fn motion(&self) -> &Motion<&'a Firmware> {
+        self.console.motion()
+    }
+
+    pub fn pose(&self) -> Pose {
+        *self.motion().pose()
+    }
+
+    /// Everything that the console has to write.
+    pub fn read(&mut self) -> Vec<String> {
+        let mut lines = Vec::new();
+        while self.console.has_output() {
+            let mut text = String::new();
+            let Ok(()) = self.console.write_line(&mut text, Counters::default());
+            lines.push(text.trim_end().to_owned());
+        }
+        lines
+    }
+
+    /// Types a line; returns its answer.
+    pub fn say(&mut self, line: &str) -> String {
+        self.read();
+        for byte in line.bytes().chain([b'\r']) {
+            self.console.receive(byte);
+        }
+        if ["stop", "rest"].contains(&line) {
+            self.may_stop = true;
+        }
+        self.read().pop().expect("every line is answered")
+    }
+
+    /// Types a line that must be understood and done.
+    pub fn does(&mut self, line: &str) {
+        let answer = self.say(line);
+        assert!(answer.starts_with("ok"), "{}: {line}: {answer}", self.name);
+    }
+
+    /// Goes to a pose and waits until it is there; false where the guard stops it.
+    pub fn arrives(&mut self, pose: &Pose) -> bool {
+        self.does(&self.typed(pose));
+        self.run(long_enough(self.robot));
+        self.motion().hazard().is_none()
+    }
+
+    /// The command for a pose. Hundredths of a degree name the angle of the nearest
+    /// step of 1/65536 turn, or its neighbour.
+    pub fn typed(&self, pose: &Pose) -> String {
+        typed(angles(&self.robot.firmware(), pose))
+    }
+
+    /// Some frames.
+    pub fn run(&mut self, frames: u32) {
+        for _ in 0..frames {
+            self.frame();
+        }
+    }
+
+    /// A frame that may do nothing that a frame must not.
+    pub fn frame(&mut self) -> Pulses {
+        let (name, robot) = (self.name, self.robot);
+        let before = self.pose();
+        let held_before = self.motion().hazard().is_some();
+        let pulses = self.console.frame();
+        let (pose, motion) = (self.pose(), self.console.motion());
+
+        let guard_stopped = !held_before && motion.hazard().is_some();
+        if guard_stopped {
+            assert_eq!(pose, before, "{name}: the guard holds the last safe pose");
+        }
+        let at = angles(robot.firmware(), &pose);
+        assert!(is_safe(robot.firmware(), &pose), "{name}: {at:?}");
+        assert_ne!(Verdict::of(robot, at), Verdict::Unsafe, "{name}: {at:?}");
+        self.check_pulses(&pose, pulses);
+
+        // Within a move the phase is 0; elsewhere a gait's is, once a cycle.
+        let in_gait = motion.phase() != 0;
+        let limit = if in_gait { robot.pace().gait_slew } else { robot.pace().slew };
+        // A table is rounded to a step at either end of a frame.
+        let fastest = f64::from(before.farthest(&pose)) * STEP_PER_FRAME;
+        let most = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
+        assert!(fastest <= most + 1e-6, "{name}: {fastest} deg/s, limit {limit}");
+
+        let speeds: [f64; 4] = std::array::from_fn(|n| {
+            (f64::from(pose.0[n].0) - f64::from(before.0[n].0)) * STEP_PER_FRAME
+        });
+        for (speed, last) in speeds.iter().zip(&self.speeds) {
+            let change = (speed - last).abs();
+            if !(self.may_stop || guard_stopped) {
+                assert!(change <= self.most_jerk, "{name}: {last} and then {speed} deg/s");
+                self.jerk = self.jerk.max(change);
+            }
+        }
+        self.speeds = speeds;
+        self.may_stop = false;
+        pulses
+    }
+
+    /// Pulses are those of the pose by robot.toml, within each servo's own travel.
+    fn check_pulses(&self, pose: &Pose, pulses: Pulses) {
+        for (n, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
+            if width.0 == 0 {
+                continue;
+            }
+            let sweep = f64::from(pose.0[n].0) * 360.0 / 65536.0;
+            let meant = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
+            let off = f64::from(width.0) - meant;
+            // Neutral, gain and product are rounded to half a cycle each; half a
+            // step of the gain is a cycle at the ends of half a turn.
+            assert!(off.abs() <= 2.0, "{}: A{} is {off} cycles off", self.name, n + 1);
+            let us = f64::from(width.0) / 16.0;
+            let travel = servo.min_us - 0.13..=servo.max_us + 0.13;
+            assert!(travel.contains(&us), "{}: A{} gets {us} us", self.name, n + 1);
+        }
+    }
+}
+
+/// The command for chassis angles, deg.
+pub fn typed(angles: [f64; 4]) -> String {
+    let [a1, a2, a3, a4] = angles;
+    format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
+}
+
+/// The command that begins a gait.
+pub fn words(gait: &CheckedGait) -> String {
+    gait.name().replace('-', " ")
+}
+
+/// Any command that moves a robot or stops it.
+pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
+    let pose = |rng: &mut Rng, share: f64| {
+        let firmware = robot.firmware();
+        let pose = pose_within(rng, &firmware.calibration(), share);
+        typed(angles(firmware, &pose))
+    };
+    match rng.u8(..20) {
+        0..9 => words(&robot.gaits()[rng.usize(..robot.gaits().len())]),
+        9..13 => pose(rng, 0.25),
+        13..15 => pose(rng, 0.8),
+        15 => "stop".into(),
+        16 => ["rest", "stand"][rng.usize(..2)].into(),
+        17 => "stand".into(),
+        _ => format!("speed {}", rng.u8(10..=100)),
+    }
+}
+
+/// What a robot does once a command has come to its end.
+pub fn meant(robot: &Robot, command: &str) -> Option<Activity> {
+    let gait = robot.gaits().iter().position(|gait| words(gait) == command);
+    let id = |place: usize| GaitId::all(robot.firmware()).nth(place).map(Activity::Gait);
+    match command {
+        "stop" => Some(Activity::Stop),
+        "rest" => Some(Activity::Rest),
+        _ if command.starts_with("pose") => Some(Activity::Pose),
+        _ => gait.and_then(id),
+    }
+}

@@ -1,0 +1,114 @@
+//! Pulses in, floor under: what the core sends, turned back into angles by the
+//! servos of robot.toml and put on the ground of the contact model, must lead where
+//! the gait was meant to.
+
+use lizard_core::pose::Pulses;
+use lizard_host_tests::{Named, paper, robots};
+use lizard_robot::{CheckedGait, Robot, Travel};
+
+use crate::frames::{Walker, long_enough, words};
+
+/// A cycle of each gait of the paper's robot: mm ahead, deg counter-clockwise. Found
+/// elsewhere, with the waveforms in floating point.
+const OF_PAPER: [(&str, f64, f64); 9] = [
+    ("stand", 0.0, 0.0),
+    ("walk", 34.16, 0.0),
+    ("trot", 26.66, 0.0),
+    ("crawl", 30.78, 0.0),
+    ("back", -34.16, 0.0),
+    ("left", 0.0, 15.34),
+    ("right", 0.0, -15.34),
+    ("arc-left", 17.71, 5.27),
+    ("arc-right", 17.71, -5.27),
+];
+
+/// Servo angles in the chassis frame, deg, from widths in cycles of 62.5 ns.
+fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
+    std::array::from_fn(|n| {
+        let servo = &robot.servos()[n];
+        servo.neutral + servo.sweep(f64::from(pulses.0[n].0) / 16.0)
+    })
+}
+
+/// Where one cycle leads, by the pulses that the core sends for a gait at a speed in
+/// percent. It begins where the gait's phase is next to 0. None where the guard bars
+/// the way to the gait's first pose.
+fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
+    let robot = &named.robot;
+    let mut walker = Walker::standing(named);
+    walker.does(&format!("speed {percent}"));
+    walker.does(&words(gait));
+    walker.run(long_enough(robot));
+    if walker.motion().hazard().is_some() {
+        return None;
+    }
+    let frames = gait.period() * 50.0 * 100.0 / percent;
+    // The frame with the phase nearest to 0, going up or down.
+    let from_zero = |walker: &Walker| {
+        let phase = i64::from(walker.motion().phase());
+        phase.min((1 << 24) - phase)
+    };
+    let near = (f64::from(1 << 24) / frames) as i64;
+    while from_zero(&walker) > near / 2 + 1 {
+        walker.run(1);
+    }
+    let mut path = vec![angles(robot, walker.pose().pulses(walker.motion().calibration()))];
+    for _ in 0..frames.ceil() as usize {
+        path.push(angles(robot, walker.frame()));
+    }
+    // A cycle may end between two frames.
+    let over = path.len() - 1;
+    let share = frames - frames.ceil() + 1.0;
+    let (before, last) = (path[over - 1], path[over]);
+    path[over] = std::array::from_fn(|n| before[n] + share * (last[n] - before[n]));
+    Some(robot.travel(path))
+}
+
+/// Holds a travel to what was meant, where that is known, within `most` mm or a
+/// hundredth of it.
+fn check(whom: &str, travel: Travel, most: f64, forward: Option<f64>, turn: Option<f64>) {
+    println!("{whom}: {:+.2} mm, {:+.2} deg, meant {forward:?} {turn:?}", travel.forward, travel.turn);
+    if let Some(forward) = forward {
+        let most = most.max(0.01 * forward.abs());
+        assert!((travel.forward - forward).abs() <= most, "{whom}: {travel:?}, not {forward}");
+    }
+    if let Some(turn) = turn {
+        assert!((travel.turn - turn).abs() <= 0.2, "{whom}: {travel:?}, not {turn}");
+    }
+}
+
+#[test]
+fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
+    let mut seen = 0;
+    for named in robots() {
+        for gait in named.robot.gaits() {
+            for percent in [100.0, 20.0] {
+                let Some(travel) = travel(named, gait, percent) else {
+                    continue;
+                };
+                seen += 1;
+                let meant = named.robot.predict(gait);
+                let whom = format!("{}: {} at {percent} %", named.name, gait.name());
+                // Without symmetry, which foot holds may hang on a tenth of a degree.
+                let most = 0.005 * named.robot.lizard().links.l10;
+                check(&whom, travel, most, meant.forward, meant.turn);
+            }
+        }
+    }
+    assert!(seen > 100);
+}
+
+#[test]
+fn the_pulses_of_the_papers_gaits_lead_where_they_were_found_to_lead() {
+    let named = Named {
+        name: "paper.toml".into(),
+        robot: paper().clone(),
+    };
+    for (name, forward, turn) in OF_PAPER {
+        let gait = paper().gait(name).expect("a gait of the paper's robot");
+        for percent in [100.0, 80.0, 50.0, 20.0] {
+            let travel = travel(&named, gait, percent).expect("the way is clear");
+            check(name, travel, 0.3, Some(forward), Some(turn));
+        }
+    }
+}

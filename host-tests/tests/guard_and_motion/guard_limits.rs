@@ -1,0 +1,105 @@
+//! Each limit at its own place, to the last bit.
+
+use lizard_core::guard::Clearance;
+use lizard_core::hazard::Hazard;
+use lizard_core::part::Side;
+use lizard_core::robot::Robot as _;
+use lizard_core::units::Sine;
+use lizard_host_tests::{Named, robots};
+use lizard_robot::Robot;
+
+use crate::truth::{MARGINS, per_mm, sine};
+
+/// The limit that robot.toml gives for each of the ten margins.
+fn limits(robot: &Robot) -> [f64; 10] {
+    let limits = robot.limits();
+    std::array::from_fn(|place| match place {
+        0..2 => limits.type2,
+        2..6 => limits.type1,
+        _ => limits.leg,
+    })
+}
+
+/// The least Q15 number that is not below a sine.
+fn least(limit: f64) -> i16 {
+    (limit * 32768.0 - 1e-6).ceil() as i16
+}
+
+/// A pose at exactly every limit of its margins, its sliders at their longest.
+fn at_the_limit(robot: &Robot) -> Clearance {
+    Clearance {
+        margins: limits(robot).map(|limit| Sine(least(limit))),
+        sliders_sq: Side::ALL.map(|side| {
+            let most = u32::from(robot.firmware().side(side).max);
+            most * most
+        }),
+    }
+}
+
+#[test]
+fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
+    for Named { name, robot } in robots() {
+        let firmware = robot.firmware();
+        assert_eq!(at_the_limit(robot).hazard(firmware), None, "{name}");
+        for (place, margin) in MARGINS.into_iter().enumerate() {
+            let mut core = at_the_limit(robot);
+            let value = Sine(core.margins[place].0 - 1);
+            core.margins[place] = value;
+            let hazard = Some(Hazard::Margin { margin, value });
+            assert_eq!(core.hazard(firmware), hazard, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
+    for Named { name, robot } in robots() {
+        let firmware = robot.firmware();
+        for (place, side) in Side::ALL.into_iter().enumerate() {
+            let slider = firmware.side(side);
+            let [min_sq, max_sq] = [slider.min, slider.max].map(|steps| u32::from(steps).pow(2));
+            for (length_sq, safe) in [
+                (min_sq, true),
+                (min_sq.wrapping_sub(1), false),
+                (max_sq, true),
+                (max_sq + 1, false),
+            ] {
+                let mut core = at_the_limit(robot);
+                core.sliders_sq[place] = length_sq;
+                let named = match core.hazard(firmware) {
+                    None => None,
+                    Some(Hazard::Stroke { side, .. }) => Some(side),
+                    Some(margin) => panic!("{name}: {margin:?}"),
+                };
+                assert_eq!(named, (!safe).then_some(side), "{name}: {length_sq}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
+    for Named { name, robot } in robots() {
+        let core = robot.firmware().limits();
+        let file = robot.limits();
+        for (core, file) in [
+            (core.type2, file.type2),
+            (core.type1, file.type1),
+            (core.leg, file.leg),
+        ] {
+            assert!(sine(core) >= file - 1e-9, "{name}: {core:?} for {file}");
+            assert!(sine(Sine(core.0 - 1)) < file, "{name}: {core:?} for {file}");
+        }
+        let sides = [lizard_kinematics::Side::Left, lizard_kinematics::Side::Right];
+        for (side, of_file) in Side::ALL.into_iter().zip(sides) {
+            let slider = robot.firmware().side(side);
+            let nominal = robot.lizard().side(of_file).nominal;
+            let length = |steps: u16| f64::from(steps) / per_mm(slider.scale);
+            let [least, most] = [file.stroke_min, file.stroke_max].map(|travel| nominal + travel);
+            assert!(length(slider.min) >= least - 1e-9, "{name}: {side:?}");
+            assert!(length(slider.min - 1) < least, "{name}: {side:?}");
+            assert!(length(slider.max) <= most + 1e-9, "{name}: {side:?}");
+            assert!(length(slider.max + 1) > most, "{name}: {side:?}");
+        }
+    }
+}

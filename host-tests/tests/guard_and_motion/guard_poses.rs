@@ -1,0 +1,255 @@
+//! The guard's decision on whole poses, anywhere in the servos' travel.
+
+use fastrand::Rng;
+use lizard_core::guard::Clearance;
+use lizard_core::hazard::Hazard;
+use lizard_core::part::Side;
+use lizard_core::pose::Pose;
+use lizard_core::robot::Robot as _;
+use lizard_core::root::root;
+use lizard_core::units::Sweep;
+use lizard_host::prove::STEPS_BAND;
+use lizard_host_tests::{Named, rng, robots};
+use lizard_robot::Robot;
+
+use crate::truth::{
+    ENDS, LEAST_TYPE2, MARGINS, Spread, Truth, angles, any_pose, is_safe,
+    open_end, per_mm, pose_within, sine,
+};
+
+/// Poses of each robot.
+const POSES: usize = 40_000;
+/// Pairs of neighbouring poses of each robot with a limit between them.
+const PAIRS: usize = 1500;
+
+/// What a walk over many poses of one robot found.
+#[derive(Default)]
+struct Findings {
+    type2: Spread,
+    type1: Spread,
+    leg: Spread,
+    /// In steps of the side's scale.
+    stroke: Spread,
+    /// The largest error of each margin, in bands.
+    in_bands: [f64; 10],
+    safe: usize,
+    refused: usize,
+    /// Poses where the guard and floating point decide differently, and the
+    /// farthest from a limit that one of them was, in bands.
+    differ: usize,
+    farthest: f64,
+    /// How often each of the twelve conditions was named.
+    named: [usize; 12],
+}
+
+impl Findings {
+    fn add(&mut self, robot: &Robot, pose: &Pose) {
+        let firmware = robot.firmware();
+        let core = Clearance::of(firmware, pose);
+        let hazard = core.hazard(firmware);
+        let named = hazard.map(place);
+        match named {
+            None => self.safe += 1,
+            Some(place) => {
+                self.refused += 1;
+                self.named[place] += 1;
+            }
+        }
+        let truth = match Truth::of(robot, angles(firmware, pose)) {
+            Ok(truth) => truth,
+            Err(fault) => {
+                // A head that does not close is found first.
+                let end = open_end(&fault).expect("the sliders of these robots always have a length");
+                assert!(named.is_some_and(|place| place <= end), "{pose:?}: {fault}, {hazard:?}");
+                return;
+            }
+        };
+        self.compare(robot, &core, &truth);
+        let clear_by = truth.clear_by();
+        let least = clear_by.into_iter().fold(f64::INFINITY, f64::min);
+        if hazard.is_none() != (least >= 0.0) {
+            self.differ += 1;
+            self.farthest = self.farthest.max(least.abs());
+        }
+        assert!(
+            least.abs() <= 1.0 || hazard.is_none() == (least > 0.0),
+            "{pose:?} is {least} bands clear, and the guard says {hazard:?}"
+        );
+        let Some(named) = named else {
+            return;
+        };
+        // What is named is broken, and nothing before it is.
+        assert!(clear_by[named] <= 1.0, "{pose:?}: {hazard:?}, {truth:?}");
+        let earlier = clear_by[..named].iter().all(|by| *by >= -1.0);
+        assert!(earlier, "{pose:?}: {hazard:?} comes too early, {truth:?}");
+    }
+
+    /// Every value against the truth's.
+    fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
+        for (place, (value, meant)) in core.margins.iter().zip(truth.margins).enumerate() {
+            let end = ENDS.get(place).copied();
+            if let Some(end) = end
+                && (truth.margins[end] < LEAST_TYPE2 || truth.is_at_crossing(end))
+            {
+                // The guard only has to know that it is so.
+                let most = LEAST_TYPE2 + truth.bands[end];
+                assert!(truth.is_at_crossing(end) || sine(core.margins[end]) < most, "{truth:?}");
+                continue;
+            }
+            let spread = match place {
+                0..2 => &mut self.type2,
+                2..6 => &mut self.type1,
+                _ => &mut self.leg,
+            };
+            let off = sine(*value) - meant;
+            spread.add(off);
+            self.in_bands[place] = self.in_bands[place].max(off.abs() / truth.bands[place]);
+        }
+        for (side, (length_sq, travel)) in Side::ALL
+            .into_iter()
+            .zip(core.sliders_sq.into_iter().zip(truth.travels))
+        {
+            let slider = robot.firmware().side(side);
+            let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal);
+            self.stroke.add(steps - travel * per_mm(slider.scale));
+        }
+    }
+
+    fn report(&self, name: &str) {
+        println!(
+            "{name}: type-2 {}, type-1 {}, leg {}, stroke {} steps; {} safe, {} refused, \
+             {} decided differently within {:.3} bands, margins within {:.3}; named {:?}",
+            self.type2,
+            self.type1,
+            self.leg,
+            self.stroke,
+            self.safe,
+            self.refused,
+            self.differ,
+            self.farthest,
+            self.in_bands.into_iter().fold(0.0, f64::max),
+            self.named
+        );
+        for (margin, off) in MARGINS.iter().zip(self.in_bands) {
+            assert!(off <= 1.0, "{name}: {margin:?} is {off} bands off");
+        }
+        assert!(self.stroke.max <= STEPS_BAND, "{name}: a stroke is {} steps off", self.stroke);
+        assert!(self.safe > 0 && self.refused > 0, "{name} has no limit");
+    }
+}
+
+/// The place of the condition that a hazard names, among twelve.
+fn place(hazard: Hazard) -> usize {
+    match hazard {
+        Hazard::Margin { margin, .. } => {
+            let place = MARGINS.iter().position(|known| *known == margin);
+            place.expect("one of ten")
+        }
+        Hazard::Stroke { side, .. } => 10 + side as usize,
+    }
+}
+
+/// Poses in all of the travel, and nearer to neutral, where safe turns to unsafe.
+fn poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
+    let calibration = robot.firmware().calibration();
+    let shares = [1.0, 0.7, 0.4, 0.2];
+    (0..POSES).map(move |n| pose_within(rng, &calibration, shares[n % shares.len()]))
+}
+
+#[test]
+fn of_every_robot_the_guard_measures_every_margin_and_decides_every_pose_as_floating_point_does() {
+    let mut named = [0; 12];
+    for (n, Named { name, robot }) in robots().iter().enumerate() {
+        let mut findings = Findings::default();
+        for pose in poses(&mut rng(100 + n as u64), robot) {
+            findings.add(robot, &pose);
+        }
+        findings.report(name);
+        for (sum, here) in named.iter_mut().zip(findings.named) {
+            *sum += here;
+        }
+    }
+    assert!(named.iter().all(|count| *count > 0), "{named:?}");
+}
+
+#[test]
+fn of_every_robot_the_guard_changes_its_mind_where_floating_point_has_the_limit() {
+    for (n, Named { name, robot }) in robots().iter().enumerate() {
+        let mut rng = rng(200 + n as u64);
+        let firmware = robot.firmware();
+        let mut findings = Findings::default();
+        while findings.refused < PAIRS {
+            let far = any_pose(&mut rng, &firmware.calibration());
+            if is_safe(firmware, &far) {
+                continue;
+            }
+            for pose in straddling(robot, far) {
+                findings.add(robot, &pose);
+            }
+        }
+        findings.report(name);
+    }
+}
+
+/// Two neighbours on the way from neutral to an unsafe pose, the first of them safe
+/// and the second not.
+fn straddling(robot: &Robot, far: Pose) -> [Pose; 2] {
+    let at = |share: u32| {
+        Pose(far.0.map(|sweep| Sweep((i64::from(sweep.0) * i64::from(share) >> 16) as i16)))
+    };
+    let (mut safe, mut not) = (0, 1 << 16);
+    while not - safe > 1 {
+        let middle = (safe + not) / 2;
+        *(if is_safe(robot.firmware(), &at(middle)) { &mut safe } else { &mut not }) = middle;
+    }
+    [at(safe), at(not)]
+}
+
+#[test]
+fn a_reason_carries_the_value_that_broke_the_limit() {
+    for (n, Named { name, robot }) in robots().iter().enumerate() {
+        for pose in poses(&mut rng(300 + n as u64), robot).take(2000) {
+            let core = Clearance::of(robot.firmware(), &pose);
+            match core.hazard(robot.firmware()) {
+                None => {}
+                Some(Hazard::Margin { margin, value }) => {
+                    let place = MARGINS.iter().position(|known| *known == margin);
+                    assert_eq!(value, core.margins[place.expect("one of ten")], "{name}");
+                }
+                Some(Hazard::Stroke { side, length }) => {
+                    assert_eq!(length, root(core.sliders_sq[side as usize]), "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_smallest_margin_is_the_one_of_kinematics() {
+    for (n, Named { name, robot }) in robots().iter().enumerate() {
+        for pose in poses(&mut rng(400 + n as u64), robot).take(10_000) {
+            if !is_safe(robot.firmware(), &pose) {
+                continue;
+            }
+            let at = angles(robot.firmware(), &pose);
+            let truth = Truth::of(robot, at).expect("a safe pose");
+            let least = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
+            let off = sine(Clearance::of(robot.firmware(), &pose).smallest()) - least;
+            let most = truth.bands[..10].iter().copied().fold(0.0, f64::max);
+            assert!(off.abs() <= most, "{name}: {pose:?} is {off} off");
+        }
+    }
+}
+
+#[test]
+fn no_pose_whatever_is_too_much_for_the_guard() {
+    // Also poses that no servo reaches: the arithmetic must not overflow in any.
+    for (n, Named { robot, .. }) in robots().iter().enumerate() {
+        let mut rng = rng(500 + n as u64);
+        let mut findings = Findings::default();
+        for _ in 0..10_000 {
+            findings.add(robot, &Pose([(); 4].map(|()| Sweep(rng.i16(..)))));
+        }
+        assert!(findings.refused > 0);
+    }
+}

@@ -1,0 +1,17 @@
+//! The core's guard, gaits and motion with any robot, run on this machine and held
+//! against floating point: the robot under test, every file of robots/ and random
+//! robots without symmetry.
+//!
+//! `truth` says what is right without the core; `frames` drives a robot through its
+//! console and checks every frame that comes.
+
+mod calibration;
+mod frames;
+mod gaits;
+mod ground;
+mod guard_limits;
+mod guard_poses;
+mod motion;
+mod motion_guard;
+mod paper_conditions;
+mod truth;

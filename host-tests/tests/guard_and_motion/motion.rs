@@ -1,0 +1,199 @@
+//! From any motion to any other, of every robot: limits that every frame keeps, and
+//! the end that every command comes to.
+
+use lizard_core::motion::Activity;
+use lizard_core::pose::Pose;
+use lizard_core::robot::Robot as _;
+use lizard_host_tests::{Named, rng, robots};
+
+use crate::frames::{WAKING, Walker, any_command, jerk, long_enough, meant};
+use crate::truth::safe_pose;
+
+/// Random dialogues with each robot.
+const DIALOGUES: u64 = 30;
+
+#[test]
+fn no_frame_is_too_fast_too_sudden_or_unsafe_whatever_is_asked() {
+    for (n, named) in robots().iter().enumerate() {
+        let mut rng = rng(1000 + n as u64);
+        let (mut done, mut refused, mut most) = (0, 0, 0.0f64);
+        for _ in 0..DIALOGUES {
+            let mut walker = Walker::new(named);
+            for _ in 0..12 {
+                let answer = walker.say(&any_command(&mut rng, &named.robot));
+                *(if answer.starts_with("ok") { &mut done } else { &mut refused }) += 1;
+                walker.run(rng.u32(..120));
+            }
+            most = most.max(walker.jerk);
+        }
+        println!(
+            "{}: {done} commands done, {refused} refused; speed changes by at most {most:.0} of {:.0} deg/s",
+            named.name,
+            jerk(&named.robot)
+        );
+        assert!(done > 100 && refused > 0, "{}", named.name);
+    }
+}
+
+#[test]
+fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
+    for (n, named) in robots().iter().enumerate() {
+        let Named { name, robot } = named;
+        let mut rng = rng(2000 + n as u64);
+        let mut arrived = 0;
+        for _ in 0..3 * DIALOGUES {
+            let mut walker = Walker::new(named);
+            for _ in 0..3 {
+                walker.say(&any_command(&mut rng, robot));
+                walker.run(rng.u32(..60));
+            }
+            walker.say("stand");
+            let last = any_command(&mut rng, robot);
+            let answer = walker.say(&last);
+            walker.run(2 * long_enough(robot));
+            if walker.motion().hazard().is_some() {
+                assert_eq!(walker.motion().activity(), Activity::Stop, "{name}: {last}");
+                continue;
+            }
+            let activity = walker.motion().activity();
+            match meant(robot, &last) {
+                Some(meant) if answer.starts_with("ok") => assert_eq!(activity, meant, "{name}: {last}"),
+                // A speed, or a pose that was refused.
+                _ => assert!(matches!(activity, Activity::Gait(_)), "{name}: {last}"),
+            }
+            if let Activity::Gait(id) = activity {
+                let firmware = robot.firmware();
+                let pose = firmware.gait(id).pose(firmware, walker.motion().phase());
+                assert_eq!(walker.pose(), pose, "{name}: {last}");
+            }
+            arrived += 1;
+        }
+        assert!(arrived > DIALOGUES, "{name}: only {arrived} arrived");
+    }
+}
+
+#[test]
+fn a_command_that_is_refused_changes_nothing() {
+    for (n, named) in robots().iter().enumerate() {
+        let mut rng = rng(3000 + n as u64);
+        let mut refused = 0;
+        for _ in 0..DIALOGUES {
+            let (mut asked, mut spared) = (Walker::new(named), Walker::new(named));
+            for _ in 0..8 {
+                let command = any_command(&mut rng, &named.robot);
+                let frames = rng.u32(..60);
+                let is_refused = asked.say(&command).starts_with("err");
+                if is_refused {
+                    refused += 1;
+                } else {
+                    spared.say(&command);
+                }
+                for _ in 0..frames {
+                    assert_eq!(asked.frame(), spared.frame(), "{}: {command}", named.name);
+                    assert_eq!(asked.motion().activity(), spared.motion().activity());
+                }
+            }
+        }
+        assert!(refused > 0, "{}", named.name);
+    }
+}
+
+#[test]
+fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
+    for (n, named) in robots().iter().enumerate() {
+        let mut rng = rng(4000 + n as u64);
+        for _ in 0..DIALOGUES {
+            let goal = safe_pose(&mut rng, named.robot.firmware());
+            let mut walker = Walker::standing(named);
+            if !walker.say(&walker.typed(&goal)).starts_with("ok") {
+                continue; // a hundredth of a degree beyond a limit
+            }
+            let mut poses = vec![walker.pose()];
+            while walker.motion().activity() == Activity::Pose && poses.len() < 1000 {
+                walker.run(1);
+                poses.push(walker.pose());
+                if poses[poses.len() - 1] == poses[poses.len() - 2] && poses.len() > 30 {
+                    break;
+                }
+            }
+            if walker.motion().hazard().is_some() {
+                continue;
+            }
+            let end = poses[poses.len() - 1];
+            assert!(end.farthest(&goal) <= 1, "{}", named.name);
+            let longest = f64::from(Pose::NEUTRAL.farthest(&end));
+            for pose in &poses {
+                let share = 1.0 - f64::from(pose.farthest(&end)) / longest;
+                for (here, there) in pose.0.iter().zip(&end.0) {
+                    let off = f64::from(here.0) - share * f64::from(there.0);
+                    assert!(off.abs() <= 4.0, "{}: {pose:?} to {end:?}", named.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn servos_wake_one_after_another_where_they_were_left() {
+    for (n, named) in robots().iter().enumerate() {
+        let calibration = named.robot.firmware().calibration();
+        let mut walker = Walker::new(named);
+        for held in [Pose::NEUTRAL, safe_pose(&mut rng(5000 + n as u64), named.robot.firmware())] {
+            if held != Pose::NEUTRAL {
+                walker.say(&walker.typed(&held));
+                walker.run(long_enough(&named.robot));
+                walker.does("rest");
+                walker.run(10);
+                walker.does("stand");
+            }
+            let held = walker.pose();
+            let mut awake_since = [0; 4];
+            for frame in 1..=WAKING {
+                for (servo, width) in walker.frame().0.into_iter().enumerate() {
+                    if width.0 > 0 && awake_since[servo] == 0 {
+                        awake_since[servo] = frame;
+                    }
+                    let meant = calibration[servo].width(held.0[servo]);
+                    assert!(width.0 == 0 || width == meant, "{}", named.name);
+                    assert_eq!(width.0 > 0, awake_since[servo] > 0, "awake for good");
+                }
+            }
+            // A tenth of a second from one to the next.
+            assert_eq!(awake_since, [5, 10, 15, 20], "{}", named.name);
+            walker.run(long_enough(&named.robot));
+        }
+    }
+}
+
+#[test]
+fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_begins_anew() {
+    for (n, named) in robots().iter().enumerate() {
+        let mut rng = rng(6000 + n as u64);
+        let robot = &named.robot;
+        for _ in 0..DIALOGUES {
+            let mut walker = Walker::standing(named);
+            let gait = rng.usize(..robot.gaits().len());
+            walker.does(&crate::frames::words(&robot.gaits()[gait]));
+            walker.run(rng.u32(..200));
+            let pose = walker.pose();
+            let end = ["stop", "rest"][rng.usize(..2)];
+            walker.does(end);
+            for _ in 0..5 {
+                let silent = walker.frame().0.iter().all(|width| width.0 == 0);
+                assert_eq!(silent, end == "rest", "{}", named.name);
+                assert_eq!(walker.pose(), pose, "{}", named.name);
+                assert_eq!(walker.motion().phase(), 0, "{}", named.name);
+            }
+            walker.does("stand");
+            walker.does(&crate::frames::words(&robot.gaits()[gait]));
+            let firmware = robot.firmware();
+            let id = lizard_core::gait::GaitId::all(firmware).nth(gait).expect("a gait");
+            let first = firmware.gait(id).pose(firmware, 0);
+            let begins = (0..2 * long_enough(robot)).any(|_| {
+                walker.run(1);
+                walker.motion().phase() == 0 && walker.pose() == first
+            });
+            assert!(begins, "{}: {}", named.name, robot.gaits()[gait].name());
+        }
+    }
+}

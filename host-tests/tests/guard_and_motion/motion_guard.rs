@@ -1,0 +1,150 @@
+//! What happens where the way leads through a pose that is not safe: between two
+//! safe poses there may be one that is not.
+
+use fastrand::Rng;
+use lizard_core::guard::Clearance;
+use lizard_core::motion::Activity;
+use lizard_core::pose::Pose;
+use lizard_core::robot::Robot as _;
+use lizard_core::units::Sweep;
+use lizard_host_tests::{Named, rng, robots};
+use lizard_robot::{Firmware, Robot};
+
+use crate::frames::{Walker, long_enough, words};
+use crate::truth::{Verdict, angles, is_safe, pose_within};
+
+/// Tries for each robot; some robots have no such ways.
+const TRIES: usize = 6000;
+/// Ways followed of each robot.
+const WAYS: usize = 12;
+
+/// Pairs of safe poses whose straight connection is unsafe, by floating point.
+fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
+    let calibration = robot.firmware().calibration();
+    let edge = |rng: &mut Rng| {
+        // Two cranks of one end or of one side near a limit, the others at rest.
+        let [a, b] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
+        let any = pose_within(rng, &calibration, 1.0);
+        let mut pose = Pose::NEUTRAL;
+        (pose.0[a], pose.0[b]) = (any.0[a], any.0[b]);
+        let mut share = 256;
+        while !is_safe(robot.firmware(), &shrunk(&pose, share)) {
+            share -= 4;
+        }
+        shrunk(&pose, share)
+    };
+    let mut found = Vec::new();
+    for _ in 0..TRIES {
+        let (from, to) = (edge(rng), edge(rng));
+        let [here, there] = [from, to].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
+        let unsafe_at = |n: u32| {
+            let share = f64::from(n) / 50.0;
+            let at = Pose(std::array::from_fn(|n| {
+                Sweep((here[n] + share * (there[n] - here[n])) as i16)
+            }));
+            Verdict::of(robot, angles(robot.firmware(), &at)) == Verdict::Unsafe
+        };
+        if (1..50).step_by(4).any(unsafe_at) {
+            found.push([from, to]);
+        }
+        if found.len() == WAYS {
+            break;
+        }
+    }
+    found
+}
+
+fn shrunk(pose: &Pose, share: i32) -> Pose {
+    Pose(pose.0.map(|sweep| Sweep((i32::from(sweep.0) * share / 256) as i16)))
+}
+
+#[test]
+fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
+    let mut held = 0;
+    for (n, named) in robots().iter().enumerate() {
+        let Named { name, robot } = named;
+        for [from, to] in crossings(&mut rng(7000 + n as u64), robot) {
+            let mut walker = Walker::standing(named);
+            // A hundredth of a degree may be beyond the limit.
+            if !walker.say(&walker.typed(&from)).starts_with("ok") {
+                continue;
+            }
+            walker.run(long_enough(robot));
+            if walker.motion().hazard().is_some()
+                || !walker.say(&walker.typed(&to)).starts_with("ok")
+            {
+                continue;
+            }
+            let from = walker.pose();
+            walker.run(long_enough(robot)); // which checks that every frame is safe
+            // A step of a fast move may leap over a narrow hazard.
+            let Some(hazard) = walker.motion().hazard() else {
+                assert!(walker.pose().farthest(&to) <= 1, "{name}");
+                continue;
+            };
+            held += 1;
+            assert_eq!(walker.motion().activity(), Activity::Stop, "{name}");
+            let told = walker.read();
+            assert_eq!(told.len(), 1, "{name}: {told:?}");
+            assert!(told[0].starts_with("# held in the last safe pose: "), "{told:?}");
+            // The reason lies on the way that is left.
+            assert!(lies_ahead(robot.firmware(), from, to, walker.pose(), hazard), "{name}: {hazard:?}");
+            let pose = walker.pose();
+            walker.run(20);
+            assert_eq!(walker.pose(), pose, "{name}");
+            assert!(walker.read().is_empty(), "{name}: told once");
+            assert!(walker.say("status").ends_with("guard=held"), "{name}");
+            // And from there it may be told to go back.
+            assert!(walker.arrives(&from) || walker.motion().hazard().is_some(), "{name}");
+            if walker.motion().hazard().is_none() {
+                assert!(walker.say("status").ends_with("guard=clear"), "{name}");
+            }
+        }
+    }
+    println!("{held} moves were stopped on their way");
+    assert!(held >= 10);
+}
+
+/// True if the condition that a hazard names is broken on the way that is left.
+fn lies_ahead(
+    firmware: &Firmware,
+    from: Pose,
+    to: Pose,
+    held: Pose,
+    hazard: lizard_core::hazard::Hazard,
+) -> bool {
+    use lizard_core::hazard::Hazard;
+    let same = |other: Hazard| match (hazard, other) {
+        (Hazard::Margin { margin: a, .. }, Hazard::Margin { margin: b, .. }) => a == b,
+        (Hazard::Stroke { side: a, .. }, Hazard::Stroke { side: b, .. }) => a == b,
+        _ => false,
+    };
+    (0..=4000).any(|n| {
+        let share = f64::from(n) / 4000.0;
+        let pose = Pose(std::array::from_fn(|n| {
+            let (from, to) = (f64::from(from.0[n].0), f64::from(to.0[n].0));
+            Sweep((from + share * (to - from)).round() as i16)
+        }));
+        let beyond = held.farthest(&from) <= pose.farthest(&from) + 1;
+        beyond && Clearance::of(firmware, &pose).hazard(firmware).is_some_and(same)
+    })
+}
+
+#[test]
+fn a_gait_that_is_under_way_never_meets_the_guard() {
+    for named in robots() {
+        for gait in named.robot.gaits() {
+            let mut walker = Walker::standing(named);
+            walker.does(&words(gait));
+            // The way to its first pose may lead through an unsafe one.
+            walker.run(long_enough(&named.robot));
+            if walker.motion().hazard().is_some() {
+                println!("{}: the way to {} is barred", named.name, gait.name());
+                continue;
+            }
+            walker.run((2.0 * gait.period() * 50.0) as u32);
+            let hazard = walker.motion().hazard();
+            assert!(hazard.is_none(), "{}: {}: {hazard:?}", named.name, gait.name());
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! What is right, in floating point and without the core: every condition of a
+//! safe pose from lizard-kinematics, at exactly the angles that the core means.
+
+use std::fmt;
+
+use fastrand::Rng;
+use lizard_core::calibration::Calibration;
+use lizard_core::guard::Clearance;
+use lizard_core::hazard::Margin;
+use lizard_core::part::{End, Servo, Side};
+use lizard_core::pose::Pose;
+use lizard_core::robot::Robot as _;
+use lizard_core::units::{Angle, Scale, Sine, Sweep};
+use lizard_host::prove::{MARGIN_BAND, STEPS_BAND};
+use lizard_kinematics::{Infeasible, Limits, Part};
+use lizard_robot::{Firmware, Robot};
+
+/// The least type-2 limit that robot.toml may set; below it the guard only has to
+/// know that it is below.
+pub const LEAST_TYPE2: f64 = 0.1;
+
+/// The ten margins in the order in which the guard checks them.
+pub const MARGINS: [Margin; 10] = [
+    Margin::Type2(End::Head),
+    Margin::Type2(End::Tail),
+    Margin::Type1(Servo::A1),
+    Margin::Type1(Servo::A2),
+    Margin::Type1(Servo::A3),
+    Margin::Type1(Servo::A4),
+    Margin::Leg(Servo::A1),
+    Margin::Leg(Servo::A2),
+    Margin::Leg(Servo::A3),
+    Margin::Leg(Servo::A4),
+];
+
+/// The end that each of the ten margins belongs to, legs aside.
+pub const ENDS: [usize; 6] = [0, 1, 0, 0, 1, 1];
+
+/// An angle of the core in degrees, 0..360.
+pub fn degrees(angle: Angle) -> f64 {
+    f64::from(angle.0) * 360.0 / 65536.0
+}
+
+/// A margin of the core as a sine.
+pub fn sine(margin: Sine) -> f64 {
+    f64::from(margin.0) / 32768.0
+}
+
+/// Steps in a millimetre.
+pub fn per_mm(scale: Scale) -> f64 {
+    f64::from(1u32 << scale.bits)
+}
+
+/// The chassis angles of a pose in degrees, exactly what the core means by it.
+pub fn angles(firmware: &Firmware, pose: &Pose) -> [f64; 4] {
+    pose.angles(&firmware.neutral()).map(degrees)
+}
+
+/// Every condition of a pose.
+#[derive(Clone, Copy, Debug)]
+pub struct Truth {
+    /// Sines, in the order of [`MARGINS`]. Type-2 with the sign of K2: negative for
+    /// crossed crank tips.
+    pub margins: [f64; 10],
+    /// Slider travel from nominal, mm.
+    pub travels: [f64; 2],
+    /// K2 of head and tail, mm.
+    pub across: [f64; 2],
+    limits: Limits,
+    /// What the guard may err by: of each margin; then in mm of the strokes, left
+    /// and right, and of K2 of head and tail.
+    pub bands: [f64; 14],
+}
+
+/// Where a pose stands, the band apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Clear of every limit by more than the band.
+    Safe,
+    /// Beyond some limit by more than the band.
+    Unsafe,
+    /// Too near to a limit to tell.
+    Between,
+}
+
+impl Truth {
+    /// At chassis angles in degrees.
+    ///
+    /// # Errors
+    /// Where a loop does not close.
+    pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
+        let solution = robot.lizard().solve(&angles.into())?;
+        let across = [solution.head.gap.x, solution.tail.gap.x];
+        let mut margins = [0.0; 10];
+        for (margin, (_, value)) in margins.iter_mut().zip(solution.margins.iter()) {
+            *margin = value;
+        }
+        for (type2, across) in margins.iter_mut().zip(across) {
+            *type2 = type2.copysign(across);
+        }
+        let firmware = robot.firmware();
+        let side = |side| STEPS_BAND / per_mm(firmware.side(side).scale);
+        let end = |end| STEPS_BAND / per_mm(firmware.end_scale(end));
+        let [head, tail] = [(End::Head, &solution.head), (End::Tail, &solution.tail)]
+            .map(|(of, pose)| couplers(robot, of, pose.gap.length(), pose.type2.abs(), end(of)));
+        let leg = MARGIN_BAND;
+        Ok(Self {
+            margins,
+            travels: [solution.left.s, solution.right.s],
+            across,
+            limits: *robot.limits(),
+            bands: [
+                head[0],
+                tail[0],
+                head[1],
+                head[2],
+                tail[2],
+                tail[1],
+                leg,
+                leg,
+                leg,
+                leg,
+                side(Side::Left),
+                side(Side::Right),
+                end(End::Head),
+                end(End::Tail),
+            ],
+        })
+    }
+
+    /// How far each margin and then each stroke is on the safe side of its limit,
+    /// in bands. Crossed crank tips fail type-2, as the guard has it.
+    pub fn clear_by(&self) -> [f64; 12] {
+        let Limits {
+            type2,
+            type1,
+            leg,
+            stroke_min,
+            stroke_max,
+        } = self.limits;
+        std::array::from_fn(|place| match place {
+            0..2 => {
+                let margin = (self.margins[place].abs() - type2) / self.bands[place];
+                margin.min(self.across[place] / self.bands[12 + place])
+            }
+            2..6 => (self.margins[place] - type1) / self.bands[place],
+            6..10 => (self.margins[place] - leg) / self.bands[place],
+            _ => {
+                let travel = self.travels[place - 10];
+                (travel - stroke_min).min(stroke_max - travel) / self.bands[place]
+            }
+        })
+    }
+
+    /// Whether K2 of an end, by its index, is too near to 0 for a sign.
+    pub fn is_at_crossing(&self, end: usize) -> bool {
+        self.across[end].abs() <= self.bands[12 + end]
+    }
+}
+
+/// What an end's margins may be wrong by: type-2, type-1 left and right. Besides the
+/// guard's arithmetic it is the rounding of lengths, `step` mm of the distance `tips`
+/// of the crank tips (mm): next to a singularity (`type2` is small) that turns the
+/// couplers a lot.
+fn couplers(robot: &Robot, end: End, tips: f64, type2: f64, step: f64) -> [f64; 3] {
+    let bars = robot.lizard().end(match end {
+        End::Head => lizard_kinematics::End::Head,
+        End::Tail => lizard_kinematics::End::Tail,
+    });
+    let (a, b) = (bars.coupler_left, bars.coupler_right);
+    let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
+    [cosine * tips / (a * b), 1.0 / a, 1.0 / b].map(|turns| MARGIN_BAND + step * turns / type2)
+}
+
+impl Verdict {
+    /// Of a whole pose, at chassis angles in degrees.
+    pub fn of(robot: &Robot, angles: [f64; 4]) -> Self {
+        let Ok(truth) = Truth::of(robot, angles) else {
+            return Self::Unsafe;
+        };
+        let least = truth.clear_by().into_iter().fold(f64::INFINITY, f64::min);
+        if least > 1.0 {
+            Self::Safe
+        } else if least < -1.0 {
+            Self::Unsafe
+        } else {
+            Self::Between
+        }
+    }
+}
+
+/// The end whose loop does not close.
+pub fn open_end(fault: &Infeasible) -> Option<usize> {
+    match fault.part {
+        Part::End(lizard_kinematics::End::Head) => Some(0),
+        Part::End(lizard_kinematics::End::Tail) => Some(1),
+        Part::Side(_) => None,
+    }
+}
+
+/// The largest and the root mean square of many errors.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spread {
+    pub max: f64,
+    squares: f64,
+    count: f64,
+}
+
+impl Spread {
+    pub fn add(&mut self, error: f64) {
+        self.max = self.max.max(error.abs());
+        self.squares += error * error;
+        self.count += 1.0;
+    }
+}
+
+impl fmt::Display for Spread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rms = (self.squares / self.count.max(1.0)).sqrt();
+        write!(f, "max {:.5} rms {rms:.5}", self.max)
+    }
+}
+
+/// A pose anywhere in the servos' travel.
+pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
+    Pose(calibration.map(|servo| Sweep(rng.i16(servo.min.0..=servo.max.0))))
+}
+
+/// A pose within so much of every servo's travel, as a share from neutral.
+pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
+    let pose = any_pose(rng, calibration);
+    Pose(pose.0.map(|sweep| Sweep((f64::from(sweep.0) * share) as i16)))
+}
+
+/// A pose that the guard lets pass.
+pub fn safe_pose(rng: &mut Rng, firmware: &Firmware) -> Pose {
+    let calibration = firmware.calibration();
+    (0..1_000_000)
+        .map(|n| pose_within(rng, &calibration, if n % 2 == 0 { 1.0 } else { 0.4 }))
+        .find(|pose| is_safe(firmware, pose))
+        .expect("poses near neutral are safe")
+}
+
+/// The guard's decision.
+pub fn is_safe(firmware: &Firmware, pose: &Pose) -> bool {
+    Clearance::of(firmware, pose).hazard(firmware).is_none()
+}
