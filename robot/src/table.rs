@@ -172,3 +172,166 @@ fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Opt
         (0..SAMPLES).all(|i| (samples[i] - known[(i + rotation) % SAMPLES]).abs() <= tolerance)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use lizard_core::robot::Robot as _;
+
+    use crate::Robot;
+    use crate::testing::{all, body, robot, with};
+
+    fn waves(robot: &Robot) -> usize {
+        robot.firmware().waves().len()
+    }
+
+    #[test]
+    fn a_reversed_gait_is_its_table_with_the_phase_turned_round() {
+        let robot = robot("own-gaits");
+        let gaits = robot.firmware().gaits();
+        let gait = |name: &str| {
+            let place = robot.gait(name).expect(name).index();
+            gaits.get(place).expect(name).load()
+        };
+        for (forth, back) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
+            let (forth, back) = (gait(forth), gait(back));
+            assert_eq!(forth.channels, back.channels);
+            assert!(forth.increment > 0);
+            assert_eq!(forth.increment, -back.increment);
+        }
+        let (on, once) = (gait("stroll-on"), gait("stroll"));
+        assert_eq!(on.channels, once.channels);
+        // 2.4 s are half as many frames again as 1.6 s: 120 of 2^24 cycles.
+        assert_eq!(on.increment, 139_810);
+    }
+
+    #[test]
+    fn increments_add_up_to_the_period() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let increment = robot.firmware().gait(id(&robot, gait.index())).increment;
+                let frames = 50.0 * gait.period();
+                let off = f64::from(increment.abs()) * frames - f64::from(1 << 24);
+                assert!(off.abs() <= 0.5 * frames, "{name} {}", gait.name());
+                assert_eq!(increment < 0, gait.is_reversed());
+            }
+        }
+    }
+
+    fn id(robot: &Robot, place: usize) -> lizard_core::gait::GaitId {
+        lizard_core::gait::GaitId::all(robot.firmware())
+            .nth(place)
+            .expect("a gait")
+    }
+
+    #[test]
+    fn names_are_words_one_after_the_other() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let firmware = robot.firmware();
+                let spoken: Vec<u8> = firmware.name(id(&robot, gait.index())).collect();
+                assert_eq!(
+                    String::from_utf8(spoken).expect("ASCII"),
+                    gait.name().replace('-', " "),
+                    "{name}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_leg_that_starts_later_reads_its_table_later() {
+        let robot = robot("paper");
+        let walk = robot.gait("walk").expect("walk");
+        for phase in 0..=u16::MAX {
+            let [a1, a2, a3, a4] = walk.table_sweeps(phase);
+            // LH starts at 0, LF a quarter later, RH half a cycle, RF three quarters.
+            let hind_left = |later: u16| walk.table_sweeps(phase.wrapping_sub(later))[3];
+            assert_eq!([a1, a4], [hind_left(0x4000), hind_left(0)]);
+            assert_eq!([-a3, -a2], [hind_left(0x8000), hind_left(0xc000)]);
+        }
+    }
+
+    #[test]
+    fn mirrored_gaits_mirror_each_other_to_the_last_step() {
+        for (name, a, b) in [
+            ("paper", "left", "right"),
+            ("paper", "arc-left", "arc-right"),
+            ("unequal", "left", "right"),
+            ("own-gaits", "veer-left", "veer-right"),
+            ("own-gaits", "nod", "nod-to-the-left"),
+        ] {
+            let robot = robot(name);
+            let (a, b) = (robot.gait(a).expect(a), robot.gait(b).expect(b));
+            for phase in 0..=u16::MAX {
+                let [a1, a2, a3, a4] = a.table_sweeps(phase);
+                let mirrored = [-a2, -a1, -a4, -a3];
+                let there = b.table_sweeps(phase);
+                // Halves are rounded up on either side of zero.
+                assert!(
+                    mirrored.iter().zip(there).all(|(m, t)| m.abs_diff(t) <= 1),
+                    "{name} {} at {phase}",
+                    a.name()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_differs_only_in_amplitude_start_and_gain_shares_a_waveform() {
+        // Two waves, two held shapes for four turns, one path for two servos that
+        // mirror each other.
+        assert_eq!(waves(&robot("paper")), 5);
+        let other = with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
+        assert_eq!(waves(&other), 5);
+        let duty = with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("a trot");
+        assert_eq!(waves(&duty), 5);
+        let more = with(
+            "paper",
+            &[(
+                "[gait.trot]",
+                "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]",
+            )],
+        );
+        assert_eq!(waves(&more.expect("a step")), 6);
+    }
+
+    #[test]
+    fn a_waveform_is_kept_at_its_largest_so_no_gain_exceeds_1() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            let mut largest = vec![0; waves(&robot)];
+            for gait in robot.gaits() {
+                for channel in firmware.gait(id(&robot, gait.index())).channels {
+                    let of = &mut largest[usize::from(channel.wave)];
+                    *of = channel.gain.unsigned_abs().max(*of);
+                }
+            }
+            assert!(
+                largest.iter().all(|gain| *gain == 16384),
+                "{name} {largest:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_robot_that_only_stands_has_a_table_of_zeros() {
+        let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+        let robot = Robot::parse(&format!("{}{stand}", body("unequal"))).expect("it stands");
+        assert_eq!(waves(&robot), 1);
+        let stand = &robot.gaits()[0];
+        assert!(!stand.moves());
+        assert_eq!(stand.table_sweeps(12_345), [0; 4]);
+    }
+
+    #[test]
+    fn a_leg_may_not_sweep_half_a_turn() {
+        let gait = "[gait.whirl]\nperiod = 9.0\nwaveform = \"wave\"\nduty = 0.5\namplitude = 90.0\nstart = { LF = 0, RF = 0, RH = 0, LH = 0 }\ngain = { RH = -2.5 }\n[gait.walk]";
+        let refused = with("unequal", &[("[gait.walk]", gait)])
+            .expect_err("half a turn")
+            .to_string();
+        assert!(
+            refused.ends_with("gait.whirl: servo A3 would sweep half a turn or more"),
+            "{refused}"
+        );
+    }
+}

@@ -77,10 +77,55 @@ impl TabledGait {
     /// its phase in 1/65536 cycle. The last is the first that completes the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
         let increment = self.table().increment;
-        let frames = (self.gait.period * FRAMES_PER_SECOND).ceil() as i32;
+        // 1.1 s are 55 frames, though 1.1 * 50.0 is a little more.
+        const SLACK: f64 = 1e-9;
+        let frames = (self.gait.period * FRAMES_PER_SECOND - SLACK).ceil() as i32;
         (0..=frames).map(move |frame| {
             let phase = phase16((increment * frame) as u32);
             (f64::from(frame) / FRAMES_PER_SECOND, phase)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{all, robot};
+
+    #[test]
+    fn frames_are_20_ms_apart_and_the_last_completes_the_cycle() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let frames: Vec<(f64, u16)> = gait.frames().collect();
+                assert_eq!(frames[0], (0.0, 0));
+                let (end, _) = frames[frames.len() - 1];
+                let late = end - gait.period();
+                assert!(
+                    (-1e-9..0.02 - 1e-9).contains(&late),
+                    "{name} {}",
+                    gait.name()
+                );
+                for (seconds, phase) in frames {
+                    // A whole cycle is phase 0 again.
+                    let off = (f64::from(phase) / 65536.0 - gait.phase(seconds)).rem_euclid(1.0);
+                    assert!(
+                        off.min(1.0 - off) < 1e-4,
+                        "{name} {} {seconds}",
+                        gait.name()
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_gait_moves_if_a_leg_does() {
+        let robot = robot("own-gaits");
+        let still: Vec<&str> = robot
+            .gaits()
+            .iter()
+            .filter(|gait| !gait.moves())
+            .map(|gait| gait.name())
+            .collect();
+        assert_eq!(still, ["stand"]);
     }
 }
