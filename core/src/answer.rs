@@ -47,6 +47,9 @@ pub enum Answer {
 }
 
 /// Prints bytes of seven bits as they are.
+///
+/// # Errors
+/// Those of `out`.
 pub fn ascii<W>(out: &mut W, bytes: impl Iterator<Item = u8>) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
@@ -58,6 +61,9 @@ where
 }
 
 /// Prints four chassis angles in degrees, with commas between them.
+///
+/// # Errors
+/// Those of `out`.
 pub fn angles<W: uWrite + ?Sized>(out: &mut W, angles: &[Angle; 4]) -> Result<(), W::Error> {
     for (place, angle) in angles.iter().enumerate() {
         if place > 0 {
@@ -69,6 +75,9 @@ pub fn angles<W: uWrite + ?Sized>(out: &mut W, angles: &[Angle; 4]) -> Result<()
 }
 
 /// Prints a number, the last `decimals` of its digits behind a point.
+///
+/// # Errors
+/// Those of `out`.
 pub fn number<W>(out: &mut W, value: u32, decimals: usize) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
@@ -102,6 +111,9 @@ flash! {
 }
 
 /// Prints a number that may be negative, `decimals` behind the point.
+///
+/// # Errors
+/// Those of `out`.
 pub fn signed<W: uWrite + ?Sized>(
     out: &mut W,
     value: i32,
@@ -114,6 +126,9 @@ pub fn signed<W: uWrite + ?Sized>(
 }
 
 /// Prints a margin with three decimals.
+///
+/// # Errors
+/// Those of `out`.
 pub fn sine<W: uWrite + ?Sized>(out: &mut W, sine: Sine) -> Result<(), W::Error> {
     signed(out, sine.thousandths().into(), 3)
 }
@@ -134,6 +149,9 @@ impl Refusal {
     }
 
     /// Prints the reason.
+    ///
+    /// # Errors
+    /// Those of `out`.
     pub fn print<R, W>(&self, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
     where
         R: Robot,
@@ -185,6 +203,9 @@ where
 }
 
 /// Prints what is wrong with a pose: the margin or the travel, and its limit.
+///
+/// # Errors
+/// Those of `out`.
 pub fn print_hazard<R, W>(hazard: Hazard, robot: &R, out: &mut W) -> Result<(), W::Error>
 where
     R: Robot,

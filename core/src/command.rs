@@ -38,7 +38,7 @@ pub enum Misread {
     Unknown,
     /// A command that takes no argument has one.
     Surplus,
-    /// `arc` without a side, or another gait's name cut short.
+    /// The first words of a gait's name, without the others.
     Incomplete,
     /// `speed` wants one whole number.
     SpeedWants,

@@ -327,8 +327,53 @@ mod tests {
             let bars = Bars::new(left, right);
             let (reach, least) = (reach_sq(left, right), least_sq(left, right));
             prop_assert_eq!(bars.couplers().at(reach + beyond), None);
-            prop_assert_eq!(bars.couplers().at(reach), None);
             prop_assert_eq!(bars.couplers().at(least.saturating_sub(beyond)), None);
+        }
+    }
+
+    #[test]
+    fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
+        for (left, right) in [(12_800, 12_800), (13_000, 11_000), (9_000, 20_001)] {
+            let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+            let tables = [
+                rise(left, right),
+                stretched(left, right),
+                folded(left, right),
+                skew(left, right),
+            ];
+            let exact = |tips_sq: u64| {
+                let [r, n, s] = [reach.into(), least.into(), tips_sq].map(|sq: u64| sq as f64);
+                (1024.0 * ((r - s) * (s - n)).sqrt() / s).min(32_767.0)
+            };
+            let within = |tips_sq: u64| (u64::from(least) + 1..u64::from(reach)).contains(&tips_sq);
+            for index in 0..ENTRIES {
+                let [falling, stretched, folded, skew] =
+                    tables.map(|table| f64::from(table[index]));
+                let tips_sq = argument(reach, index);
+                if within(tips_sq) && tips_sq >= peak_sq(left, right).into() {
+                    assert!(
+                        (0.0..1.0).contains(&(exact(tips_sq) - falling)),
+                        "rise {index}"
+                    );
+                }
+                let difference = (f64::from(left).powi(2) - f64::from(right).powi(2)) / 4.0;
+                let exact_skew = 1024.0 * difference.abs() / tips_sq as f64;
+                assert!(
+                    (skew - exact_skew.min(32_767.0)).abs() <= 0.51,
+                    "skew {index}"
+                );
+                let tips_sq = u64::from(reach).saturating_sub(argument(reach / 4, index));
+                if within(tips_sq) {
+                    assert!(
+                        (stretched - exact(tips_sq)).abs() <= 0.51,
+                        "stretched {index}"
+                    );
+                }
+                let tips_sq = u64::from(least) + argument(least, index);
+                if within(tips_sq) {
+                    assert!((folded - exact(tips_sq)).abs() <= 0.51, "folded {index}");
+                }
+            }
         }
     }
 

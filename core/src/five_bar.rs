@@ -245,6 +245,31 @@ mod tests {
     }
 
     #[test]
+    fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
+        // Close crank tips and long couplers: a small square of a great step.
+        let bars = kinematics::FiveBar {
+            base: 20.0,
+            crank_left: 30.0,
+            coupler_left: 126.0,
+            coupler_right: 126.0,
+            crank_right: 30.0,
+        };
+        let integers = Loop::new(&bars).expect("fits");
+        let (mut sum, mut count) = (0.0, 0.0);
+        for left in (13_000..18_000).step_by(7) {
+            let [left, right] = [Angle(left), Angle(0x8000 - left)];
+            let pose = bars.forward(degrees(left), degrees(right)).expect("closes");
+            let got = sine(margins(&integers, left, right).type2);
+            if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
+                sum += got - pose.type2;
+                count += 1.0;
+            }
+        }
+        assert!(count > 100.0);
+        assert!(f64::abs(sum / count) < 3e-4, "{}", sum / count);
+    }
+
+    #[test]
     fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
         let bars = kinematics::FiveBar {
             base: 20.0,

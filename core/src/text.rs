@@ -98,6 +98,9 @@ flash! {
 
 impl Text {
     /// Prints the sentence.
+    ///
+    /// # Errors
+    /// Those of `out`.
     pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
         for at in self.place() {
             out.write_char(char::from(BYTES.at(at).load() & 0x7f))?;

@@ -183,8 +183,7 @@ fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> 
     /// Of every margin, to its limit.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
-        let [left, right, rear_left, rear_right] =
-            [(); 4].map(|()| round(between(rng, 8.0, 80.0)));
+        let [left, right, rear_left, rear_right] = [(); 4].map(|()| round(between(rng, 8.0, 80.0)));
         let neutral = [180.0 - left, right, 360.0 - rear_right, 180.0 + rear_left];
         let solution = lizard.solve(&neutral.into()).ok()?;
         let roomy = Limits {
@@ -232,14 +231,21 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
         legs(halves),
     );
     for wavy in [wave, held] {
-        gaits.push(Box::new(move |size| format!("{wavy}\namplitude = {}", fine(30.0 * size))) as Sized);
+        gaits.push(
+            Box::new(move |size| format!("{wavy}\namplitude = {}", fine(30.0 * size))) as Sized,
+        );
     }
     gaits.push(Box::new(|_| "[gait.retreat]\nreverse = \"wander\"".into()));
     gaits.push(Box::new(|_| "[gait.advance]\nreverse = \"retreat\"".into()));
-    gaits.push(Box::new(|_| "[gait.other-hand]\nmirror = \"creep-along\"".into()));
+    gaits.push(Box::new(|_| {
+        "[gait.other-hand]\nmirror = \"creep-along\"".into()
+    }));
     let curve = format!("[gait.curve]\nlike = \"wander\"\nperiod = {}", period(rng));
     gaits.push(Box::new(move |size| {
-        format!("{curve}\ngain = {}", legs([size, 1.0, 0.5 * size, -0.5 * size].map(fine)))
+        format!(
+            "{curve}\ngain = {}",
+            legs([size, 1.0, 0.5 * size, -0.5 * size].map(fine))
+        )
     }));
     // Around where the end point stands in the neutral pose.
     let Ok(solution) = body.lizard.solve(&body.neutral.into()) else {

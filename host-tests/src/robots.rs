@@ -66,13 +66,20 @@ pub fn robots() -> &'static [Named] {
         let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
             .expect("the folder robots/")
             .map(|entry| entry.expect("a file").path())
-            .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+            .filter(|path| {
+                path.extension()
+                    .is_some_and(|extension| extension == "toml")
+            })
             .collect();
         files.sort();
         assert!(!files.is_empty(), "{} has robots", folder.display());
-        robots.extend(files.iter().map(|path| Named {
-            name: path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into()),
-            robot: load(path),
+        robots.extend(files.iter().map(|path| {
+            Named {
+                name: path
+                    .file_name()
+                    .map_or_else(String::new, |name| name.to_string_lossy().into()),
+                robot: load(path),
+            }
         }));
         robots.extend((0..RANDOM).map(|n| Named {
             name: format!("random robot {n} of seed {}", seed()),

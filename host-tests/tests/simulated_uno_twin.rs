@@ -10,7 +10,10 @@ use simulated_uno::{Fidelity, State, Uno};
 /// Everything one can say to the robot, refused and accepted, `apart` ms from
 /// each other, for ten minutes.
 fn everything(apart: u64) -> Script {
-    let gaits = robot().gaits.iter().map(|gait| gait.name.replace('-', " "));
+    let gaits = robot()
+        .gaits()
+        .iter()
+        .map(|gait| gait.name().replace('-', " "));
     let mut lines: Vec<String> = gaits.collect();
     lines.extend(
         [
@@ -69,7 +72,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let log = &recording.frames;
         assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
         let commands = twin::play(
-            &robot().firmware,
+            robot().firmware(),
             &recording.received_by_uno,
             log.first,
             log.widths.len(),

@@ -218,7 +218,7 @@ mod tests {
     }
 
     fn id(robot: &Robot, place: usize) -> lizard_core::gait::GaitId {
-        lizard_core::gait::GaitId::all(robot.firmware())
+        lizard_core::gait::GaitId::all(robot.gaits().len())
             .nth(place)
             .expect("a gait")
     }

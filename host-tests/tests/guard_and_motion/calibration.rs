@@ -13,13 +13,22 @@ const STEPS: f64 = 65536.0 / 360.0;
 fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
-        assert_eq!(firmware.pins(), robot.servos().map(|servo| servo.pin), "{name}");
+        assert_eq!(
+            firmware.pins(),
+            robot.servos().map(|servo| servo.pin),
+            "{name}"
+        );
         for (n, servo) in robot.servos().iter().enumerate() {
             let core = firmware.calibration()[n];
             let neutral = degrees(firmware.neutral()[n]);
-            assert!((neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS, "{name}: A{}", n + 1);
+            assert!(
+                (neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS,
+                "{name}: A{}",
+                n + 1
+            );
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
-                let meant = 16.0 * (servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS);
+                let meant =
+                    16.0 * (servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS);
                 if !(0.0..65536.0).contains(&meant) {
                     continue;
                 }
@@ -35,7 +44,8 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
     for Named { name, robot } in robots() {
         for (n, servo) in robot.servos().iter().enumerate() {
             let core = robot.firmware().calibration()[n];
-            let pulses = |sweep: i32| servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS;
+            let pulses =
+                |sweep: i32| servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS;
             let within = |sweep: i32| {
                 let us = pulses(sweep);
                 servo.min_us - 1e-6 <= us && us <= servo.max_us + 1e-6
@@ -44,7 +54,11 @@ fn each_servos_travel_ends_at_the_last_step_within_its_pulses() {
                 let end = i32::from(end.0);
                 assert!(within(end), "{name}: A{} at {end}", n + 1);
                 let next = end + outward;
-                assert!(!within(next) || next.abs() > 32_767, "{name}: A{} at {next}", n + 1);
+                assert!(
+                    !within(next) || next.abs() > 32_767,
+                    "{name}: A{} at {next}",
+                    n + 1
+                );
             }
             assert!(core.reaches(core.min) && core.reaches(core.max), "{name}");
             let beyond = [core.min.0.checked_sub(1), core.max.0.checked_add(1)];
@@ -60,6 +74,9 @@ fn a_move_is_as_fast_as_the_file_allows_and_no_faster() {
     for Named { name, robot } in robots() {
         let per_frame = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS;
         let limit = robot.pace().slew;
-        assert!(per_frame <= limit + 1e-6 && per_frame > limit - 50.0 / STEPS, "{name}");
+        assert!(
+            per_frame <= limit + 1e-6 && per_frame > limit - 50.0 / STEPS,
+            "{name}"
+        );
     }
 }

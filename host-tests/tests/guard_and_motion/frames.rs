@@ -34,7 +34,7 @@ const ROUNDING: f64 = 4.0;
 /// back. A gait has its own changes, and gathers or loses its pace on top of them.
 pub fn jerk(robot: &Robot) -> f64 {
     let moves = robot.pace().slew / 2.0;
-    let gaits = GaitId::all(robot.firmware()).map(|id| {
+    let gaits = GaitId::all(robot.gaits().len()).map(|id| {
         let (speed, change) = fastest(robot, id);
         change.max(speed / GATHERING + robot.pace().slew / 4.0) + speed / GATHERING
     });
@@ -46,7 +46,11 @@ pub fn jerk(robot: &Robot) -> f64 {
 fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
-    let sweeps = |phase: u32| gait.pose(firmware, phase % CYCLE).0.map(|sweep| f64::from(sweep.0));
+    let sweeps = |phase: u32| {
+        gait.pose(firmware.waves(), phase % CYCLE)
+            .0
+            .map(|sweep| f64::from(sweep.0))
+    };
     let frame = gait.increment.unsigned_abs();
     let (mut speed, mut change) = (0.0f64, 0.0f64);
     for phase in (0..CYCLE).step_by(CYCLE as usize / 4096) {
@@ -182,11 +186,18 @@ impl<'a> Walker<'a> {
 
         // Within a move the phase is 0; elsewhere a gait's is, once a cycle.
         let in_gait = motion.phase() != 0;
-        let limit = if in_gait { robot.pace().gait_slew } else { robot.pace().slew };
+        let limit = if in_gait {
+            robot.pace().gait_slew
+        } else {
+            robot.pace().slew
+        };
         // A table is rounded to a step at either end of a frame.
         let fastest = f64::from(before.farthest(&pose)) * STEP_PER_FRAME;
         let most = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
-        assert!(fastest <= most + 1e-6, "{name}: {fastest} deg/s, limit {limit}");
+        assert!(
+            fastest <= most + 1e-6,
+            "{name}: {fastest} deg/s, limit {limit}"
+        );
 
         let speeds: [f64; 4] = std::array::from_fn(|n| {
             (f64::from(pose.0[n].0) - f64::from(before.0[n].0)) * STEP_PER_FRAME
@@ -194,7 +205,10 @@ impl<'a> Walker<'a> {
         for (speed, last) in speeds.iter().zip(&self.speeds) {
             let change = (speed - last).abs();
             if !(self.may_stop || guard_stopped) {
-                assert!(change <= self.most_jerk, "{name}: {last} and then {speed} deg/s");
+                assert!(
+                    change <= self.most_jerk,
+                    "{name}: {last} and then {speed} deg/s"
+                );
                 self.jerk = self.jerk.max(change);
             }
         }
@@ -214,10 +228,20 @@ impl<'a> Walker<'a> {
             let off = f64::from(width.0) - meant;
             // Neutral, gain and product are rounded to half a cycle each; half a
             // step of the gain is a cycle at the ends of half a turn.
-            assert!(off.abs() <= 2.0, "{}: A{} is {off} cycles off", self.name, n + 1);
+            assert!(
+                off.abs() <= 2.0,
+                "{}: A{} is {off} cycles off",
+                self.name,
+                n + 1
+            );
             let us = f64::from(width.0) / 16.0;
             let travel = servo.min_us - 0.13..=servo.max_us + 0.13;
-            assert!(travel.contains(&us), "{}: A{} gets {us} us", self.name, n + 1);
+            assert!(
+                travel.contains(&us),
+                "{}: A{} gets {us} us",
+                self.name,
+                n + 1
+            );
         }
     }
 }
@@ -254,7 +278,11 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
 /// What a robot does once a command has come to its end.
 pub fn meant(robot: &Robot, command: &str) -> Option<Activity> {
     let gait = robot.gaits().iter().position(|gait| words(gait) == command);
-    let id = |place: usize| GaitId::all(robot.firmware()).nth(place).map(Activity::Gait);
+    let id = |place: usize| {
+        GaitId::all(robot.gaits().len())
+            .nth(place)
+            .map(Activity::Gait)
+    };
     match command {
         "stop" => Some(Activity::Stop),
         "rest" => Some(Activity::Rest),

@@ -23,7 +23,7 @@ const TABLE_ERROR: f64 = 0.10;
 /// Every gait of every robot, with its place in the core.
 fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Gait)> {
     robots().iter().flat_map(|named| {
-        let ids = GaitId::all(named.robot.firmware());
+        let ids = GaitId::all(named.robot.gaits().len());
         let gaits = named.robot.gaits().iter().zip(ids);
         gaits.map(move |(gait, id)| (named, gait, named.robot.firmware().gait(id)))
     })
@@ -32,7 +32,7 @@ fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Gait)>
 /// The gait of a robot by its name, as the core has it.
 fn named(robot: &Robot, name: &str) -> Option<Gait> {
     let index = robot.gait(name)?.index();
-    let id = GaitId::all(robot.firmware()).nth(index)?;
+    let id = GaitId::all(robot.gaits().len()).nth(index)?;
     Some(robot.firmware().gait(id))
 }
 
@@ -50,7 +50,7 @@ fn mirrored(pose: Pose) -> Pose {
 fn the_core_has_the_gaits_of_the_file_in_its_order() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
-        let names: Vec<String> = GaitId::all(firmware)
+        let names: Vec<String> = GaitId::all(firmware.gaits().len())
             .map(|id| firmware.name(id).map(char::from).collect())
             .collect();
         let expected: Vec<String> = robot.gaits().iter().map(words).collect();
@@ -63,19 +63,34 @@ fn tables_are_within_a_tenth_of_a_degree_of_every_gait_at_every_phase_and_safe_t
     let mut worst = 0.0f64;
     for (n, (Named { name, robot }, float, gait)) in gaits().enumerate() {
         // Of random robots every 13th phase, another one for each gait.
-        let (first, step) = if name.contains("random") { (n % 13, 13) } else { (0, 1) };
+        let (first, step) = if name.contains("random") {
+            (n % 13, 13)
+        } else {
+            (0, 1)
+        };
         for phase in phases().skip(first).step_by(step) {
-            let pose = gait.pose(robot.firmware(), phase);
-            let below = gait.pose(robot.firmware(), phase | 0xff);
-            assert_eq!(pose, below, "bits that the tables do not see make no difference");
+            let pose = gait.pose(robot.firmware().waves(), phase);
+            let below = gait.pose(robot.firmware().waves(), phase | 0xff);
+            assert_eq!(
+                pose, below,
+                "bits that the tables do not see make no difference"
+            );
             let angles = float.angles(f64::from(phase) / f64::from(CYCLE));
             for (servo, angle) in angles.into_iter().enumerate() {
                 let sweep = f64::from(pose.0[servo].0) / STEPS_PER_DEGREE;
                 let off = (robot.servos()[servo].neutral + sweep - angle).abs();
                 worst = worst.max(off);
-                assert!(off <= TABLE_ERROR, "{name}: {} at {phase}: {off} deg", float.name());
+                assert!(
+                    off <= TABLE_ERROR,
+                    "{name}: {} at {phase}: {off} deg",
+                    float.name()
+                );
             }
-            assert!(is_safe(robot.firmware(), &pose), "{name}: {} at {phase}", float.name());
+            assert!(
+                is_safe(robot.firmware(), &pose),
+                "{name}: {} at {phase}",
+                float.name()
+            );
         }
     }
     println!("tables are off by at most {worst:.4} deg");
@@ -96,7 +111,7 @@ fn a_leg_of_a_wave_pushes_back_from_its_start_for_its_duty_and_returns_in_the_re
             // The foot, forward positive, at so much of the cycle after the start.
             let foot = |after: f64| {
                 let phase = (stride.start + after).rem_euclid(1.0) * f64::from(CYCLE);
-                let pose = gait.pose(robot.firmware(), phase as u32);
+                let pose = gait.pose(robot.firmware().waves(), phase as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             let whom = format!("{name}: {} {}", float.name(), LEGS[servo]);
@@ -108,7 +123,10 @@ fn a_leg_of_a_wave_pushes_back_from_its_start_for_its_duty_and_returns_in_the_re
             let course = course.map(|(part, share)| (part * duty, share));
             for (after, share) in course.into_iter().chain([(0.5 * (1.0 + duty), 0.0)]) {
                 let off = foot(after) - share * front;
-                assert!(off.abs() <= 2.0 * TABLE_ERROR, "{whom}: {off} deg at {after}");
+                assert!(
+                    off.abs() <= 2.0 * TABLE_ERROR,
+                    "{whom}: {off} deg at {after}"
+                );
             }
         }
     }
@@ -119,10 +137,13 @@ fn a_leg_of_a_wave_pushes_back_from_its_start_for_its_duty_and_returns_in_the_re
 fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
     let mut gaits_seen = 0;
     for (Named { name, robot }, float, gait) in gaits() {
-        let turns = float.strides().each_ref().map(|stride| match stride.waveform {
-            Waveform::Held { turn } => Some(turn),
-            _ => None,
-        });
+        let turns = float
+            .strides()
+            .each_ref()
+            .map(|stride| match stride.waveform {
+                Waveform::Held { turn } => Some(turn),
+                _ => None,
+            });
         let [Some(a), Some(b), Some(c), Some(d)] = turns else {
             continue;
         };
@@ -130,14 +151,23 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
         for (servo, turn) in [a, b, c, d].into_iter().enumerate() {
             let amplitude = float.strides()[servo].amplitude;
             let foot = |phase: f64| {
-                let pose = gait.pose(robot.firmware(), (phase * f64::from(CYCLE)) as u32);
+                let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             // A fifth of the cycle for the common stroke, then one for each return.
             let begin = 0.2 * (1.0 + turn as f64);
-            for (phase, share) in [(0.2, -1.0), (begin, -1.0), (begin + 0.2, 1.0), (1.0 - 1e-6, 1.0)] {
+            for (phase, share) in [
+                (0.2, -1.0),
+                (begin, -1.0),
+                (begin + 0.2, 1.0),
+                (1.0 - 1e-6, 1.0),
+            ] {
                 let off = foot(phase.min(1.0 - 1e-6)) - share * amplitude;
-                assert!(off.abs() <= TABLE_ERROR, "{name}: {} at {phase}: {off} deg", float.name());
+                assert!(
+                    off.abs() <= TABLE_ERROR,
+                    "{name}: {} at {phase}: {off} deg",
+                    float.name()
+                );
             }
         }
     }
@@ -148,19 +178,30 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
 fn a_path_moves_only_its_own_end_around_its_centre() {
     // Random robots look and wag around where the end point stands in neutral.
     let mut paths = 0;
-    for Named { name, robot } in robots().iter().filter(|named| named.name.contains("random")) {
-        for (gait, end, other) in [("look", End::Head, End::Tail), ("wag", End::Tail, End::Head)] {
+    for Named { name, robot } in robots()
+        .iter()
+        .filter(|named| named.name.contains("random"))
+    {
+        for (gait, end, other) in [
+            ("look", End::Head, End::Tail),
+            ("wag", End::Tail, End::Head),
+        ] {
             let Some(float) = robot.gait(gait) else {
                 continue;
             };
             let core = named(robot, gait).expect("it is there");
             paths += 1;
             let point = |phase: u32, end: End| {
-                let sweeps = core.pose(robot.firmware(), phase << 16).0;
+                let sweeps = core.pose(robot.firmware().waves(), phase << 16).0;
                 let angles: [f64; 4] = std::array::from_fn(|servo| {
                     float.neutral()[servo] + f64::from(sweeps[servo].0) / STEPS_PER_DEGREE
                 });
-                robot.lizard().solve(&angles.into()).expect("it closes").end(end).end_point
+                robot
+                    .lizard()
+                    .solve(&angles.into())
+                    .expect("it closes")
+                    .end(end)
+                    .end_point
             };
             let neutral = robot.lizard().solve(&robot.neutral()).expect("it stands");
             let mut mean = [0.0; 2];
@@ -174,7 +215,10 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
             let at = neutral.end(end).end_point;
             let size = robot.lizard().links.l10;
             let off = (mean[0] - at.x).hypot(mean[1] - at.y);
-            assert!(off < 1e-3 * size, "{name}: {gait} is {off} mm off its centre");
+            assert!(
+                off < 1e-3 * size,
+                "{name}: {gait} is {off} mm off its centre"
+            );
         }
     }
     assert!(paths > 10, "{paths}");
@@ -184,7 +228,11 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
 fn a_reversed_gait_runs_backwards_and_reversed_again_forwards() {
     let mut seen = 0;
     for Named { name, robot } in robots() {
-        for (forth, back, sign) in [("wander", "retreat", -1), ("wander", "advance", 1), ("walk", "back", -1)] {
+        for (forth, back, sign) in [
+            ("wander", "retreat", -1),
+            ("wander", "advance", 1),
+            ("walk", "back", -1),
+        ] {
             let (Some(forth), Some(back)) = (named(robot, forth), named(robot, back)) else {
                 continue;
             };
@@ -192,7 +240,7 @@ fn a_reversed_gait_runs_backwards_and_reversed_again_forwards() {
             assert!(forth.increment > 0, "{name}");
             assert_eq!(back.increment, sign * forth.increment, "{name}");
             for phase in phases().step_by(64) {
-                let poses = [&forth, &back].map(|gait| gait.pose(robot.firmware(), phase));
+                let poses = [&forth, &back].map(|gait| gait.pose(robot.firmware().waves(), phase));
                 assert_eq!(poses[0], poses[1], "{name}");
             }
         }
@@ -204,16 +252,20 @@ fn a_reversed_gait_runs_backwards_and_reversed_again_forwards() {
 fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
     let mut seen = 0;
     for Named { name, robot } in robots() {
-        for (one, other) in [("creep-along", "other-hand"), ("left", "right"), ("arc-left", "arc-right")] {
+        for (one, other) in [
+            ("creep-along", "other-hand"),
+            ("left", "right"),
+            ("arc-left", "arc-right"),
+        ] {
             let (Some(one), Some(other)) = (named(robot, one), named(robot, other)) else {
                 continue;
             };
             seen += 1;
             assert_eq!(one.increment, other.increment, "{name}");
             for phase in phases() {
-                let pose = mirrored(one.pose(robot.firmware(), phase));
+                let pose = mirrored(one.pose(robot.firmware().waves(), phase));
                 // Halves are rounded up on either side, gains are rounded.
-                let off = pose.farthest(&other.pose(robot.firmware(), phase));
+                let off = pose.farthest(&other.pose(robot.firmware().waves(), phase));
                 assert!(off <= 1, "{name}: {off} steps");
             }
         }
@@ -224,12 +276,16 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
 #[test]
 fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
     for (Named { name, robot }, float, gait) in gaits() {
-        let pose = |phase: u32| gait.pose(robot.firmware(), phase % CYCLE);
+        let pose = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
         // The longest way between two neighbours, and that from the last phase to 0.
         let way = |phase: u32| pose(phase).farthest(&pose(phase + (1 << 8)));
         let longest = phases().step_by(7).map(way).max();
         let around = phases().skip(PHASES as usize - 4).map(way).max();
-        assert!(around <= longest.map(|longest| longest + 1), "{name}: {}", float.name());
+        assert!(
+            around <= longest.map(|longest| longest + 1),
+            "{name}: {}",
+            float.name()
+        );
     }
 }
 
@@ -240,10 +296,15 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
         // The advance is rounded to 1/2^24 cycle, so each frame may be half off.
         let meant = (frames / 50.0 / float.period()).fract();
-        let off = (f64::from(phase) / f64::from(CYCLE) - if float.is_reversed() { -meant } else { meant })
-            .rem_euclid(1.0);
+        let off = (f64::from(phase) / f64::from(CYCLE)
+            - if float.is_reversed() { -meant } else { meant })
+        .rem_euclid(1.0);
         let off = off.min(1.0 - off) * f64::from(CYCLE);
-        assert!(off <= 0.5 * frames + 1.0, "{name}: {} is {off} of 2^24 off", float.name());
+        assert!(
+            off <= 0.5 * frames + 1.0,
+            "{name}: {} is {off} of 2^24 off",
+            float.name()
+        );
     }
 }
 
@@ -276,7 +337,12 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
                 let share = sign * f64::from(percent) / 100.0;
                 let off = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
                 worst = worst.max(off.abs());
-                assert!(off.abs() <= 0.005, "{} {} at {percent} %: {off}", named.name, float.name());
+                assert!(
+                    off.abs() <= 0.005,
+                    "{} {} at {percent} %: {off}",
+                    named.name,
+                    float.name()
+                );
             }
         }
     }
@@ -295,7 +361,13 @@ fn a_gait_asked_for_again_just_goes_on() {
                 if frame == 0 {
                     spared.does(&words(gait));
                 }
-                assert_eq!(asked.frame(), spared.frame(), "{}: {}", named.name, gait.name());
+                assert_eq!(
+                    asked.frame(),
+                    spared.frame(),
+                    "{}: {}",
+                    named.name,
+                    gait.name()
+                );
             }
         }
     }
@@ -304,7 +376,12 @@ fn a_gait_asked_for_again_just_goes_on() {
 #[test]
 fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
     for named in robots() {
-        for (gait, id) in named.robot.gaits().iter().zip(GaitId::all(named.robot.firmware())) {
+        for (gait, id) in named
+            .robot
+            .gaits()
+            .iter()
+            .zip(GaitId::all(named.robot.gaits().len()))
+        {
             let mut walker = Walker::standing(named);
             walker.does(&words(gait));
             let firmware = named.robot.firmware();
@@ -316,7 +393,12 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             for _ in 0..100 {
                 walker.run(1);
                 let phase = walker.motion().phase();
-                assert_eq!(walker.pose(), table.pose(firmware, phase), "{}", named.name);
+                assert_eq!(
+                    walker.pose(),
+                    table.pose(firmware.waves(), phase),
+                    "{}",
+                    named.name
+                );
             }
         }
     }
@@ -327,8 +409,12 @@ fn gaits_of_the_paper_that_look_the_same_from_both_sides_half_a_cycle_apart_are_
     for name in ["walk", "trot"] {
         let gait = named(paper(), name).expect("a gait of the paper's robot");
         for phase in phases() {
-            let across = gait.pose(paper().firmware(), (phase + CYCLE / 2) % CYCLE);
-            assert_eq!(mirrored(gait.pose(paper().firmware(), phase)), across, "{name}");
+            let across = gait.pose(paper().firmware().waves(), (phase + CYCLE / 2) % CYCLE);
+            assert_eq!(
+                mirrored(gait.pose(paper().firmware().waves(), phase)),
+                across,
+                "{name}"
+            );
         }
     }
 }
@@ -338,10 +424,15 @@ fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
     let gait = named(paper(), "look").expect("a gait of the paper's robot");
     let neutral = paper().servos().map(|servo| servo.neutral);
     for phase in (0..PHASES).step_by(16) {
-        let sweeps = gait.pose(paper().firmware(), phase << 8).0;
+        let sweeps = gait.pose(paper().firmware().waves(), phase << 8).0;
         let angles: [f64; 4] =
             std::array::from_fn(|n| neutral[n] + f64::from(sweeps[n].0) / STEPS_PER_DEGREE);
-        let point = paper().lizard().solve(&angles.into()).expect("it closes").head.end_point;
+        let point = paper()
+            .lizard()
+            .solve(&angles.into())
+            .expect("it closes")
+            .head
+            .end_point;
         let turn = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASES);
         let off = (point.x - 10.0 * turn.sin()).hypot(point.y - 54.0 - 5.0 * (2.0 * turn).sin());
         assert!(off < 0.1, "{off} mm at {phase}");

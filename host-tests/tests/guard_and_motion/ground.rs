@@ -52,7 +52,10 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     while from_zero(&walker) > near / 2 + 1 {
         walker.run(1);
     }
-    let mut path = vec![angles(robot, walker.pose().pulses(walker.motion().calibration()))];
+    let mut path = vec![angles(
+        robot,
+        walker.pose().pulses(walker.motion().calibration()),
+    )];
     for _ in 0..frames.ceil() as usize {
         path.push(angles(robot, walker.frame()));
     }
@@ -67,13 +70,22 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
 /// Holds a travel to what was meant, where that is known, within `most` mm or a
 /// hundredth of it.
 fn check(whom: &str, travel: Travel, most: f64, forward: Option<f64>, turn: Option<f64>) {
-    println!("{whom}: {:+.2} mm, {:+.2} deg, meant {forward:?} {turn:?}", travel.forward, travel.turn);
+    println!(
+        "{whom}: {:+.2} mm, {:+.2} deg, meant {forward:?} {turn:?}",
+        travel.forward, travel.turn
+    );
     if let Some(forward) = forward {
         let most = most.max(0.01 * forward.abs());
-        assert!((travel.forward - forward).abs() <= most, "{whom}: {travel:?}, not {forward}");
+        assert!(
+            (travel.forward - forward).abs() <= most,
+            "{whom}: {travel:?}, not {forward}"
+        );
     }
     if let Some(turn) = turn {
-        assert!((travel.turn - turn).abs() <= 0.2, "{whom}: {travel:?}, not {turn}");
+        assert!(
+            (travel.turn - turn).abs() <= 0.2,
+            "{whom}: {travel:?}, not {turn}"
+        );
     }
 }
 

@@ -90,7 +90,10 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
             assert!(sine(core) >= file - 1e-9, "{name}: {core:?} for {file}");
             assert!(sine(Sine(core.0 - 1)) < file, "{name}: {core:?} for {file}");
         }
-        let sides = [lizard_kinematics::Side::Left, lizard_kinematics::Side::Right];
+        let sides = [
+            lizard_kinematics::Side::Left,
+            lizard_kinematics::Side::Right,
+        ];
         for (side, of_file) in Side::ALL.into_iter().zip(sides) {
             let slider = robot.firmware().side(side);
             let nominal = robot.lizard().side(of_file).nominal;

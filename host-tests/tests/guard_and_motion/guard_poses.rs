@@ -13,8 +13,8 @@ use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::Robot;
 
 use crate::truth::{
-    ENDS, LEAST_TYPE2, MARGINS, Spread, Truth, angles, any_pose, is_safe,
-    open_end, per_mm, pose_within, sine,
+    ENDS, LEAST_TYPE2, MARGINS, Spread, Truth, angles, any_pose, is_safe, open_end, per_mm,
+    pose_within, sine,
 };
 
 /// Poses of each robot.
@@ -59,8 +59,12 @@ impl Findings {
             Ok(truth) => truth,
             Err(fault) => {
                 // A head that does not close is found first.
-                let end = open_end(&fault).expect("the sliders of these robots always have a length");
-                assert!(named.is_some_and(|place| place <= end), "{pose:?}: {fault}, {hazard:?}");
+                let end =
+                    open_end(&fault).expect("the sliders of these robots always have a length");
+                assert!(
+                    named.is_some_and(|place| place <= end),
+                    "{pose:?}: {fault}, {hazard:?}"
+                );
                 return;
             }
         };
@@ -93,7 +97,10 @@ impl Findings {
             {
                 // The guard only has to know that it is so.
                 let most = LEAST_TYPE2 + truth.bands[end];
-                assert!(truth.is_at_crossing(end) || sine(core.margins[end]) < most, "{truth:?}");
+                assert!(
+                    truth.is_at_crossing(end) || sine(core.margins[end]) < most,
+                    "{truth:?}"
+                );
                 continue;
             }
             let spread = match place {
@@ -133,7 +140,11 @@ impl Findings {
         for (margin, off) in MARGINS.iter().zip(self.in_bands) {
             assert!(off <= 1.0, "{name}: {margin:?} is {off} bands off");
         }
-        assert!(self.stroke.max <= STEPS_BAND, "{name}: a stroke is {} steps off", self.stroke);
+        assert!(
+            self.stroke.max <= STEPS_BAND,
+            "{name}: a stroke is {} steps off",
+            self.stroke
+        );
         assert!(self.safe > 0 && self.refused > 0, "{name} has no limit");
     }
 }
@@ -195,12 +206,19 @@ fn of_every_robot_the_guard_changes_its_mind_where_floating_point_has_the_limit(
 /// and the second not.
 fn straddling(robot: &Robot, far: Pose) -> [Pose; 2] {
     let at = |share: u32| {
-        Pose(far.0.map(|sweep| Sweep((i64::from(sweep.0) * i64::from(share) >> 16) as i16)))
+        Pose(
+            far.0
+                .map(|sweep| Sweep((i64::from(sweep.0) * i64::from(share) >> 16) as i16)),
+        )
     };
     let (mut safe, mut not) = (0, 1 << 16);
     while not - safe > 1 {
         let middle = (safe + not) / 2;
-        *(if is_safe(robot.firmware(), &at(middle)) { &mut safe } else { &mut not }) = middle;
+        *(if is_safe(robot.firmware(), &at(middle)) {
+            &mut safe
+        } else {
+            &mut not
+        }) = middle;
     }
     [at(safe), at(not)]
 }

@@ -21,7 +21,11 @@ fn no_frame_is_too_fast_too_sudden_or_unsafe_whatever_is_asked() {
             let mut walker = Walker::new(named);
             for _ in 0..12 {
                 let answer = walker.say(&any_command(&mut rng, &named.robot));
-                *(if answer.starts_with("ok") { &mut done } else { &mut refused }) += 1;
+                *(if answer.starts_with("ok") {
+                    &mut done
+                } else {
+                    &mut refused
+                }) += 1;
                 walker.run(rng.u32(..120));
             }
             most = most.max(walker.jerk);
@@ -57,13 +61,17 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
             }
             let activity = walker.motion().activity();
             match meant(robot, &last) {
-                Some(meant) if answer.starts_with("ok") => assert_eq!(activity, meant, "{name}: {last}"),
+                Some(meant) if answer.starts_with("ok") => {
+                    assert_eq!(activity, meant, "{name}: {last}")
+                }
                 // A speed, or a pose that was refused.
                 _ => assert!(matches!(activity, Activity::Gait(_)), "{name}: {last}"),
             }
             if let Activity::Gait(id) = activity {
                 let firmware = robot.firmware();
-                let pose = firmware.gait(id).pose(firmware, walker.motion().phase());
+                let pose = firmware
+                    .gait(id)
+                    .pose(firmware.waves(), walker.motion().phase());
                 assert_eq!(walker.pose(), pose, "{name}: {last}");
             }
             arrived += 1;
@@ -138,7 +146,10 @@ fn servos_wake_one_after_another_where_they_were_left() {
     for (n, named) in robots().iter().enumerate() {
         let calibration = named.robot.firmware().calibration();
         let mut walker = Walker::new(named);
-        for held in [Pose::NEUTRAL, safe_pose(&mut rng(5000 + n as u64), named.robot.firmware())] {
+        for held in [
+            Pose::NEUTRAL,
+            safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
+        ] {
             if held != Pose::NEUTRAL {
                 walker.say(&walker.typed(&held));
                 walker.run(long_enough(&named.robot));
@@ -187,8 +198,10 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_begins_anew() {
             walker.does("stand");
             walker.does(&crate::frames::words(&robot.gaits()[gait]));
             let firmware = robot.firmware();
-            let id = lizard_core::gait::GaitId::all(firmware).nth(gait).expect("a gait");
-            let first = firmware.gait(id).pose(firmware, 0);
+            let id = lizard_core::gait::GaitId::all(firmware.gaits().len())
+                .nth(gait)
+                .expect("a gait");
+            let first = firmware.gait(id).pose(firmware.waves(), 0);
             let begins = (0..2 * long_enough(robot)).any(|_| {
                 walker.run(1);
                 walker.motion().phase() == 0 && walker.pose() == first

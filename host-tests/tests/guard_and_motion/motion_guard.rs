@@ -55,7 +55,10 @@ fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
 }
 
 fn shrunk(pose: &Pose, share: i32) -> Pose {
-    Pose(pose.0.map(|sweep| Sweep((i32::from(sweep.0) * share / 256) as i16)))
+    Pose(
+        pose.0
+            .map(|sweep| Sweep((i32::from(sweep.0) * share / 256) as i16)),
+    )
 }
 
 #[test]
@@ -86,16 +89,25 @@ fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
             assert_eq!(walker.motion().activity(), Activity::Stop, "{name}");
             let told = walker.read();
             assert_eq!(told.len(), 1, "{name}: {told:?}");
-            assert!(told[0].starts_with("# held in the last safe pose: "), "{told:?}");
+            assert!(
+                told[0].starts_with("# held in the last safe pose: "),
+                "{told:?}"
+            );
             // The reason lies on the way that is left.
-            assert!(lies_ahead(robot.firmware(), from, to, walker.pose(), hazard), "{name}: {hazard:?}");
+            assert!(
+                lies_ahead(robot.firmware(), from, to, walker.pose(), hazard),
+                "{name}: {hazard:?}"
+            );
             let pose = walker.pose();
             walker.run(20);
             assert_eq!(walker.pose(), pose, "{name}");
             assert!(walker.read().is_empty(), "{name}: told once");
             assert!(walker.say("status").ends_with("guard=held"), "{name}");
             // And from there it may be told to go back.
-            assert!(walker.arrives(&from) || walker.motion().hazard().is_some(), "{name}");
+            assert!(
+                walker.arrives(&from) || walker.motion().hazard().is_some(),
+                "{name}"
+            );
             if walker.motion().hazard().is_none() {
                 assert!(walker.say("status").ends_with("guard=clear"), "{name}");
             }
@@ -126,7 +138,10 @@ fn lies_ahead(
             Sweep((from + share * (to - from)).round() as i16)
         }));
         let beyond = held.farthest(&from) <= pose.farthest(&from) + 1;
-        beyond && Clearance::of(firmware, &pose).hazard(firmware).is_some_and(same)
+        beyond
+            && Clearance::of(firmware, &pose)
+                .hazard(firmware)
+                .is_some_and(same)
     })
 }
 
@@ -144,7 +159,12 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
             }
             walker.run((2.0 * gait.period() * 50.0) as u32);
             let hazard = walker.motion().hazard();
-            assert!(hazard.is_none(), "{}: {}: {hazard:?}", named.name, gait.name());
+            assert!(
+                hazard.is_none(),
+                "{}: {}: {hazard:?}",
+                named.name,
+                gait.name()
+            );
         }
     }
 }

@@ -81,10 +81,10 @@ fn the_condition_printed_in_the_paper_calls_every_symmetric_head_singular() {
 #[test]
 fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     let firmware = paper().firmware();
-    for id in GaitId::all(firmware) {
+    for id in GaitId::all(firmware.gaits().len()) {
         let gait = firmware.gait(id);
         let stopped = (0..256u32)
-            .filter(|n| Printed::of(&gait.pose(firmware, n << 16)).stops())
+            .filter(|n| Printed::of(&gait.pose(firmware.waves(), n << 16)).stops())
             .count();
         assert!(stopped > 64, "{id:?}: {stopped} of 256");
     }
@@ -97,7 +97,11 @@ fn the_condition_printed_in_the_paper_is_blind_to_the_real_singularity_and_the_g
         let (dy, dx) = f64::from(around).to_radians().sin_cos();
         let pose = head_at(MEET[0] + dx, MEET[1] + dy);
         best = best.max(Printed::of(&pose).head);
-        assert_eq!(named(&pose), Some(Margin::Type2(End::Head)), "a degree beside it");
+        assert_eq!(
+            named(&pose),
+            Some(Margin::Type2(End::Head)),
+            "a degree beside it"
+        );
     }
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {best:.3}");
     assert!(best > 0.95);

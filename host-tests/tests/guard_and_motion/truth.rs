@@ -229,7 +229,10 @@ pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
 /// A pose within so much of every servo's travel, as a share from neutral.
 pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
     let pose = any_pose(rng, calibration);
-    Pose(pose.0.map(|sweep| Sweep((f64::from(sweep.0) * share) as i16)))
+    Pose(
+        pose.0
+            .map(|sweep| Sweep((f64::from(sweep.0) * share) as i16)),
+    )
 }
 
 /// A pose that the guard lets pass.

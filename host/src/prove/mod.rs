@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::{Failure, RobotFile};
 
-pub use tally::{STEPS_BAND, Tally, margin_band};
+pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 
 /// Compare the firmware's guard with floating point at every pose there is.
 ///
@@ -102,7 +102,7 @@ impl Proof {
         Self {
             findings: walk::all(robot, guard, share, &progress),
             hash: guard.hash(),
-            margin_band: margin_band(robot.limits().type2),
+            margin_band: walk::widest_band(robot, guard),
         }
     }
 

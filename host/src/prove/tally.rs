@@ -1,18 +1,26 @@
 //! What a walk over many pairs of positions adds up.
 
+use lizard_kinematics::FiveBar;
 use serde::Serialize;
 
 /// How near to a margin's limit the guard may decide otherwise than floating
-/// point, a sine: .002; and more for a robot whose limit of type 2 (`type2`) is
-/// below a quarter, because where the couplers are nearly in line, a rounded
-/// length changes the sine of the angle between them by its reciprocal.
-pub fn margin_band(type2: f64) -> f64 {
-    (0.0005 / type2).max(0.002)
-}
+/// point, a sine; see [`margin_band`].
+pub const MARGIN_BAND: f64 = 0.002;
 
 /// How near to the end of a stroke, or to the crossing of the crank tips, in steps
 /// of the mechanism's lengths: 1/256 mm for a robot of the paper's size.
 pub const STEPS_BAND: f64 = 4.0;
+
+/// How near to the limit of a type-2 or type-1 margin an end may be decided
+/// otherwise: [`MARGIN_BAND`], or what [`STEPS_BAND`] rounded steps of `step` mm turn
+/// its couplers by. Where the couplers are nearly in line that is a lot: they turn by
+/// the reciprocal of the sine between them, which is at least `type2`.
+pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
+    let (a, b) = (bars.coupler_left, bars.coupler_right);
+    let apart = (a + b).min(bars.base + bars.crank_left + bars.crank_right);
+    let per_mm = (apart / (a * b)).max(1.0 / a.min(b));
+    MARGIN_BAND.max(STEPS_BAND * step * per_mm / type2)
+}
 
 /// Errors and disagreements of one end, one side or one leg.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

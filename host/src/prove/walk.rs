@@ -10,7 +10,7 @@ use lizard_robot::{Firmware, Robot, servo};
 use rayon::prelude::*;
 
 use super::positions::Positions;
-use super::tally::{STEPS_BAND, Tally, margin_band};
+use super::tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 use super::{Finding, Share};
 
 /// Columns that floating point takes at once.
@@ -55,6 +55,14 @@ pub fn all(
         });
     }
     findings
+}
+
+/// The widest band of the robot's ends: see [`margin_band`].
+pub fn widest_band(robot: &Robot, guard: &Firmware) -> f64 {
+    End::ALL
+        .map(|end| EndWalk::new(robot, guard, end).margin_band)
+        .into_iter()
+        .fold(MARGIN_BAND, f64::max)
 }
 
 /// How many rows that is.
@@ -150,14 +158,16 @@ impl<'a> EndWalk<'a> {
             End::Tail => part::End::Tail,
         };
         let limits = guard.limits();
+        let exact = robot.lizard().end(end);
+        let step = f64::from(1u32 << guard.end_scale(part).bits).recip();
         Self {
             name: end.name(),
             fixed: guard.end(part),
-            exact: robot.lizard().end(end),
+            exact,
             limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],
-            margin_band: margin_band(robot.limits().type2),
-            crossing_band: STEPS_BAND * f64::from(1u32 << guard.end_scale(part).bits).recip(),
+            margin_band: margin_band(&exact, robot.limits().type2, step),
+            crossing_band: STEPS_BAND * step,
         }
     }
 
@@ -351,12 +361,9 @@ fn leg(robot: &Robot, guard: &Firmware, positions: &Positions) -> Tally {
         Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
         let clear = exact.y - robot.limits().leg;
         if (fixed.sin >= least) != (clear >= 0.0) {
-            tally.differ(
-                false,
-                clear.abs(),
-                margin_band(robot.limits().type2),
-                || format!("at {:.4} deg", positions.degrees[position]),
-            );
+            tally.differ(false, clear.abs(), MARGIN_BAND, || {
+                format!("at {:.4} deg", positions.degrees[position])
+            });
         }
     }
     tally
