@@ -252,6 +252,8 @@ mod tests {
     fn a_move_to_where_the_robot_is_stays_there_for_eight_frames() {
         let sweeps = way(77, 77, Slew::new(1000));
         assert_eq!(sweeps, [77; 9]);
+        let path = PointToPoint::new(&pose([0; 4]), &pose([9; 4]), Slew::new(1000));
+        assert_eq!(path.step, 32_768 / 8, "an equal share in each");
     }
 
     #[test]
