@@ -171,7 +171,15 @@ fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
 
 #[test]
 fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_long() {
-    for (count, length) in [(4, 48), (40, 5), (8, 23), (249, 1), (249, 48), (6, 21)] {
+    for (count, length) in [
+        (4, 48),
+        (40, 5),
+        (8, 23),
+        (6, 28),
+        (249, 1),
+        (249, 48),
+        (6, 21),
+    ] {
         let mut robot = Sample::odd();
         for number in 0..count {
             robot = robot.with_gait(&format!("{number:x>length$}")[..length]);

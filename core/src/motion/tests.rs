@@ -400,10 +400,9 @@ fn a_gait_that_is_left_and_asked_for_again_before_it_stands_still_begins_anew() 
 fn a_speed_is_gathered_and_lost_as_pace_and_rounds_to_the_nearest() {
     for percent in 10..=100u8 {
         let exact = f64::from(percent) * 1024.0 / 100.0;
-        assert!(
-            (f64::from(pace_of(percent)) - exact).abs() < 1.0,
-            "{percent}"
-        );
+        // 2622/256 is 0.02 % more than that, and then to nearest.
+        let off = f64::from(pace_of(percent)) - exact * 1.000_214;
+        assert!(off.abs() <= 0.501, "{percent}: {off}");
     }
     let mut motion = Motion::in_gait("sway", 90);
     motion.set_speed(50);
