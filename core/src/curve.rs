@@ -153,6 +153,21 @@ mod tests {
     }
 
     #[test]
+    fn between_two_entries_any_function_is_rounded_to_nearest() {
+        for slope in [-5, 5] {
+            let table: Table = core::array::from_fn(|index| slope * index as i16);
+            let curve = Curve::new(Flash::from(&table), 1 << 20);
+            // The last octave: entries are 1/16 of it apart.
+            for argument in (1 << 20..1 << 21).step_by(997) {
+                let octaves = f64::from(argument) / f64::from(1 << 20) - 1.0;
+                let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVES) + octaves);
+                let got = f64::from(curve.at(argument).expect("in its octaves"));
+                assert!((got - exact).abs() <= 0.501, "{argument}: {got}, {exact}");
+            }
+        }
+    }
+
+    #[test]
     fn below_its_first_octave_and_at_nothing_a_curve_has_no_value() {
         let table = [7; ENTRIES];
         for largest in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
