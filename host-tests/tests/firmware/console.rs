@@ -54,7 +54,10 @@ fn case_and_blanks_do_not_matter() {
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("stand at least");
     let typed = gait.to_uppercase().replace(' ', "   \t");
-    assert!(bench.say(&format!(" {typed} ")).starts_with("ok "), "{typed}");
+    assert!(
+        bench.say(&format!(" {typed} ")).starts_with("ok "),
+        "{typed}"
+    );
     assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
     assert!(bench.say(" speed\t50 ").starts_with("ok speed"));
     assert_eq!(Status::of(&mut bench).text("speed"), "50");
@@ -105,7 +108,9 @@ fn refused_poses() -> Vec<(String, u8)> {
         found[place].get_or_insert_with(|| pose_at(sweeps));
     }
     let found = found.into_iter().zip([3, 4, 5]);
-    found.filter_map(|(line, code)| Some((line?, code))).collect()
+    found
+        .filter_map(|(line, code)| Some((line?, code)))
+        .collect()
 }
 
 /// The robot's limits, stricter by so much: sines, and ten times that in mm.

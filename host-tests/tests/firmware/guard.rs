@@ -2,14 +2,14 @@
 
 use fastrand::Rng;
 use lizard_core::guard::Clearance;
-use lizard_core::part::Side;
+use lizard_core::part::{End, Side};
 use lizard_core::pose::Pose as Sweeps;
 use lizard_core::robot::Robot as _;
 use lizard_core::units::Sweep;
 use lizard_host::prove::{STEPS_BAND, margin_band};
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::robot;
-use lizard_kinematics::{Limits, Pose, Solution, wrap};
+use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use simulated_uno::Fidelity;
 
 use crate::{SECOND, Status, awake, for_each, neutral_widths};
@@ -20,10 +20,23 @@ fn stroke_band() -> f64 {
     STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
 }
 
+/// In a margin, where type-2 margins are at least `type2`.
+fn margin_error(type2: f64) -> f64 {
+    let ends = [
+        (End::Head, kinematics::End::Head),
+        (End::Tail, kinematics::End::Tail),
+    ];
+    let bands = ends.map(|(end, of)| {
+        let step = 1.0 / f64::from(1 << robot().firmware().end_scale(end).bits);
+        margin_band(&robot().lizard().end(of), type2, step)
+    });
+    bands[0].max(bands[1])
+}
+
 /// The limits, stricter by the guard's tolerance (`by` = 1) or laxer (-1).
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
-    let (margin, stroke) = (margin_band(limits.type2), stroke_band());
+    let (margin, stroke) = (margin_error(limits.type2), stroke_band());
     Limits {
         type2: limits.type2 + by * margin,
         type1: limits.type1 + by * margin,
@@ -151,7 +164,7 @@ fn a_refusal_names_the_margin_and_its_value() {
             "err 5" => stroke_band() + 0.005,
             // A pose that is all but singular is told as singular.
             _ if float < 0.1 => 0.05,
-            _ => 0.002 * margin_band(0.1) / margin_band(1.0) + 0.0005,
+            _ => margin_error(0.1) + 0.0005,
         };
         assert!(off <= most, "{angles:?}: {answer}, not {float}");
         named += 1;
@@ -252,10 +265,7 @@ fn a_way_that_breaks_a_limit_ends_before_it_does() {
         bench.run_ms(5000);
         assert!(bench.say(&typed(to)).starts_with("ok pose"));
         let note = bench.next_line(5000).expect("the robot tells");
-        assert!(
-            note.starts_with("# held in the last safe pose: "),
-            "{note}"
-        );
+        assert!(note.starts_with("# held in the last safe pose: "), "{note}");
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));

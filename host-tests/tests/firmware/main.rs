@@ -66,7 +66,9 @@ fn awake(fidelity: Fidelity) -> FirmwareBench {
 /// The command of the robot's first gait that moves; `stand` if there is none.
 fn moving() -> String {
     let moving = tour::moving(robot());
-    moving.first().map_or("stand".into(), |name| name.replace('-', " "))
+    moving
+        .first()
+        .map_or("stand".into(), |name| name.replace('-', " "))
 }
 
 /// The commands of all gaits.
@@ -86,7 +88,9 @@ fn pose_at(sweeps: [f64; 4]) -> String {
 
 /// The widths of the neutral pose, cycles.
 fn neutral_widths() -> [u64; 4] {
-    robot().servos().map(|servo| (servo.neutral_us * 16.0).round() as u64)
+    robot()
+        .servos()
+        .map(|servo| (servo.neutral_us * 16.0).round() as u64)
 }
 
 /// Ends a flood and lets the robot answer what is left of it.

@@ -91,7 +91,10 @@ fn a_saturated_line_both_ways_moves_no_edge() {
                 .windows(2)
                 .filter(|pair| pair[0].widths != pair[1].widths);
             let varies = robot().gaits().iter().any(|gait| gait.moves());
-            assert!(!varies || changed.count() as u64 > 5 * SECOND, "the widths vary");
+            assert!(
+                !varies || changed.count() as u64 > 5 * SECOND,
+                "the widths vary"
+            );
             // Both lines are busy: 11 520 bytes a second come in, and unless the
             // flood is all one overlong line the answers fill the line back.
             let seconds = frames.len() as f64 / SECOND as f64;

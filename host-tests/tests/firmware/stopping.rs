@@ -153,8 +153,7 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         bench.run_ms(3000);
         assert!(bench.say(&pose_at(sweeps(size))).starts_with("ok pose"));
         let sent = widths(&bench.run_for_frames(150));
-        let goal: [u64; 4] =
-            std::array::from_fn(|i| goal(i, sweeps(size)[i]));
+        let goal: [u64; 4] = std::array::from_fn(|i| goal(i, sweeps(size)[i]));
         let end = sent[149];
         for (end, goal) in end.into_iter().zip(goal) {
             // Hundredths of a degree, then steps of 1/65536 turn: a cycle or two each.
