@@ -71,8 +71,24 @@ impl Symbol {
     /// The name as its author wrote it, with its path.
     #[must_use]
     pub fn path(&self) -> String {
-        // `<lizard::console::Console>::frame` is `lizard::console::Console::frame`.
-        format!("{:#}", rustc_demangle::demangle(&self.name)).replace(['<', '>'], "")
+        let name = format!("{:#}", rustc_demangle::demangle(&self.name));
+        // `<core::console::Console<Lizard>>::frame` is `core::console::Console::frame`:
+        // the brackets around a type go, those after one go with what is in them.
+        let mut path = String::new();
+        let mut brackets: Vec<bool> = Vec::new();
+        for letter in name.chars() {
+            let dropping = brackets.contains(&true);
+            match letter {
+                '<' => brackets
+                    .push(path.ends_with(|last: char| last.is_alphanumeric() || last == ':')),
+                '>' if !path.ends_with('-') => {
+                    brackets.pop();
+                }
+                _ if dropping => {}
+                _ => path.push(letter),
+            }
+        }
+        path.trim_end_matches("::").to_owned()
     }
 
     fn is(&self, path: &str) -> bool {

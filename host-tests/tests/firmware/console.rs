@@ -1,10 +1,12 @@
 //! One line in, one answer out, and what the answer means for the pulses.
 
+use fastrand::Rng;
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::{FirmwareBench, robot};
+use lizard_kinematics::{Check, Limits};
 use simulated_uno::{FREQUENCY, Fidelity};
 
-use crate::{SECOND, Status, angles, awake, doing, in_both, widths};
+use crate::{SECOND, Status, angles, awake, doing, gaits, in_both, moving, pose_at, widths};
 
 /// Half a step of the console's two decimals, of a pulse and of the firmware's
 /// neutral angle, deg.
@@ -29,7 +31,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
         for end in ["\r", "\n", "\r\n"] {
             let mut bench = awake(fidelity);
             let before = bench.lines().len();
-            let text = format!("{end}{end} \t{end}walk{end}{end}stop{end}status{end}");
+            let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
             bench.uno.send(text.as_bytes());
             bench.run_ms(300);
             let said: Vec<&str> = bench.lines()[before..]
@@ -37,7 +39,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
                 .map(|line| line.text.as_str())
                 .collect();
             assert_eq!(said.len(), 3, "{end:?}: {said:?}");
-            assert_eq!(said[..2], ["ok walk", "ok stop"]);
+            assert_eq!(said[..2], ["ok stand", "ok stop"]);
             assert!(said[2].starts_with("ok gait=stop "));
         }
     });
@@ -46,9 +48,17 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 #[test]
 fn case_and_blanks_do_not_matter() {
     let mut bench = awake(Fidelity::DataSheet);
-    assert_eq!(bench.say("  WaLk\t "), "ok walk");
-    assert!(bench.say("ARC    Left").starts_with("ok arc"));
-    assert_eq!(Status::of(&mut bench).text("gait"), "arc-left");
+    assert_eq!(bench.say("  StaNd\t "), "ok stand");
+    // The one with the most words.
+    let mut gaits = gaits();
+    gaits.sort_by_key(|gait| gait.split(' ').count());
+    let gait = gaits.pop().expect("stand at least");
+    let typed = gait.to_uppercase().replace(' ', "   \t");
+    assert!(
+        bench.say(&format!(" {typed} ")).starts_with("ok "),
+        "{typed}"
+    );
+    assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
     assert!(bench.say(" speed\t50 ").starts_with("ok speed"));
     assert_eq!(Status::of(&mut bench).text("speed"), "50");
 }
@@ -56,48 +66,96 @@ fn case_and_blanks_do_not_matter() {
 #[test]
 fn a_line_may_have_63_characters_and_no_more() {
     let mut bench = awake(Fidelity::DataSheet);
-    let fits = format!("walk{}", " ".repeat(59));
-    assert_eq!(bench.say(&fits), "ok walk");
+    let fits = format!("stand{}", " ".repeat(58));
+    assert_eq!(bench.say(&fits), "ok stand");
     assert!(bench.say(&format!("{fits} ")).starts_with("err 6 "));
     assert!(bench.say(&"x".repeat(500)).starts_with("err 6 "));
     assert_eq!(bench.say("stop"), "ok stop", "the next line is a new one");
+}
+
+/// Poses beyond a servo's travel, a margin and a slider's stroke, each with its code;
+/// those that this robot has.
+fn refused_poses() -> Vec<(String, u8)> {
+    let mut rng = Rng::with_seed(1);
+    let mut found: [Option<String>; 3] = [None, None, None];
+    for _ in 0..100_000 {
+        let sweeps: [f64; 4] = std::array::from_fn(|_| 175.0 * (2.0 * rng.f64() - 1.0));
+        let within = |by: f64| {
+            robot().servos().iter().zip(sweeps).all(|(servo, sweep)| {
+                let (min, max) = servo.travel();
+                min + by < sweep && sweep < max - by
+            })
+        };
+        let servos = robot().servos();
+        let angles: [f64; 4] = std::array::from_fn(|i| servos[i].neutral + sweeps[i]);
+        let Ok(solution) = robot().lizard().solve(&angles.into()) else {
+            continue;
+        };
+        // Well beyond a limit, so that there is no doubt.
+        let beyond = |by: f64| limits(by).violations(&solution).next();
+        let is_stroke = |what| Check::STROKE.contains(&what);
+        let place = match (beyond(-0.05), beyond(0.05)) {
+            _ if !within(-0.1) => 0,
+            (Some(lax), Some(strict)) if within(0.1) => {
+                match (is_stroke(lax.what), is_stroke(strict.what)) {
+                    (true, true) => 2,
+                    (false, _) if !Check::UNCROSSED.contains(&lax.what) => 1,
+                    _ => continue,
+                }
+            }
+            _ => continue,
+        };
+        found[place].get_or_insert_with(|| pose_at(sweeps));
+    }
+    let found = found.into_iter().zip([3, 4, 5]);
+    found
+        .filter_map(|(line, code)| Some((line?, code)))
+        .collect()
+}
+
+/// The robot's limits, stricter by so much: sines, and ten times that in mm.
+fn limits(by: f64) -> Limits {
+    let limits = robot().limits();
+    Limits {
+        type2: limits.type2 + by,
+        type1: limits.type1 + by,
+        leg: limits.leg + by,
+        stroke_min: limits.stroke_min + 10.0 * by,
+        stroke_max: limits.stroke_max - 10.0 * by,
+    }
 }
 
 #[test]
 fn every_refusal_has_its_code_and_changes_nothing() {
     let refused = [
         ("gallop", 1),
-        ("walkies", 1),
+        ("standing", 1),
         ("s\u{7}op", 1),
         ("speed", 2),
         ("speed fast", 2),
         ("speed 50 60", 2),
         ("watch", 2),
         ("watch -1", 2),
-        ("arc", 2),
-        ("walk on", 2),
+        ("stand on", 2),
         ("stop now", 2),
         ("pose 138.59 41.41 318.59", 2),
         ("pose 138.59 41.41 318.59 221.41 0", 2),
         ("pose 138.591 41.41 318.59 221.41", 2),
         ("pose a b c d", 2),
+        ("pose 0 0 0 720", 3),
         ("speed 9", 3),
         ("speed 101", 3),
         ("speed 65546", 3),
         ("watch 10001", 3),
-        ("pose 48 41.41 318.59 221.41", 3),
-        ("pose 138.59 41.41 318.59 720", 3),
-        ("pose 90 90 318.59 221.41", 4),
-        ("pose 138.59 41.41 270 270", 4),
-        ("pose 100 80 260 280", 4),
-        ("pose 92 51.3 334.7 292.2", 5),
-        ("pose 161 112.4 254.4 223.6", 5),
         (&"stop".repeat(16), 6),
     ];
+    let poses = refused_poses();
+    let poses = poses.iter().map(|(line, code)| (line.as_str(), *code));
+    let refused: Vec<(&str, u8)> = refused.into_iter().chain(poses).collect();
     in_both(|fidelity| {
-        let mut bench = doing("walk", fidelity);
-        let mut quiet = doing("walk", fidelity);
-        for (line, code) in refused {
+        let mut bench = doing(&moving(), fidelity);
+        let mut quiet = doing(&moving(), fidelity);
+        for &(line, code) in &refused {
             let answer = bench.say(line);
             let expected = format!("err {code} ");
             assert!(
@@ -107,7 +165,7 @@ fn every_refusal_has_its_code_and_changes_nothing() {
         }
         // Both have been walking for the same time when they are compared.
         for board in [&mut bench, &mut quiet] {
-            let left = 3 * FREQUENCY - board.uno.cycle();
+            let left = 4 * FREQUENCY - board.uno.cycle();
             board.uno.run_cycles(left);
         }
         assert_eq!(
@@ -124,8 +182,9 @@ fn while_the_servos_rest_only_stand_moves_them() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         assert_eq!(bench.say("rest"), "ok rest");
-        for line in ["walk", "look", "stop", "pose 138.59 41.41 318.59 221.41"] {
-            assert!(bench.say(line).starts_with("err 7 "), "{line}");
+        let others = gaits().into_iter().skip(1);
+        for line in others.chain(["stop".into(), pose_at([0.0; 4])]) {
+            assert!(bench.say(&line).starts_with("err 7 "), "{line}");
         }
         for line in ["rest", "speed 80", "watch 0", "help", "status"] {
             assert!(bench.say(line).starts_with("ok "), "{line}");
@@ -139,7 +198,7 @@ fn while_the_servos_rest_only_stand_moves_them() {
         );
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1000);
-        assert_eq!(bench.say("walk"), "ok walk");
+        assert_eq!(bench.say(&moving()), format!("ok {}", moving()));
     });
 }
 
@@ -166,7 +225,7 @@ fn help_names_every_gait_and_every_command() {
 #[test]
 fn status_tells_what_the_pulses_show() {
     in_both(|fidelity| {
-        let mut bench = doing("walk", fidelity);
+        let mut bench = doing(&moving(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::of(&mut bench);
@@ -188,7 +247,10 @@ fn status_tells_what_the_pulses_show() {
 
 #[test]
 fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
-    let mut bench = doing("walk", Fidelity::DataSheet);
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench.run_ms(3000); // the way to its first pose
+    let moving = moving();
+    let gait = robot().gait(&moving).expect("a gait");
     let mut last: Option<(u64, Status)> = None;
     for _ in 0..20 {
         bench.run_for_frames(0); // up to the start of the next frame
@@ -198,8 +260,11 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
             let counted = now.1.number("frames") - before.number("frames");
             assert_eq!(counted, frames.round());
             let turned = now.1.number("phase") - before.number("phase");
-            let off = (turned - frames.round() / 50.0).rem_euclid(1.0);
-            assert!(off.min(1.0 - off) <= 0.0011, "{turned} in {frames} frames");
+            let gone = frames.round() / 50.0 / gait.period();
+            let gone = if gait.is_reversed() { -gone } else { gone };
+            let off = (turned - gone).rem_euclid(1.0);
+            // A phase is told to a thousandth.
+            assert!(off.min(1.0 - off) <= 0.0021, "{turned} in {frames} frames");
         }
         last = Some(now);
         bench.run_ms(470);
@@ -209,7 +274,7 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
     in_both(|fidelity| {
-        let mut bench = doing("walk", fidelity);
+        let mut bench = doing(&moving(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");
         let heard = bench.lines().len();
         let frames = bench.run_for_frames(75);
@@ -246,28 +311,37 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
 #[test]
 fn half_speed_takes_twice_the_time() {
     in_both(|fidelity| {
-        let mut bench = doing("walk", fidelity);
-        // The pace is a whole number of 1/1024, so that 10 % is within half a
-        // percent of itself: at 300 deg/s, 240 CPU cycles of pulse in a cycle.
-        let cases = [
-            (50, 2 * SECOND, 2),
-            (10, 10 * SECOND, 240),
-            (100, SECOND, 2),
-        ];
-        for (percent, cycle, most) in cases {
+        let mut bench = doing(&moving(), fidelity);
+        bench.run_ms(3000); // the way to its first pose
+        let moving = moving();
+        let gait = robot().gait(&moving).expect("a gait");
+        // The pace is a whole number of 1/1024, so that 10 % is within half a percent
+        // of itself.
+        let frames = (gait.period() * SECOND as f64).ceil() as u64;
+        let fastest = robot().pace().gait_slew / SECOND as f64;
+        let mut spans: Vec<u64> = Vec::new();
+        for (percent, times) in [(100, 1), (50, 2), (10, 10)] {
             let line = format!("speed {percent}");
             assert_eq!(bench.say(&line), format!("ok {line}"));
             bench.run_ms(500);
+            let cycle = times * frames;
             let sent = widths(&bench.run_for_frames(2 * cycle));
             let (once, again) = sent.split_at(cycle as usize);
-            for (here, later) in once.iter().zip(again) {
-                let off = (0..4).map(|i| here[i].abs_diff(later[i])).max();
-                assert!(off <= Some(most), "{percent} %: {off:?} after a cycle");
+            for (i, servo) in robot().servos().iter().enumerate() {
+                // Half a percent of a cycle, and the part of a frame that it ends with.
+                let frame = 16.0 * servo.us_per_degree.abs() * fastest;
+                let most = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
+                for (here, later) in once.iter().zip(again) {
+                    let off = here[i].abs_diff(later[i]) as f64;
+                    assert!(off <= most, "{percent} %: {off} cycles after a cycle");
+                }
             }
-            // In that time each leg goes all the way, 20 deg forth and back.
-            let least = once.iter().map(|widths| widths[0]).min();
-            let most = once.iter().map(|widths| widths[0]).max();
-            assert!(least < Some(20_900) && most > Some(27_100), "{percent} %");
+            // In that time each leg goes all of its way, at whatever speed.
+            let column = || once.iter().map(|widths| widths[0]);
+            spans.push(column().max().unwrap_or(0) - column().min().unwrap_or(0));
         }
+        let frame = 16.0 * robot().servos()[0].us_per_degree.abs() * fastest;
+        let alike = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame;
+        assert!(spans.iter().all(alike), "{spans:?}");
     });
 }

@@ -5,7 +5,7 @@ use lizard_host::bench::{Figures, rows};
 use lizard_host_tests::{FRAME, FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, doing};
+use crate::{SECOND, doing, moving};
 
 #[test]
 fn every_budget_is_met() {
@@ -46,7 +46,7 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
 
 #[test]
 fn every_tick_computes_one_frame() {
-    let mut bench = doing("crawl", Fidelity::DataSheet);
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
     bench.run_for_frames(0);
     let calls = bench.time_calls("Console::frame", 2000);
     assert_eq!(calls.len() as u64, 2 * SECOND);

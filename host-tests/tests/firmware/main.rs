@@ -11,7 +11,8 @@
 use std::collections::HashMap;
 use std::thread;
 
-use lizard_host_tests::{FirmwareBench, Frame};
+use lizard_host::sim::tour;
+use lizard_host_tests::{FirmwareBench, Frame, robot};
 use simulated_uno::Fidelity;
 
 mod console;
@@ -60,6 +61,36 @@ fn awake(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = FirmwareBench::boot_with(fidelity);
     bench.run_ms(1000);
     bench
+}
+
+/// The command of the robot's first gait that moves; `stand` if there is none.
+fn moving() -> String {
+    let moving = tour::moving(robot());
+    moving
+        .first()
+        .map_or("stand".into(), |name| name.replace('-', " "))
+}
+
+/// The commands of all gaits.
+fn gaits() -> Vec<String> {
+    let names = robot().gaits().iter().map(|gait| gait.name());
+    names.map(|name| name.replace('-', " ")).collect()
+}
+
+/// The command for a pose at so many degrees from neutral.
+fn pose_at(sweeps: [f64; 4]) -> String {
+    let servos = robot().servos();
+    let angles: Vec<String> = (0..4)
+        .map(|i| format!("{:.2}", (servos[i].neutral + sweeps[i]).rem_euclid(360.0)))
+        .collect();
+    format!("pose {}", angles.join(" "))
+}
+
+/// The widths of the neutral pose, cycles.
+fn neutral_widths() -> [u64; 4] {
+    robot()
+        .servos()
+        .map(|servo| (servo.neutral_us * 16.0).round() as u64)
 }
 
 /// Ends a flood and lets the robot answer what is left of it.

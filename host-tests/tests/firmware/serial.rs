@@ -5,7 +5,7 @@ use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::{Status, awake, end_flood, in_both};
+use crate::{Status, awake, end_flood, in_both, moving, pose_at};
 
 /// Says a line; the answer must be there.
 fn wait_for(bench: &mut FirmwareBench, line: &str) {
@@ -20,15 +20,8 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
         let mut rng = Rng::with_seed(7);
         wait_for(&mut bench, "watch 1");
         let padded = format!("status{}", " ".repeat(57));
-        let lines = [
-            "status",
-            "help",
-            "walk",
-            "stop",
-            "speed 70",
-            "pose 138.59 41.41 318.59 221.41",
-            &padded,
-        ];
+        let (gait, pose) = (moving(), pose_at([0.0; 4]));
+        let lines = ["status", "help", &gait, "stop", "speed 70", &pose, &padded];
         for _ in 0..600 {
             wait_for(&mut bench, rng.choice(&lines).expect("there are some"));
         }
@@ -51,10 +44,10 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
         bench.uno.send(b"help\n");
         bench
             .uno
-            .send(format!("walk{}\n", " ".repeat(58)).as_bytes());
+            .send(format!("stand{}\n", " ".repeat(57)).as_bytes());
         bench.run_ms(300);
         let last = bench.lines().last().expect("answers").text.clone();
-        assert_eq!(last, "ok walk");
+        assert_eq!(last, "ok stand");
         assert!(bench.lines().len() > before + 2);
         assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
     });
@@ -81,7 +74,7 @@ fn what_a_flood_loses_is_counted() {
             "{kept} for {answers} answers"
         );
         // A flood ends, and nothing of it stays.
-        wait_for(&mut bench, "walk");
+        wait_for(&mut bench, &moving());
         assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
     });
 }

@@ -102,7 +102,7 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
                 let meant = named.robot.predict(gait);
                 let whom = format!("{}: {} at {percent} %", named.name, gait.name());
                 // Without symmetry, which foot holds may hang on a tenth of a degree.
-                let most = 0.005 * named.robot.lizard().links.l10;
+                let most = 0.01 * named.robot.lizard().links.l10;
                 check(&whom, travel, most, meant.forward, meant.turn);
             }
         }

@@ -11,10 +11,13 @@ use lizard_core::part::{End, Servo, Side};
 use lizard_core::pose::Pose;
 use lizard_core::robot::Robot as _;
 use lizard_core::units::{Angle, Scale, Sine, Sweep};
-use lizard_host::prove::{MARGIN_BAND, STEPS_BAND};
+use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Infeasible, Limits, Part};
 use lizard_robot::{Firmware, Robot};
 
+/// What the guard's arithmetic may add to a margin, a sine; the rounding of lengths
+/// comes on top.
+pub const MARGIN_BAND: f64 = 0.002;
 /// The least type-2 limit that robot.toml may set; below it the guard only has to
 /// know that it is below.
 pub const LEAST_TYPE2: f64 = 0.1;
