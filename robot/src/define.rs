@@ -313,7 +313,7 @@ fn legs(
     Ok(values)
 }
 
-/// Each leg's place in the order of returns, in servo order.
+/// Each leg's place in the order of swings, in servo order.
 fn order(one: &Section) -> Checked<[usize; 4]> {
     let words = one.words("order")?;
     let fault = || Problem::Order.at(one.path("order"));

@@ -273,7 +273,7 @@ fn limits(root: &Section) -> Checked<(Limits, Pace)> {
         ],
     )?;
     let limits = Limits {
-        // Below .1 the firmware's fixed point loses the crank tips' distance.
+        // Below .1 the core's tables of the couplers end.
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
