@@ -352,6 +352,30 @@ mod tests {
     }
 
     #[test]
+    fn every_sample_of_every_servo_is_checked() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let phases = super::phases(gait.tabled());
+                for channel in gait.tabled().table().channels {
+                    for sample in (0..=u16::MAX).step_by(512) {
+                        let phase = sample.wrapping_sub(channel.offset);
+                        assert!(phases.contains(&phase), "{name} {} {phase}", gait.name());
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_swing_backward_is_as_fast_as_one_forward() {
+        // All legs against their sense: no swing goes forward.
+        let against = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
+        let robot = with("unequal", &[("[gait.trot]", against)]).expect("a gait");
+        let speed = |name: &str| robot.gait(name).expect(name).audit().peak.speed;
+        assert!((speed("against") - speed("walk")).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_gait_may_be_as_fast_as_its_limit() {
         let fastest = robot("unequal");
         let speed = |gait: &CheckedGait| gait.audit().peak.speed;
