@@ -260,6 +260,9 @@ impl Audit {
 mod tests {
     use crate::testing::{all, body, robot, with};
     use crate::{CheckedGait, Robot};
+    use lizard_core::hazard::{Hazard, Margin};
+    use lizard_core::part::{End, Servo, Side as CoreSide};
+    use lizard_core::units::Sine;
     use lizard_kinematics::{Check, Side};
 
     /// The slider's least and greatest travel on each side over a gait, mm.
@@ -348,6 +351,27 @@ mod tests {
                 ),
             ];
             assert!(lean(right, &enough).is_ok());
+        }
+    }
+
+    #[test]
+    fn what_the_guard_finds_is_called_as_solve_calls_it() {
+        let margin = |margin| Hazard::Margin {
+            margin,
+            value: Sine(0),
+        };
+        let stroke = |side| Hazard::Stroke { side, length: 0 };
+        for (hazard, name) in [
+            (margin(Margin::Type2(End::Head)), "type2_head"),
+            (margin(Margin::Type2(End::Tail)), "type2_tail"),
+            (margin(Margin::Type1(Servo::A2)), "type1_a2"),
+            (margin(Margin::Type1(Servo::A4)), "type1_a4"),
+            (margin(Margin::Leg(Servo::A1)), "leg_lf"),
+            (margin(Margin::Leg(Servo::A3)), "leg_rh"),
+            (stroke(CoreSide::Left), "stroke_left"),
+            (stroke(CoreSide::Right), "stroke_right"),
+        ] {
+            assert_eq!(super::condition(&hazard).name(), name);
         }
     }
 
