@@ -51,3 +51,30 @@ pub(crate) fn worst(gait: &TabledGait, count: usize) -> TableError {
     error.rms = (squares / (4 * count) as f64).sqrt();
     error
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::all;
+
+    #[test]
+    fn the_error_is_the_largest_of_all_servos() {
+        const COUNT: usize = 1024;
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let mut errors = [0.0f64; 4];
+                for i in 0..COUNT {
+                    let table = gait.table_angles((64 * i) as u16);
+                    let float = gait.angles(i as f64 / COUNT as f64);
+                    for servo in 0..4 {
+                        errors[servo] = errors[servo].max((table[servo] - float[servo]).abs());
+                    }
+                }
+                let worst = super::worst(gait.tabled(), COUNT);
+                let most = errors.into_iter().fold(0.0, f64::max);
+                assert_eq!(worst.max, most, "{name} {}", gait.name());
+                assert_eq!(errors[worst.servo], most);
+                assert!(worst.rms <= most && 2.0 * worst.rms >= most / COUNT as f64);
+            }
+        }
+    }
+}

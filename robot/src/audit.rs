@@ -260,6 +260,9 @@ impl Audit {
 mod tests {
     use crate::testing::{all, body, robot, with};
     use crate::{CheckedGait, Robot};
+    use lizard_core::hazard::{Hazard, Margin};
+    use lizard_core::part::{End, Servo, Side as CoreSide};
+    use lizard_core::units::Sine;
     use lizard_kinematics::{Check, Side};
 
     /// The slider's least and greatest travel on each side over a gait, mm.
@@ -349,6 +352,51 @@ mod tests {
             ];
             assert!(lean(right, &enough).is_ok());
         }
+    }
+
+    #[test]
+    fn what_the_guard_finds_is_called_as_solve_calls_it() {
+        let margin = |margin| Hazard::Margin {
+            margin,
+            value: Sine(0),
+        };
+        let stroke = |side| Hazard::Stroke { side, length: 0 };
+        for (hazard, name) in [
+            (margin(Margin::Type2(End::Head)), "type2_head"),
+            (margin(Margin::Type2(End::Tail)), "type2_tail"),
+            (margin(Margin::Type1(Servo::A2)), "type1_a2"),
+            (margin(Margin::Type1(Servo::A4)), "type1_a4"),
+            (margin(Margin::Leg(Servo::A1)), "leg_lf"),
+            (margin(Margin::Leg(Servo::A3)), "leg_rh"),
+            (stroke(CoreSide::Left), "stroke_left"),
+            (stroke(CoreSide::Right), "stroke_right"),
+        ] {
+            assert_eq!(super::condition(&hazard).name(), name);
+        }
+    }
+
+    #[test]
+    fn every_sample_of_every_servo_is_checked() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let phases = super::phases(gait.tabled());
+                for channel in gait.tabled().table().channels {
+                    for sample in (0..=u16::MAX).step_by(512) {
+                        let phase = sample.wrapping_sub(channel.offset);
+                        assert!(phases.contains(&phase), "{name} {} {phase}", gait.name());
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_swing_backward_is_as_fast_as_one_forward() {
+        // All legs against their sense: no swing goes forward.
+        let against = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
+        let robot = with("unequal", &[("[gait.trot]", against)]).expect("a gait");
+        let speed = |name: &str| robot.gait(name).expect(name).audit().peak.speed;
+        assert!((speed("against") - speed("walk")).abs() < 1e-9);
     }
 
     #[test]

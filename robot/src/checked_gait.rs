@@ -22,6 +22,12 @@ impl CheckedGait {
         Self { gait, audit }
     }
 
+    /// The gait and its table.
+    #[cfg(test)]
+    pub(crate) fn tabled(&self) -> &TabledGait {
+        &self.gait
+    }
+
     /// Its name; with a blank for each dash also its console command.
     pub fn name(&self) -> &str {
         self.gait.name()

@@ -313,7 +313,7 @@ fn legs(
     Ok(values)
 }
 
-/// Each leg's place in the order of returns, in servo order.
+/// Each leg's place in the order of swings, in servo order.
 fn order(one: &Section) -> Checked<[usize; 4]> {
     let words = one.words("order")?;
     let fault = || Problem::Order.at(one.path("order"));
@@ -507,7 +507,7 @@ mod tests {
 
     #[test]
     fn gaits_may_share_255_waveforms() {
-        // Each moves the head on a line of its own, and so takes two.
+        // Walking takes one, and each nod on a line of its own two.
         let gaits = |count: usize| {
             let nod = |i: usize| {
                 let x = 0.03 * (i as f64 + 1.0);
@@ -516,17 +516,17 @@ mod tests {
                 )
             };
             let more: String = (0..count).map(nod).collect();
-            format!("{STAND}{more}")
+            format!("{STAND}{WALK}{more}")
         };
         assert_eq!(
             paper_with_gaits(&gaits(127))
-                .expect("254")
+                .expect("255")
                 .firmware()
                 .waves()
                 .len(),
-            254
+            255
         );
-        let more = paper_with_gaits(&gaits(128)).expect_err("256").to_string();
+        let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
         assert!(more.contains("gait.nod127 needs one waveform too many: the firmware numbers them with a byte, so gaits may share 255"), "{more}");
     }
 }

@@ -229,7 +229,7 @@ pub enum Problem {
         /// What is allowed.
         hint: Hint,
     },
-    /// A return order that is not each leg once.
+    /// An order of swings that is not each leg once.
     #[error("must list each of LF, RF, RH, LH exactly once")]
     Order,
     /// A path point that the five-bar cannot reach with its elbows outward.

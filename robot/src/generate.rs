@@ -322,6 +322,7 @@ mod tests {
         let wider = with("paper", &[("l6 = 30.0 ", "l6 = 31.0 ")]).expect("a longer crank");
         let source = wider.firmware().source();
         assert_eq!(value(&source, "ENDS_ALIKE").trim(), "false");
+        assert_eq!(value(&source, "SIDES_ALIKE").trim(), "true");
         assert!(value(&source, "TAIL").contains("rise: HEAD_RISE"));
     }
 

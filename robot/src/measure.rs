@@ -273,7 +273,7 @@ fn limits(root: &Section) -> Checked<(Limits, Pace)> {
         ],
     )?;
     let limits = Limits {
-        // Below .1 the firmware's fixed point loses the crank tips' distance.
+        // Below .1 the core's tables of the couplers end.
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
@@ -341,4 +341,71 @@ fn less(
         other_value,
     }
     .at(section.path(name)))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::with;
+
+    fn refused(changes: &[(&str, &str)]) -> String {
+        with("unequal", changes).expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn each_coupler_must_be_long_enough_for_its_own_loop() {
+        // The head's bars and the tail's longer couplers are counted in 1/256 mm.
+        for (from, to) in [
+            ("l2 = 55.0", "l2 = 15.9"),
+            ("l3 = 48.0", "l3 = 15.9"),
+            ("l7 = 46.0", "l7 = 15.9"),
+            ("l8 = 52.0", "l8 = 15.9"),
+        ] {
+            let refused = refused(&[(from, to)]);
+            let key = from.split(' ').next().expect("a key");
+            assert!(
+                refused.contains(&format!("links.{key} is 15.9 mm, which is short"))
+                    && refused.contains("at least 16.1 mm"),
+                "{refused}"
+            );
+        }
+        // A base twice as long halves the steps, for its own end alone.
+        let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 46.0", "l7 = 31.0")]);
+        assert!(
+            long.contains("links.l7 is 31 mm") && long.contains("at least 32.1 mm"),
+            "{long}"
+        );
+    }
+
+    #[test]
+    fn a_stroke_leaves_the_shorter_slider_a_length() {
+        for slider in [["l12 = 53.0", "l13 = 51.0"], ["l17 = 54.0", "l18 = 57.0"]] {
+            let changes = [
+                (slider[0], &*slider[0].replace(" 5", " 4")),
+                ("stroke_min = -19.0", "stroke_min = -102.0"),
+            ];
+            let refused = refused(&changes);
+            assert!(
+                refused.contains("limits.stroke_min is -102; it must be within"),
+                "{refused}"
+            );
+        }
+    }
+
+    #[test]
+    fn each_leg_must_stand_on_the_side_where_it_was_assembled() {
+        for (from, to, leg) in [
+            ("neutral = 135.0", "neutral = 200.0", "leg_lf"),
+            ("neutral = 47.0", "neutral = 350.0", "leg_rf"),
+            ("neutral = 316.0", "neutral = 10.0", "leg_rh"),
+            ("neutral = 228.0", "neutral = 170.0", "leg_lh"),
+        ] {
+            let refused = refused(&[(from, to)]);
+            assert!(
+                refused.contains(&format!(
+                    "servo: the neutral pose is not safe: margin {leg} -"
+                )),
+                "{refused}"
+            );
+        }
+    }
 }

@@ -284,6 +284,50 @@ mod tests {
     }
 
     #[test]
+    fn a_travel_of_whole_steps_keeps_its_last_one() {
+        // Neither 9.2 nor 10.4 us is a fraction of two's powers; the quotient may come
+        // out a little short.
+        for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
+            for k in 1..=13 {
+                let way = f64::abs(us_per_degree) * 5.625 * f64::from(k);
+                let servo = Servo {
+                    pin: 9,
+                    neutral: 135.0,
+                    neutral_us: 1500.0,
+                    us_per_degree,
+                    min_us: 1500.0 - way,
+                    max_us: 1500.0 + way,
+                };
+                let calibration = calibration(&servo);
+                let steps = 1024 * k as i16;
+                assert_eq!([calibration.min.0, calibration.max.0], [-steps, steps]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_loop_is_near_stretched_if_its_tips_can_part_beyond_three_quarters_of_its_reach() {
+        // Squared; so where base and cranks exceed .866 of both couplers.
+        for (bars, near) in [
+            ([20.0, 30.0, 30.0], false),
+            ([26.0, 30.0, 30.0], false),
+            ([28.0, 30.0, 30.0], true),
+            ([20.0, 38.0, 30.0], true),
+            ([20.0, 30.0, 38.0], true),
+        ] {
+            let [base, crank_left, crank_right] = bars;
+            let bars = kinematics::FiveBar {
+                base,
+                crank_left,
+                coupler_left: 50.0,
+                coupler_right: 50.0,
+                crank_right,
+            };
+            assert_eq!(Loop::new(&bars).couplers.near_stretched, near, "{bars:?}");
+        }
+    }
+
+    #[test]
     fn every_servo_has_its_own_gain_and_neutral() {
         for (name, robot) in all() {
             let firmware = robot.firmware();

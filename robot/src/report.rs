@@ -147,3 +147,38 @@ fn tidy(value: f64, decimals: i32) -> f64 {
     // Adding positive zero turns a negative one positive.
     (value * scale).round() / scale + 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::robot;
+
+    #[test]
+    fn columns_stay_in_line_whatever_the_names() {
+        for name in ["paper", "own-gaits"] {
+            let text = Report::of(&robot(name)).to_string();
+            let rows: Vec<&str> = text
+                .lines()
+                .skip(2)
+                .take_while(|line| !line.is_empty())
+                .collect();
+            let long = rows[1].len();
+            assert!(
+                rows.len() > 10 && rows[1..].iter().all(|row| row.len() == long),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn nothing_is_shown_as_minus_zero() {
+        assert_eq!(
+            [
+                known(Some(-0.004), 2),
+                known(Some(-0.006), 2),
+                known(None, 2)
+            ],
+            ["+0.00", "-0.01", "-"]
+        );
+    }
+}

@@ -66,3 +66,36 @@ pub struct Pace {
     /// In a gait, deg/s.
     pub gait_slew: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SERVO: Servo = Servo {
+        pin: 9,
+        neutral: 47.0,
+        neutral_us: 1535.0,
+        us_per_degree: -11.0,
+        min_us: 560.0,
+        max_us: 2420.0,
+    };
+
+    #[test]
+    fn a_reversed_servo_goes_clockwise_with_its_longest_pulse() {
+        let (min, max) = SERVO.travel();
+        assert_eq!((min, max), (-885.0 / 11.0, 975.0 / 11.0));
+        assert_eq!(SERVO.pulse(57.0), 1425.0);
+        assert_eq!(SERVO.sweep(1425.0), 10.0);
+        assert_eq!(SERVO.pulse(47.0 - 350.0), 1425.0, "the short way round");
+    }
+
+    #[test]
+    fn no_travel_is_beyond_half_a_turn() {
+        let wide = Servo {
+            us_per_degree: 1.0,
+            ..SERVO
+        };
+        let (min, max) = wide.travel();
+        assert!(-180.0 < min && min < -179.9 && 179.9 < max && max < 180.0);
+    }
+}

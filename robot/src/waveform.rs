@@ -1,7 +1,7 @@
 //! One leg's sweep over one cycle. Feet are never lifted: a pad drags, and what
 //! walks is that three feet hold while one returns. So a waveform is a slow
-//! stroke back and one fast return, both ends meeting without a kink in speed
-//! where the return can afford it.
+//! stance, in which the foot goes back, and a fast swing forward; where the swing
+//! is long enough, the two meet without a kink in speed.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
@@ -15,16 +15,16 @@ const MOVE: f64 = 0.2;
 pub enum Waveform {
     /// Never moves.
     Still,
-    /// Linear stance over `duty` of the cycle, then a cubic Hermite return that
+    /// Linear stance over `duty` of the cycle, then a cubic Hermite swing that
     /// meets the stance with equal speed at both ends; its peak is 1.
     Wave {
-        /// Share of the stance, 0 to 1.
+        /// The duty factor: the stance's share of the cycle, 0 to 1.
         duty: f64,
     },
-    /// A smoothstep stroke in the first fifth, common to all legs, then a
-    /// smoothstep return in fifth number `turn + 1`; it holds otherwise.
+    /// A smoothstep back in the first fifth, the stance common to all legs, then a
+    /// smoothstep forward, the swing, in fifth number `turn + 1`; it holds otherwise.
     Held {
-        /// 0 to 3: which of the four returns is this leg's.
+        /// 0 to 3: which of the four swings is this leg's.
         turn: usize,
     },
     /// A leg whose servo follows a path of the head or tail point. Its value is
@@ -80,7 +80,7 @@ fn smoothstep(t: f64) -> f64 {
 
 /// How a waveform is found in another's table: `at(u) = sign * base.at(u - shift)`.
 ///
-/// The held waveforms of the first and the last return are each other's
+/// The held waveforms of the first and the last swing are each other's
 /// negative, shifted, and so are the two in between; two tables do for four.
 pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
