@@ -59,7 +59,9 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
     let text = text.expect("the paper's robot is there");
-    let robot = Robot::parse(&text).expect("it is right");
+    // Without the one gait that other couplers would make unsafe.
+    let text = text.split("[gait.look]").next().unwrap_or_default();
+    let robot = Robot::parse(text).expect("it is right");
     let longer = text
         .replace("\nl2 = 50.0 ", "\nl2 = 51.0 ")
         .replace("\nl10 = 135.0 ", "\nl10 = 136.0 ")
