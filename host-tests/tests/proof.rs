@@ -27,7 +27,7 @@ fn files() -> Vec<PathBuf> {
 /// Another share of the pairs at every run; a failure says which.
 fn offset() -> u32 {
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    now.map_or(0, |now| now.subsec_nanos() / 1000 % ONE_IN)
+    now.map_or(0, |now| now.subsec_micros() % ONE_IN)
 }
 
 #[test]
