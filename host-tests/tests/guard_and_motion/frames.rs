@@ -157,7 +157,7 @@ impl<'a> Walker<'a> {
     /// The command for a pose. Hundredths of a degree name the angle of the nearest
     /// step of 1/65536 turn, or its neighbour.
     pub fn typed(&self, pose: &Pose) -> String {
-        typed(angles(&self.robot.firmware(), pose))
+        typed(angles(self.robot.firmware(), pose))
     }
 
     /// Some frames.

@@ -208,7 +208,7 @@ fn straddling(robot: &Robot, far: Pose) -> [Pose; 2] {
     let at = |share: u32| {
         Pose(
             far.0
-                .map(|sweep| Sweep((i64::from(sweep.0) * i64::from(share) >> 16) as i16)),
+                .map(|sweep| Sweep(((i64::from(sweep.0) * i64::from(share)) >> 16) as i16)),
         )
     };
     let (mut safe, mut not) = (0, 1 << 16);
