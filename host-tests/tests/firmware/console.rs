@@ -53,7 +53,7 @@ fn case_and_blanks_do_not_matter() {
     let mut gaits = gaits();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("stand at least");
-    let typed = gait.to_uppercase().replace(' ', "   \t");
+    let typed = gait.to_uppercase().replacen(' ', "   \t", 1);
     assert!(
         bench.say(&format!(" {typed} ")).starts_with("ok "),
         "{typed}"

@@ -70,6 +70,9 @@ impl Findings {
         };
         self.compare(robot, &core, &truth);
         let clear_by = truth.clear_by();
+        for (by, broken) in clear_by.into_iter().zip(truth.broken) {
+            assert!(by.abs() <= 1.0 || broken == (by < 0.0), "{truth:?}");
+        }
         let least = clear_by.into_iter().fold(f64::INFINITY, f64::min);
         if hazard.is_none() != (least >= 0.0) {
             self.differ += 1;

@@ -12,7 +12,7 @@ use lizard_core::pose::Pose;
 use lizard_core::robot::Robot as _;
 use lizard_core::units::{Angle, Scale, Sine, Sweep};
 use lizard_host::prove::STEPS_BAND;
-use lizard_kinematics::{Infeasible, Limits, Part};
+use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_robot::{Firmware, Robot};
 
 /// What the guard's arithmetic may add to a margin, a sine; the rounding of lengths
@@ -69,6 +69,9 @@ pub struct Truth {
     pub travels: [f64; 2],
     /// K2 of head and tail, mm.
     pub across: [f64; 2],
+    /// The conditions that kinematics says are broken, crossed crank tips under
+    /// type-2.
+    pub broken: [bool; 12],
     limits: Limits,
     /// What the guard may err by: of each margin; then in mm of the strokes, left
     /// and right, and of K2 of head and tail.
@@ -107,7 +110,12 @@ impl Truth {
         let [head, tail] = [(End::Head, &solution.head), (End::Tail, &solution.tail)]
             .map(|(of, pose)| couplers(robot, of, pose.gap.length(), pose.type2.abs(), end(of)));
         let leg = MARGIN_BAND;
+        let mut broken = [false; 12];
+        for violation in robot.limits().violations(&solution) {
+            broken[place(violation.what)] = true;
+        }
         Ok(Self {
+            broken,
             margins,
             travels: [solution.left.s, solution.right.s],
             across,
@@ -159,6 +167,22 @@ impl Truth {
     pub fn is_at_crossing(&self, end: usize) -> bool {
         self.across[end].abs() <= self.bands[12 + end]
     }
+}
+
+/// The place of a condition among twelve: margins, strokes.
+fn place(check: Check) -> usize {
+    let among = |checks: &[Check]| checks.iter().position(|known| *known == check);
+    let kinds: [(usize, &[Check]); 5] = [
+        (0, &Check::TYPE2),
+        (2, &Check::TYPE1),
+        (6, &Check::LEG),
+        (10, &Check::STROKE),
+        (0, &Check::UNCROSSED),
+    ];
+    let mut places = kinds
+        .into_iter()
+        .filter_map(|(first, kind)| Some(first + among(kind)?));
+    places.next().expect("every condition is of one kind")
 }
 
 /// What an end's margins may be wrong by: type-2, type-1 left and right. Besides the
