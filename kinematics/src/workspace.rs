@@ -1,4 +1,4 @@
-//! Where the apex of a symmetrical five-bar can go: inside two rings, one about
+//! Where the end point of a symmetrical five-bar can go: inside two rings, one about
 //! each shaft, with radii |l1 - l2| and l1 + l2.
 
 use core::f64::consts::PI;
@@ -37,7 +37,7 @@ impl Workspace {
         }
     }
 
-    /// True if the apex can be at a point of the five-bar's frame.
+    /// True if the end point can be at a point of the five-bar's frame.
     pub fn contains(&self, point: Vector) -> bool {
         [-self.half_base, self.half_base].into_iter().all(|x| {
             let square = (point - Vector::new(x, 0.0)).square();

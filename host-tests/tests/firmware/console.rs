@@ -276,12 +276,12 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
     in_both(|fidelity| {
         let mut bench = doing(&moving(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");
-        let heard = bench.lines().len();
+        let received = bench.lines().len();
         let frames = bench.run_for_frames(75);
         let sent = instants(robot(), &frames);
         // What is told after the last frame has begun may be about the next.
         let end = frames[74].start;
-        let lines: Vec<String> = bench.lines()[heard..]
+        let lines: Vec<String> = bench.lines()[received..]
             .iter()
             .filter(|line| line.cycle < end)
             .map(|line| line.text.clone())
@@ -302,9 +302,9 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
             assert!(is_sent, "{line} was never sent");
         }
         assert_eq!(bench.say("watch 0"), "ok watch 0");
-        let heard = bench.lines().len();
+        let received = bench.lines().len();
         bench.run_ms(500);
-        assert_eq!(bench.lines().len(), heard);
+        assert_eq!(bench.lines().len(), received);
     });
 }
 

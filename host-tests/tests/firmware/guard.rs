@@ -62,7 +62,7 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
 }
 
 /// A pose within so many degrees of neutral, as it is typed.
-fn wish(rng: &mut Rng, within: f64) -> [f64; 4] {
+fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + within * (2.0 * rng.f64() - 1.0);
         (angle.rem_euclid(360.0) * 100.0).round() / 100.0
@@ -72,7 +72,7 @@ fn wish(rng: &mut Rng, within: f64) -> [f64; 4] {
 /// A safe pose far from neutral, so that the way there may not be safe.
 fn far(rng: &mut Rng) -> [f64; 4] {
     loop {
-        let angles = wish(rng, 80.0);
+        let angles = near_pose(rng, 80.0);
         if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
             return angles;
         }
@@ -91,7 +91,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
         let mut bench = awake(Fidelity::DataSheet);
         let (mut accepted, mut refused) = (0, [0; 2]);
         for _ in 0..400 {
-            let angles = wish(&mut rng, within);
+            let angles = near_pose(&mut rng, within);
             let answer = bench.say(&typed(angles));
             if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
@@ -149,7 +149,7 @@ fn a_refusal_names_the_margin_and_its_value() {
     let mut rng = Rng::with_seed(3);
     let mut named = 0;
     for _ in 0..200 {
-        let angles = wish(&mut rng, 70.0);
+        let angles = near_pose(&mut rng, 70.0);
         let answer = bench.say(&typed(angles));
         let Ok(solution) = robot().lizard().solve(&Pose::from(angles)) else {
             continue;

@@ -35,13 +35,18 @@ fn first_pulse(bench: &FirmwareBench) -> u64 {
     edges.first().expect("the robot stands").cycle
 }
 
-/// The widths that the core asks for when it hears no more than the first `heard`
+/// The widths that the core asks for when it receives no more than the first `received`
 /// bytes.
-fn commanded(bench: &FirmwareBench, first: u64, heard: usize, frames: &[Frame]) -> Vec<[u64; 4]> {
+fn commanded(
+    bench: &FirmwareBench,
+    first: u64,
+    received: usize,
+    frames: &[Frame],
+) -> Vec<[u64; 4]> {
     let before = ((frames[0].start - first) / FRAME) as usize;
     let commands = twin::play(
         robot().firmware(),
-        &bench.uno.received_by_uno()[..heard],
+        &bench.uno.received_by_uno()[..received],
         first,
         before + frames.len(),
     );
@@ -60,8 +65,11 @@ fn every_width_is_the_one_that_was_asked_for() {
             bench.say(&gait.name().replace('-', " "));
             let frames = bench.run_for_frames(6 * SECOND);
             assert_in_step(&bench, &frames);
-            let heard = bench.uno.received_by_uno().len();
-            for (frame, asked) in frames.iter().zip(commanded(&bench, first, heard, &frames)) {
+            let received = bench.uno.received_by_uno().len();
+            for (frame, asked) in frames
+                .iter()
+                .zip(commanded(&bench, first, received, &frames))
+            {
                 assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name());
             }
         }
@@ -78,13 +86,16 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             let first = first_pulse(&bench);
             bench.say("watch 1");
             bench.say(&moving());
-            let heard = bench.uno.received_by_uno().len();
+            let received = bench.uno.received_by_uno().len();
             bench.uno.flood(flood.as_bytes());
             let sent = bench.bytes().len();
             let frames = bench.run_for_frames(20 * SECOND);
             let sent = bench.bytes().len() - sent;
             assert_in_step(&bench, &frames);
-            for (frame, asked) in frames.iter().zip(commanded(&bench, first, heard, &frames)) {
+            for (frame, asked) in frames
+                .iter()
+                .zip(commanded(&bench, first, received, &frames))
+            {
                 assert_eq!(frame.widths(), asked, "{flood:?}: {frame:?}");
             }
             let changed = frames
@@ -98,7 +109,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             // Both lines are busy: 11 520 bytes a second come in, and unless the
             // flood is all one overlong line the answers fill the line back.
             let seconds = frames.len() as f64 / SECOND as f64;
-            let come = (bench.uno.received_by_uno().len() - heard) as f64 / seconds;
+            let come = (bench.uno.received_by_uno().len() - received) as f64 / seconds;
             assert!(
                 come > 11_000.0 || fidelity == Fidelity::Stock && come > 10_000.0,
                 "{come} bytes a second"

@@ -61,14 +61,14 @@ fn what_a_flood_loses_is_counted() {
         bench.uno.flood(b"a\n");
         bench.run_ms(5000);
         end_flood(&mut bench);
-        let heard = (bench.uno.received_by_uno().len() - before) as f64;
+        let received = (bench.uno.received_by_uno().len() - before) as f64;
         let answers = (bench.lines().len() - lines) as f64;
         let lost = Status::of(&mut bench).number("rx_lost");
-        println!("{fidelity:?}: {heard} heard, {lost} lost, {answers} answers");
-        assert!(answers > 1000.0 && lost > heard / 2.0);
+        println!("{fidelity:?}: {received} received, {lost} lost, {answers} answers");
+        assert!(answers > 1000.0 && lost > received / 2.0);
         // Each answer is for a line of at least two bytes, and losing bytes makes
         // lines that are not much longer.
-        let kept = heard - lost;
+        let kept = received - lost;
         assert!(
             (2.0 * answers..4.0 * answers).contains(&kept),
             "{kept} for {answers} answers"

@@ -71,8 +71,8 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
                 last_fall = last_fall.max(pulse.start + pulse.width);
             }
         }
-        let heard = bench.uno.received_by_uno();
-        let arrived = heard.last().expect("a line").cycle;
+        let received = bench.uno.received_by_uno();
+        let arrived = received.last().expect("a line").cycle;
         assert!(last_fall < arrived + 2 * FRAME && last_fall > first.start);
         assert!(
             bench

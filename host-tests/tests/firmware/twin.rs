@@ -51,7 +51,7 @@ fn line(rng: &mut Rng) -> String {
 
 /// Says lines for ten minutes. Each is complete at a random moment of a frame, a
 /// millisecond or more from the ticks, so that there is no doubt about the frame
-/// that it is heard before; and each waits for the answer to the one before.
+/// that it is received before; and each waits for the answer to the one before.
 fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
     let mut said = 0;
     // The tick of a frame comes a slot before A1's pulse.

@@ -35,7 +35,7 @@ pub struct Conditioning {
     pub radius_above: f64,
 }
 
-/// The local conditioning index with the apex at a point and outward elbows; 0
+/// The local conditioning index with the end point at a point and outward elbows; 0
 /// where the point is on the rim or out of reach.
 pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
     bars.reach(point).map_or(0.0, |pose| pose.lci())
