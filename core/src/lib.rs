@@ -21,6 +21,7 @@
 #![no_std]
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
 
 #[cfg(test)]
 extern crate std;

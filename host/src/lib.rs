@@ -2,6 +2,7 @@
 //! `Args` and its `run`.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
 
 pub mod absent;
 #[cfg(feature = "simulator")]

@@ -87,21 +87,33 @@ fn number(quantity: Quantity, text: &str) -> Result<f64, String> {
 }
 
 /// An angle in degrees, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of an angle.
 pub fn angle(text: &str) -> Result<f64, String> {
     number(Quantity::ANGLE, text)
 }
 
 /// A speed in deg/s, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of a rate.
 pub fn rate(text: &str) -> Result<f64, String> {
     number(Quantity::RATE, text)
 }
 
 /// An acceleration in deg/s^2, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of an acceleration.
 pub fn acceleration(text: &str) -> Result<f64, String> {
     number(Quantity::ACCELERATION, text)
 }
 
 /// A coordinate or a length in mm, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of a length.
 pub fn length(text: &str) -> Result<f64, String> {
     number(Quantity::LENGTH, text)
 }

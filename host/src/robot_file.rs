@@ -20,6 +20,9 @@ pub struct RobotFile {
 
 impl RobotFile {
     /// Reads and checks the robot.
+    ///
+    /// # Errors
+    /// The file is missing or wrong.
     pub fn load(&self) -> Result<Robot, Failure> {
         if let Some(path) = &self.path {
             return Ok(Robot::load(path)?);

@@ -31,6 +31,7 @@
 //! vector instruction and which costs a hundred times its time among AVX ones.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
 
 #[cfg(test)]
 extern crate self as lizard_kinematics;

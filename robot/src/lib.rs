@@ -8,6 +8,7 @@
 //! source that carries it ([`Firmware::source`]).
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
 
 mod accuracy;
 mod audit;

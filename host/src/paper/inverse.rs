@@ -85,6 +85,9 @@ struct Way {
 }
 
 /// Finds and prints the angles.
+///
+/// # Errors
+/// A wrong robot.toml, an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let part = |end: End, point: &Option<Vec<f64>>| {

@@ -132,6 +132,10 @@ struct Nearest {
 }
 
 /// Computes and prints matrices or map.
+///
+/// # Errors
+/// A wrong robot.toml, a pose in which a loop does not close, an output that cannot
+/// be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = io::stdout().lock();

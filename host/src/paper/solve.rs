@@ -44,6 +44,10 @@ pub struct Args {
 }
 
 /// Solves what was asked for.
+///
+/// # Errors
+/// A wrong robot.toml, a pose or a line of the stream that is none, an output that
+/// cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     match args.pose.get() {

@@ -84,6 +84,10 @@ struct Row {
 }
 
 /// Computes and prints the motion.
+///
+/// # Errors
+/// A wrong robot.toml, a pose in which a loop does not close, an output that cannot
+/// be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());

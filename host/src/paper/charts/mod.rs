@@ -54,6 +54,9 @@ struct Drawn {
 }
 
 /// Draws and writes everything.
+///
+/// # Errors
+/// A wrong robot.toml, a folder or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());

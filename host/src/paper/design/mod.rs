@@ -107,6 +107,10 @@ fn sweep(text: &str) -> Result<f64, String> {
 }
 
 /// Prints the synthesis, the charts or the ranking.
+///
+/// # Errors
+/// A wrong robot.toml, proportions that make no mechanism, an output that cannot be
+/// written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let proportions = args.proportions().map_err(Failure::Input)?;
     let l0 = args.l0.unwrap_or(20.0);

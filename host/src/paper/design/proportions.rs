@@ -31,6 +31,9 @@ impl Proportions {
 
     /// Checks the constraints of the space: 0 < r1, r2 < 0.9, 0 < r3 < 0.45
     /// (then r1 + r2 > r3 and the mechanism can be assembled), sum 0.9.
+    ///
+    /// # Errors
+    /// The sentence that says which constraint is broken.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
         for (name, value, most) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
             if !(value > 0.0 && value < most) {

@@ -69,6 +69,10 @@ struct Numpy {
 }
 
 /// Measures and prints.
+///
+/// # Errors
+/// A wrong robot.toml, results that differ from the reference, an output that cannot
+/// be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let poses = poses(args.poses as usize, robot.neutral().into());
