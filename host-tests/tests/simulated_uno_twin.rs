@@ -82,9 +82,18 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         }
         let here: Vec<&str> = commands.written.lines().collect();
         assert!(here.iter().zip(&lines).all(|(here, there)| here == there));
-        // What the line still holds at the end: a ring of 255 bytes, and two.
-        let on_the_way: usize = here[lines.len()..].iter().map(|line| line.len() + 2).sum();
-        assert!(on_the_way <= 257 + 192, "{on_the_way} bytes are missing");
+        // At the end of the run the line still holds something (a ring of 255 bytes,
+        // two in the transmitter, a part of a line), and the core has not run since
+        // the last whole frame.
+        let common = here.len().min(lines.len());
+        let bytes = |line: &str| line.len() + 2;
+        let there = lines[common..].iter().map(|line| bytes(line));
+        let apart: usize = here[common..]
+            .iter()
+            .map(|line| bytes(line))
+            .chain(there)
+            .sum();
+        assert!(common > 400 && apart <= 257 + 192, "{apart} bytes apart");
         let answers = recording.answers.iter().flatten();
         assert_eq!(
             answers.count(),
