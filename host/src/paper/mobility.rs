@@ -238,12 +238,18 @@ fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mecha
 
 /// Freedoms of the body at a pose, by rank.
 pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    measure(&body(lizard, solution)).freedoms
+    freedoms(&body(lizard, solution))
 }
 
 /// Freedoms of the front left leg at a pose, by rank.
 pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    measure(&leg(lizard, solution, 0, "leg")).freedoms
+    freedoms(&leg(lizard, solution, 0, "leg"))
+}
+
+/// Freedoms of a mechanism whose servos turn, by rank.
+fn freedoms(mechanism: &Mechanism) -> usize {
+    let free = jacobian(mechanism, &[]);
+    free.ncols() - rank(&free.singular_values())
 }
 
 fn measure(mechanism: &Mechanism) -> Report {

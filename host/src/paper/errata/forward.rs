@@ -232,7 +232,8 @@ fn abc(s: &Sample, theta4: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
     } = s.lizard.links;
-    let theta1 = s.angles().t[1];
+    // Not through `angles`, which takes arc tangents that are not needed here.
+    let theta1 = s.s.pose.theta1 * PI / 180.0;
     let k1 = l4 * theta4.sin() - l1 * theta1.sin();
     let k2 = l4 * theta4.cos() - l1 * theta1.cos() + l0;
     let common = l3 * l3 - l2 * l2 + k2 * k2 + k1 * k1;
