@@ -80,8 +80,16 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        let here: Vec<&str> = commands.written.lines().collect();
-        assert!(here.iter().zip(&lines).all(|(here, there)| here == there));
+        // Which frame a report is from also depends on the cycle in which the line
+        // gets room.
+        let is_report = |line: &str| line.starts_with("# t=");
+        let here = commands.written.lines().filter(|line| !is_report(line));
+        let here: Vec<&str> = here.collect();
+        let lines = lines.iter().map(String::as_str);
+        let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
+        for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
+            assert_eq!(here, there, "{fidelity:?}, line {n}");
+        }
         // At the end of the run the line still holds something (a ring of 255 bytes,
         // two in the transmitter, a part of a line), and the core has not run since
         // the last whole frame.
