@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 use crate::random_robot::random_robot;
 
 /// Random robots of a run.
-const RANDOM: u64 = 12;
+const RANDOM: u64 = 8;
 
 /// A robot and where it comes from.
 #[derive(Debug)]
