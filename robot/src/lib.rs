@@ -50,7 +50,7 @@ pub use ground::{Feet, Ground, Prediction, Travel};
 pub use harmonic::Harmonic;
 pub use path::Path;
 pub use path_leg::PathLeg;
-pub use report::{Report, Row};
+pub use report::{Report, Row, UNDECIDED};
 pub use robot::Robot;
 pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
 pub use servo::{Pace, Servo};

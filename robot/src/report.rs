@@ -42,7 +42,7 @@ pub struct Report {
 }
 
 /// What a dash in place of a prediction means.
-pub(crate) const UNDECIDED: &str =
+pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
 
 /// Bytes of a waveform and of a gait in flash: 128 samples of two; the place of its

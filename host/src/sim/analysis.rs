@@ -80,12 +80,13 @@ pub struct Leg {
     pub from: f64,
     /// To this many.
     pub to: f64,
-    /// Forward, mm, seen from where it began.
-    pub forward: f64,
-    /// To the left, mm.
-    pub left: f64,
-    /// Counter-clockwise, deg.
-    pub turn: f64,
+    /// Forward, mm, seen from where it began; nothing if that hangs on a tie, two
+    /// feet against two.
+    pub forward: Option<f64>,
+    /// To the left, mm, likewise.
+    pub left: Option<f64>,
+    /// Counter-clockwise, deg, likewise.
+    pub turn: Option<f64>,
 }
 
 impl Instant {
@@ -246,6 +247,8 @@ pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
         known: HashMap::new(),
     };
     let mut whole = NOWHERE;
+    let mut all_known = [true; 3];
+    let mut predictions = HashMap::new();
     let mut legs = Vec::with_capacity(spans.len() + 1);
     for span in spans {
         let mut travel = NOWHERE;
@@ -254,22 +257,36 @@ pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
             travel = followed_by(travel, step);
             whole = followed_by(whole, step);
         }
-        legs.push(Leg::new(&span.command, [span.from, span.to], travel));
+        let known = *predictions
+            .entry(span.command.as_str())
+            .or_insert_with(|| decided(run.robot, &span.command));
+        all_known = std::array::from_fn(|part| all_known[part] && known[part]);
+        legs.push(Leg::new(&span.command, [span.from, span.to], travel, known));
     }
     let end = spans.last().map_or(0.0, |span| span.to);
-    legs.push(Leg::new("all", [0.0, end], whole));
+    legs.push(Leg::new("all", [0.0, end], whole, all_known));
     legs
 }
 
+/// Which parts of a command's way are decided: forward, left, turn. Those of a gait
+/// may hang on a tie.
+fn decided(robot: &Robot, command: &str) -> [bool; 3] {
+    robot.gait(command).map_or([true; 3], |gait| {
+        let way = robot.predict(gait);
+        [way.forward, way.left, way.turn].map(|part| part.is_some())
+    })
+}
+
 impl Leg {
-    fn new(command: &str, [from, to]: [f64; 2], travel: Travel) -> Self {
+    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, known: [bool; 3]) -> Self {
+        let [forward, left, turn] = known;
         Self {
             command: command.to_owned(),
             from,
             to,
-            forward: travel.forward,
-            left: travel.left,
-            turn: travel.turn,
+            forward: forward.then_some(travel.forward),
+            left: left.then_some(travel.left),
+            turn: turn.then_some(travel.turn),
         }
     }
 }
@@ -390,9 +407,29 @@ mod tests {
             };
             let way = way(run, &[span]);
             let all = way.last().expect("the whole run");
-            assert!((all.forward - forward).abs() < 0.35, "{gait}: {all:?}");
-            assert!((all.turn - turn).abs() < 0.2, "{gait}: {all:?}");
+            let off = |found: Option<f64>, wanted: f64| found.map(|found| (found - wanted).abs());
+            assert!(off(all.forward, forward) < Some(0.35), "{gait}: {all:?}");
+            assert!(off(all.turn, turn) < Some(0.2), "{gait}: {all:?}");
+            assert!(all.forward.is_some() && all.turn.is_some());
         }
+    }
+
+    #[test]
+    fn a_way_that_hangs_on_a_tie_is_not_told() {
+        let robot = robot();
+        let log = gait_frames(&robot, "look", 100);
+        let run = Run {
+            robot: &robot,
+            log: &log,
+        };
+        let span = |command: &str, from, to| Span {
+            command: command.to_owned(),
+            from,
+            to,
+        };
+        let legs = way(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
+        let forward: Vec<bool> = legs.iter().map(|leg| leg.forward.is_some()).collect();
+        assert_eq!(forward, [true, false, false], "{legs:?}");
     }
 
     #[test]
@@ -416,17 +453,17 @@ mod tests {
             let [first, second, all] = &legs[..] else {
                 panic!("two commands and the whole: {legs:?}")
             };
-            let apart = |leg: &Leg, travel: Travel| {
-                let [x, y] = [leg.forward - travel.forward, leg.left - travel.left];
-                x.hypot(y) + (leg.turn - travel.turn).abs()
-            };
-            assert!(apart(all, whole) < 1e-6, "{all:?} {whole:?}");
             let travel = |leg: &Leg| Travel {
-                forward: leg.forward,
-                left: leg.left,
-                turn: leg.turn,
+                forward: leg.forward.expect("it is decided"),
+                left: leg.left.expect("it is decided"),
+                turn: leg.turn.expect("it is decided"),
             };
-            assert!(apart(all, followed_by(travel(first), travel(second))) < 1e-6);
+            let apart = |a: Travel, b: Travel| {
+                (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
+            };
+            assert!(apart(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
+            let both = followed_by(travel(first), travel(second));
+            assert!(apart(travel(all), both) < 1e-6);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use lizard_robot::UNDECIDED;
 use serde::Serialize;
 
 use super::analysis::{Leg, Run, Safety, ServoReport};
@@ -101,16 +102,26 @@ impl Report<'_> {
             "predicted way        from      to   forward      left      turn"
         )?;
         for leg in &self.way {
+            let cell = |part: Option<f64>, digits: usize| {
+                let half = 0.5 / 10f64.powi(digits as i32);
+                part.map_or("-".to_owned(), |part| {
+                    format!("{:.digits$}", positive_zero(part, half))
+                })
+            };
             writeln!(
                 out,
-                "{:<16} {:>6.2} s {:>5.2} s {:>6.1} mm {:>6.1} mm {:>6.2} deg",
+                "{:<16} {:>6.2} s {:>5.2} s {:>6} mm {:>6} mm {:>6} deg",
                 leg.command,
                 leg.from,
                 leg.to,
-                positive_zero(leg.forward, 0.05),
-                positive_zero(leg.left, 0.05),
-                positive_zero(leg.turn, 0.005)
+                cell(leg.forward, 1),
+                cell(leg.left, 1),
+                cell(leg.turn, 2)
             )?;
+        }
+        let parts = |leg: &Leg| [leg.forward, leg.left, leg.turn];
+        if self.way.iter().any(|leg| parts(leg).contains(&None)) {
+            write!(out, "{UNDECIDED}")?;
         }
         writeln!(out)
     }
