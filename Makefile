@@ -24,7 +24,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash lint cli bench prove docs clean .firmware .gaits .flash .lint .cli .simulator .sim .test .bench .prove .docs
+.PHONY: help sim test firmware flash lint cli bench prove docs clean .firmware .gaits .flash .lint .cli .simulator .sim .tests .test .bench .prove .docs
 
 help: ## this list
 	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -80,8 +80,13 @@ clean: ## remove everything that was built
 	@$(MAKE) -j2 .firmware .simulator
 	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
+# The tests, compiled beside the firmware: each has phases that keep one core busy.
+.tests:
+	@cd host && cargo test --workspace --no-run --quiet
+
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
-.test: .firmware
+.test:
+	@$(MAKE) -j2 .firmware .tests
 	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test --workspace --no-fail-fast --quiet
 
 .bench: .firmware .cli
