@@ -270,7 +270,7 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
             }
         }
     }
-    assert!(seen > 10);
+    assert!(seen >= 5);
 }
 
 #[test]
