@@ -210,6 +210,13 @@ static bool is_halted(const struct uno *uno)
 	       !(watchdog_may_reset(&uno->watchdog) || supply_may_reset(&uno->supply));
 }
 
+/* simavr lets an enabled interrupt wake a CPU that has interrupts off. */
+static void stay_asleep(avr_t *avr)
+{
+	if (avr->state == cpu_Running && !avr->sreg[S_I])
+		avr->state = cpu_Sleeping;
+}
+
 static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 {
 	avr_t *avr = uno->avr;
@@ -228,8 +235,8 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		restart_by_stock_watchdog(uno, normal);
 		return true;
 	}
-	if (!running && avr->state == cpu_Running && !avr->sreg[S_I])
-		avr->state = cpu_Sleeping; /* no interrupt wakes it; simavr thinks so */
+	if (!running)
+		stay_asleep(avr);
 	if (avr->state == cpu_Sleeping) {
 		if (is_halted(uno)) {
 			avr->state = cpu_Done;
@@ -237,8 +244,10 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		}
 		if (!sleep_cycles(uno, sleep, until))
 			return false;
-		if (uno->data_sheet)
+		if (uno->data_sheet) {
 			avr_cycle_timer_process(avr); /* fires what woke it, now */
+			stay_asleep(avr);
+		}
 	}
 	service_interrupts(uno);
 	return true;
