@@ -477,6 +477,19 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
 }
 
 #[test]
+fn a_reset_before_a_power_cut_does_not_prevent_it() {
+    for when in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
+        let mut uno = two_bytes();
+        uno.cut_power(when, 0x02);
+        uno.run_ms(1);
+        uno.reset();
+        assert_eq!(*uno.run_ms(20), State::Off);
+        assert_eq!(uno.eeprom()[0], 0x37);
+        assert!(uno.cycle().abs_diff(40_900) < 1_000, "{}", uno.cycle());
+    }
+}
+
+#[test]
 fn a_power_cut_that_is_taken_back_does_not_come() {
     let mut uno = two_bytes();
     uno.cut_power(PowerCut::AtCycle(60_000), 0);

@@ -280,6 +280,47 @@ fn a_voltage_is_sampled_one_and_a_half_clocks_after_the_start() {
 }
 
 #[test]
+fn the_first_conversion_samples_after_13_and_a_half_clocks() {
+    // Table 23-1, "First conversion": sample & hold after 13.5 cycles.
+    let at = |change: u64| {
+        let mut uno = with("int main(void) { ADMUX = 0x40; GPIOR0 = 0; convert(); for (;;) {} }");
+        uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
+        uno.take_marks();
+        uno.run_cycles(change);
+        uno.set_analog_mv(Pin::a(0), 2500);
+        uno.run_ms(1);
+        results(&uno)[0]
+    };
+    assert_eq!(at(13 * CLOCK), 512);
+    assert_eq!(at(15 * CLOCK), 0);
+}
+
+#[test]
+fn conversions_keep_step_with_the_adc_clock() {
+    // "the conversion starts at the following rising edge of the ADC clock cycle"
+    // (23.4): whenever it is asked for, its end is a whole number of clocks away
+    // from another's.
+    let mut uno = with(
+        "int main(void) {
+        ADMUX = 0x40; start();
+        for (unsigned char i = 0; i < 20; i++) {
+            while (!(ADCSRA & 0x10)) {}
+            GPIOR0 = i;
+            for (unsigned char j = 0; j < i; j++) _delay_us(3);
+            ADCSRA = 0xd7;
+        }
+        for (;;) {} }",
+    );
+    uno.run_ms(4);
+    let cycles: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
+    assert_eq!(cycles.len(), 20);
+    for cycle in &cycles {
+        let off = (cycle - cycles[0] + 10) % CLOCK;
+        assert!(off <= 20, "{cycles:?}");
+    }
+}
+
+#[test]
 fn the_bandgap_needs_70_us_after_the_channel_is_chosen() {
     // "When the bandgap reference voltage is used as input to the ADC, it will take
     // a certain time for the voltage to stabilize. If not stabilized, the first

@@ -229,7 +229,9 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
     let uno = run(body, 1024 + 40);
     assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
     let bites = bites(&uno);
-    assert_eq!([bites[1] - bites[0], bites[2] - bites[1]], [SHORTEST; 2]);
+    // To the end of the instruction in which the time is over.
+    assert!((bites[1] - bites[0]).abs_diff(SHORTEST) < 3, "{bites:?}");
+    assert!((bites[2] - bites[1]).abs_diff(SHORTEST) < 3, "{bites:?}");
 
     let cleared = run(
         "int main(void) {
