@@ -339,7 +339,7 @@ fn the_ready_interrupt_comes_at_once_and_again_after_one_instruction() {
 fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     // "If a reset occurs while a write operation is in progress, the write
     // operation will be completed provided that the power supply voltage is
-    // sufficient" (8.4.3); "During reset, the EEPMn bits will be reset to 0b00
+    // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
     // unless the EEPROM is busy programming" (8.6.3).
     let mut uno = Uno::with_image(
         program(

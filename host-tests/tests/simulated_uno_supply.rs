@@ -1,4 +1,4 @@
-//! The simulated supply and ADC against the data sheet, chapters 11.5 and 23.
+//! The simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
 use lizard_host_tests::avr_gcc::c;
 use simulated_uno::{
@@ -50,7 +50,7 @@ const BANDGAP: &str = "int main(void) {
 
 #[test]
 fn the_bandgap_against_avcc_tells_the_supply() {
-    // "ADC = VIN * 1024 / VREF" (23.7), whole part.
+    // "ADC = VIN * 1024 / VREF" (24.7), whole part.
     for (supply, bandgap) in [
         (5000.0, 1100.0),
         (3300.0, 1100.0),
@@ -117,7 +117,7 @@ fn ground_reads_zero_and_too_much_reads_1023() {
 
 #[test]
 fn the_first_conversion_takes_25_clocks_and_others_13() {
-    // Table 23-1: "First conversion 25", "Normal conversions, single ended 13".
+    // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
     // It "starts at the following rising edge of the ADC clock", so up to one more.
     let mut uno = with(
         "int main(void) {
@@ -137,7 +137,7 @@ fn the_first_conversion_takes_25_clocks_and_others_13() {
 }
 
 #[test]
-fn the_prescaler_divides_by_table_23_5() {
+fn the_prescaler_divides_by_table_24_5() {
     // ADPS 000 and 001: 2, 010: 4, ... 111: 128.
     for (select, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
         let body = format!(
@@ -165,7 +165,7 @@ fn the_prescaler_divides_by_table_23_5() {
 fn adsc_reads_one_as_long_as_a_conversion_is_in_progress() {
     // "ADSC will read as one as long as a conversion is in progress. When the
     // conversion is complete, it returns to zero. Writing zero to this bit has no
-    // effect" (23.9.2).
+    // effect" (24.9.2).
     let mut uno = with(
         "int main(void) {
         ADMUX = 0x40; start();
@@ -181,7 +181,7 @@ fn adsc_reads_one_as_long_as_a_conversion_is_in_progress() {
 #[test]
 fn turning_the_adc_off_ends_a_conversion() {
     // "Turning the ADC off while a conversion is in progress, will terminate this
-    // conversion" (23.9.2).
+    // conversion" (24.9.2).
     let mut uno = with(
         "int main(void) {
         ADMUX = 0x40; start(); ADCSRA = 7;
@@ -201,8 +201,8 @@ fn a_conversion_is_not_started_while_the_adc_is_off() {
 
 #[test]
 fn the_result_is_locked_from_adcl_to_adch() {
-    // "if ADCL is read, and a conversion completes before ADCH is read, neither
-    // register is updated and the result from the conversion is lost" (23.4).
+    // "if ADCL has been read, and a conversion completes before ADCH is read, neither
+    // register is updated and the result from the conversion is lost" (24.2).
     let mut uno = with(
         "int main(void) {
         ADMUX = 0x40; start(); wait();
@@ -221,7 +221,7 @@ fn the_result_is_locked_from_adcl_to_adch() {
 #[test]
 fn adlar_shifts_the_result_at_once() {
     // "Changing the ADLAR bit will affect the ADC Data Register immediately,
-    // regardless of any ongoing conversions" (23.9.1); ADCH alone then holds 8 bits.
+    // regardless of any ongoing conversions" (24.9.1); ADCH alone then holds 8 bits.
     let mut uno = with(
         "int main(void) {
         ADMUX = 0x40; start(); wait(); ADMUX = 0x60;
@@ -246,7 +246,7 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
 #[test]
 fn a_channel_is_locked_once_the_conversion_has_started() {
     // "Once the conversion starts, the channel and reference selection is locked to
-    // ensure a sufficient sampling time for the ADC" (23.5).
+    // ensure a sufficient sampling time for the ADC" (24.5).
     let mut uno = with(
         "int main(void) {
         ADMUX = 0x40; start(); _delay_us(20); ADMUX = 0x41; wait(); show();
@@ -260,7 +260,7 @@ fn a_channel_is_locked_once_the_conversion_has_started() {
 
 #[test]
 fn a_voltage_is_sampled_one_and_a_half_clocks_after_the_start() {
-    // Table 23-1, "Sample & Hold (Cycles from Start of Conversion)": 1.5.
+    // Table 24-1, "Sample & Hold (Cycles from Start of Conversion)": 1.5.
     let body = "int main(void) {
         ADMUX = 0x40; start(); wait(); GPIOR0 = 0;
         start(); wait(); show();
@@ -281,7 +281,7 @@ fn a_voltage_is_sampled_one_and_a_half_clocks_after_the_start() {
 
 #[test]
 fn the_first_conversion_samples_after_13_and_a_half_clocks() {
-    // Table 23-1, "First conversion": sample & hold after 13.5 cycles.
+    // Table 24-1, "First conversion": sample & hold after 13.5 cycles.
     let at = |change: u64| {
         let mut uno = with("int main(void) { ADMUX = 0x40; GPIOR0 = 0; convert(); for (;;) {} }");
         uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
@@ -298,7 +298,7 @@ fn the_first_conversion_samples_after_13_and_a_half_clocks() {
 #[test]
 fn conversions_keep_step_with_the_adc_clock() {
     // "the conversion starts at the following rising edge of the ADC clock cycle"
-    // (23.4): whenever it is asked for, its end is a whole number of clocks away
+    // (24.4): whenever it is asked for, its end is a whole number of clocks away
     // from another's.
     let mut uno = with(
         "int main(void) {
@@ -324,7 +324,7 @@ fn conversions_keep_step_with_the_adc_clock() {
 fn the_bandgap_needs_70_us_after_the_channel_is_chosen() {
     // "When the bandgap reference voltage is used as input to the ADC, it will take
     // a certain time for the voltage to stabilize. If not stabilized, the first
-    // value read after the first conversion may be wrong"; table 28-16: start-up
+    // value read after the first conversion may be wrong"; 29.5: start-up
     // time at most 70 us.
     let first = |wait: u32, before: u16| {
         let body = format!(
