@@ -477,6 +477,19 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
 }
 
 #[test]
+fn a_power_cut_comes_once() {
+    let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
+    for when in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
+        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+        uno.cut_power(when, 0xff);
+        assert_eq!(*uno.run_ms(5), State::Off);
+        uno.power_cycle();
+        assert_eq!(*uno.run_ms(5), State::Alive);
+        assert_eq!(uno.eeprom()[0], 0xfe);
+    }
+}
+
+#[test]
 fn a_reset_before_a_power_cut_does_not_prevent_it() {
     for when in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
         let mut uno = two_bytes();
