@@ -3,6 +3,7 @@
 fn main() {
     let parts = [
         "call_timer",
+        "disturbance",
         "handlers",
         "hook",
         "instruction",

@@ -17,6 +17,7 @@
 
 #include "call_timer.h"
 #include "chip.h"
+#include "disturbance.h"
 #include "instruction.h"
 #include "interrupts.h"
 #include "pin_toggle.h"
@@ -49,6 +50,7 @@ struct uno {
 	struct serial_bytes transmitted;
 	struct stock_uart stock_uart;
 	struct sender sender;
+	struct disturbance disturbance;
 
 	/* Corrections by the data sheet; idle in the stock fidelity. */
 	struct interrupts interrupts;
@@ -130,6 +132,7 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 	recorder_attach(&uno->recorder, &uno->instruction, pins);
 	handlers_attach(&uno->handlers, avr);
 	call_timer_attach(&uno->call_timer, avr, &uno->handlers);
+	disturbance_attach(&uno->disturbance, avr, &uno->handlers);
 	serial_bytes_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
@@ -187,6 +190,8 @@ static void run_instructions(struct uno *uno, uint64_t until)
 	if (uno->call_timer.on) {
 		call_timer_look(&uno->call_timer);
 		avr->run_cycle_limit = 1;
+	} else if (disturbance_waits(&uno->disturbance)) {
+		avr->run_cycle_limit = 1;
 	} else {
 		uint64_t left = until > avr->cycle ? until - avr->cycle : 1;
 		avr->run_cycle_limit = left < SLICE ? left : SLICE;
@@ -226,8 +231,12 @@ static void service_interrupts(struct uno *uno)
 static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 {
 	avr_t *avr = uno->avr;
+	if (avr->state == cpu_Sleeping)
+		disturbance_serve(&uno->disturbance);
 	bool running = avr->state == cpu_Running;
-	if (running) {
+	if (running && disturbance_stalls(&uno->disturbance)) {
+		disturbance_wait(&uno->disturbance, until);
+	} else if (running) {
 		uno->interrupts.slept = false;
 		/* One more turn of simavr's order: instruction, timers, interrupts. */
 		run_instructions(uno, until);
@@ -249,6 +258,7 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		if (uno->data_sheet)
 			avr_cycle_timer_process(avr); /* fires what woke it, now */
 	}
+	disturbance_serve(&uno->disturbance);
 	service_interrupts(uno);
 	return true;
 }
@@ -296,6 +306,33 @@ void uno_send(struct uno *uno, const uint8_t *bytes, size_t length)
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 {
 	sender_flood(&uno->sender, bytes, length, uno->now);
+}
+
+void uno_hold(struct uno *uno, uint64_t cycles)
+{
+	avr_t *avr = uno->avr;
+	uno->disturbance.held = cycles;
+	if (avr->state != cpu_Sleeping)
+		return; /* in the middle of something: when interrupts are on */
+	uno->asleep += uno->now - avr->cycle;
+	avr->cycle = uno->now;
+	disturbance_serve(&uno->disturbance);
+	uno->now = avr->cycle;
+}
+
+void uno_stall_main(struct uno *uno, uint64_t until)
+{
+	uno->disturbance.stalled_until = until;
+}
+
+void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
+{
+	avr_t *avr = uno->avr;
+	avr_io_addr_t io = AVR_DATA_TO_IO(address);
+	if (address >= 32 && io < MAX_IOs && avr->io[io].w.c)
+		avr->io[io].w.c(avr, address, value, avr->io[io].w.param);
+	else if (address <= avr->ramend)
+		avr->data[address] = value;
 }
 
 void uno_set_baud(struct uno *uno, double baud) { sender_set_baud(&uno->sender, baud); }

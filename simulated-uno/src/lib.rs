@@ -22,6 +22,7 @@
 //! Several [`Uno`]s may run at once on as many threads: libsimavr keeps no
 //! state outside an instance but the logger, which is set once.
 
+mod disturb;
 mod ffi;
 mod image;
 mod pin;

@@ -40,7 +40,7 @@ pub enum State {
 
 /// A simulated Arduino UNO with a firmware in its flash.
 pub struct Uno {
-    raw: *mut RawUno,
+    pub(crate) raw: *mut RawUno,
     image: Image,
     state: State,
 }
@@ -329,6 +329,12 @@ impl Uno {
     #[must_use]
     pub fn stack_spare(&self) -> u16 {
         (unsafe { ffi::uno_stack_low(self.raw) }) - self.image.data_end()
+    }
+
+    /// Byte address in flash of the next instruction.
+    #[must_use]
+    pub fn pc(&self) -> u32 {
+        unsafe { ffi::uno_pc(self.raw) }
     }
 
     /// The byte at a data address (registers, I/O or SRAM), 0 beyond SRAM.
