@@ -7,6 +7,7 @@ fn main() {
         "chip",
         "chip_access",
         "eeprom",
+        "disturbance",
         "handlers",
         "hook",
         "instruction",

@@ -24,6 +24,7 @@
 
 mod adc;
 mod eeprom;
+mod disturb;
 mod ffi;
 mod image;
 mod pin;
