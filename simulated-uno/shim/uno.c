@@ -173,6 +173,25 @@ void uno_power_on(struct uno *uno, uint32_t code_end, uint16_t data_end)
 	memset(uno->avr->data + data_end, PAINT, uno->avr->ramend + 1 - data_end);
 }
 
+void uno_boot_at(struct uno *uno, uint32_t address)
+{
+	uno->avr->codeend = uno->avr->flashend; /* more code may come */
+	uno->avr->reset_pc = address;
+	uno->avr->pc = address;
+}
+
+void uno_reset(struct uno *uno)
+{
+	avr_t *avr = uno->avr;
+	/* The reset comes now, not when the CPU went to sleep. */
+	uno->asleep = uno_asleep(uno);
+	if (avr->cycle < uno->now)
+		avr->cycle = uno->now;
+	avr_reset(avr);
+	avr_regbit_set(avr, avr->reset_flags.extrf);
+	recorder_release_pins(&uno->recorder);
+}
+
 uint16_t uno_stack_low(const struct uno *uno)
 {
 	uint16_t address = uno->data_end;
@@ -309,6 +328,7 @@ uint64_t uno_overruns(const struct uno *uno) { return uno->usart.overruns; }
 uint32_t uno_levels(const struct uno *uno) { return uno->recorder.levels; }
 const char *uno_message(const struct uno *uno) { return uno->message; }
 const uint8_t *uno_data(const struct uno *uno) { return uno->avr->data; }
+const uint8_t *uno_flash(const struct uno *uno) { return uno->avr->flash; }
 uint32_t uno_data_size(const struct uno *uno) { return uno->avr->ramend + 1; }
 const struct vector_use *uno_vectors(const struct uno *uno) { return uno->handlers.vectors; }
 struct list *uno_edges(struct uno *uno) { return &uno->recorder.edges; }

@@ -26,6 +26,11 @@ bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t addr
 /* Ends loading: `code_end` bytes of flash are code, static data ends at
  * `data_end`, and the SRAM after it is painted. */
 void uno_power_on(struct uno *uno, uint32_t code_end, uint16_t data_end);
+/* From now on a reset starts the program at this byte address (BOOTRST). */
+void uno_boot_at(struct uno *uno, uint32_t address);
+/* An external reset: SRAM, EEPROM and the cycle count stay. */
+void uno_reset(struct uno *uno);
+const uint8_t *uno_flash(const struct uno *uno);
 /* Runs until cycle `until`, or the end of the firmware's next line. */
 enum stop uno_run(struct uno *uno, uint64_t until);
 void uno_stop_at_line(struct uno *uno, bool on);

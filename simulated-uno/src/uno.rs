@@ -40,9 +40,9 @@ pub enum State {
 
 /// A simulated Arduino UNO with a firmware in its flash.
 pub struct Uno {
-    raw: *mut RawUno,
+    pub(crate) raw: *mut RawUno,
     image: Image,
-    state: State,
+    pub(crate) state: State,
 }
 
 // SAFETY: an instance owns all that its pointer reaches; libsimavr's only
@@ -384,7 +384,7 @@ impl Uno {
         }
     }
 
-    fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
+    pub(crate) fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
         // SAFETY: the shim allows its caller to set the count to 0.
         unsafe { (*of(self.raw)).count = 0 }
     }
