@@ -2,7 +2,12 @@
 
 fn main() {
     let parts = [
+        "adc",
+        "boot",
         "call_timer",
+        "chip",
+        "chip_access",
+        "eeprom",
         "handlers",
         "hook",
         "instruction",
@@ -10,12 +15,16 @@ fn main() {
         "list",
         "pin_toggle",
         "recorder",
+        "reset",
+        "restart",
         "sender",
         "serial_bytes",
         "stock_uart",
+        "supply",
         "timer1",
         "uno",
         "usart",
+        "watchdog",
     ];
     println!("cargo:rerun-if-changed=shim");
     let compiled = cc::Build::new()

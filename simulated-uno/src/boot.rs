@@ -17,21 +17,26 @@ impl Uno {
         uno
     }
 
-    /// Presses the reset button. SRAM and EEPROM keep what they hold; a chip that
-    /// had halted or crashed starts again. Opening a serial port of a real UNO
-    /// does the same.
-    pub fn reset(&mut self) {
-        // SAFETY: as above.
-        unsafe { ffi::uno_reset(self.raw) }
-        self.state = crate::State::Alive;
-    }
-
     /// All of flash, the boot loader included. What was never written is 0xff.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
         // SAFETY: the chip has `FLASH_SIZE` bytes of flash, which live as long as
         // `self` and do not change while it is borrowed.
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
+    }
+
+    /// Changes bytes of flash behind the program's back, as a cell does that is
+    /// worn out.
+    ///
+    /// # Panics
+    /// If they do not fit into flash.
+    pub fn set_flash(&mut self, address: u16, bytes: &[u8]) {
+        let start = usize::from(address);
+        // SAFETY: as in `flash`, and `self` is borrowed by nobody else.
+        let flash = unsafe {
+            std::slice::from_raw_parts_mut(ffi::uno_flash(self.raw), FLASH_SIZE as usize)
+        };
+        flash[start..start + bytes.len()].copy_from_slice(bytes);
     }
 
     /// Drops the record of received bytes, [`Uno::received_by_uno`], which

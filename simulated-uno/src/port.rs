@@ -83,8 +83,8 @@ impl Port {
     }
 
     /// Lets `uno` run in real time for `time` of the wall clock, and passes bytes
-    /// between it and whoever has the port open. Returns earlier if the chip
-    /// halts or crashes while the port is closed; an opening resets it even then.
+    /// between it and whoever has the port open. A chip that halts or crashes does
+    /// nothing more until the next opening resets it.
     ///
     /// Edges ([`Uno::take_edges`]) pile up for the caller, 1600 bytes a second from
     /// four servos. The bytes of the serial line do not: they are the port's.
