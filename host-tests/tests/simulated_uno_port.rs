@@ -114,6 +114,21 @@ fn what_the_chip_says_while_the_port_is_closed_is_lost() {
 }
 
 #[test]
+fn what_a_program_leaves_unread_is_not_there_for_the_next() {
+    let board = served();
+    let mut first = open(board.path());
+    assert_eq!(read(&mut first, 2), "<r");
+    first.write_all(b"abc").expect("it takes bytes");
+    std::thread::sleep(Duration::from_millis(50));
+    drop(first);
+    std::thread::sleep(Duration::from_millis(50));
+    let mut second = open(board.path());
+    assert_eq!(read(&mut second, 2), "<r", "not bcd, the echo of abc");
+    drop(second);
+    board.stop().expect("the port was well");
+}
+
+#[test]
 fn the_chip_keeps_time_with_the_wall_clock() {
     let mut uno = echo();
     let mut port = Port::new().expect("a pseudo terminal");

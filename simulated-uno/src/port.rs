@@ -143,7 +143,8 @@ impl Port {
         }
         uno.forget_received();
         let sent = uno.take_transmitted();
-        if self.open {
+        // Asked again, since this program may have been held up meanwhile.
+        if self.open && self.pty.is_open()? {
             self.unread.extend(sent.iter().map(|sent| sent.byte));
             self.unread.truncate(MOST_UNREAD);
             let written = self.pty.write(&self.unread)?;

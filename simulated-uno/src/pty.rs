@@ -3,8 +3,8 @@
 //!
 //! It is a serial port in all but three things. It has no DTR line, so who
 //! wants to know of an opening has to watch the file. The speed that a program
-//! sets has no effect. And what is written while nobody has it open waits for
-//! the next who opens it, where a cable would lose it.
+//! sets has no effect. And what a program leaves unread waits for the next that
+//! opens it, where the driver of a cable forgets it; so it is thrown away here.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -16,7 +16,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
 /// The speed that `stty` shows until somebody sets another.
 const BAUD: u32 = 115_200;
@@ -52,11 +52,7 @@ impl Pty {
         let path = PathBuf::from(name.to_string_lossy().into_owned());
         // Opened once and closed: only from then on does the system say that
         // nobody has it open. The settings outlive the closing.
-        let theirs = rustix::fs::open(
-            &path,
-            OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC,
-            Mode::empty(),
-        )?;
+        let theirs = other_end(&path)?;
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
         settings.set_speed(BAUD)?;
@@ -84,23 +80,58 @@ impl Pty {
     /// # Errors
     /// Only those of a system that is out of memory.
     pub(crate) fn look(&mut self) -> io::Result<Look> {
-        let mut closed = !self.was_open;
-        let mut opened = false;
+        let was_open = self.was_open;
+        let (mut closed, mut opened) = (!was_open, false);
+        self.events(|event| {
+            if event.contains(ReadFlags::OPEN) {
+                opened |= closed;
+            } else {
+                closed = true;
+            }
+        })?;
+        let mut open = self.is_open()?;
+        opened |= open && !was_open;
+        // A program that closes it while another has it open changes nothing.
+        if was_open && (opened || !open) {
+            self.throw_away_unread()?;
+            let now = self.is_open()?;
+            opened |= now && !open;
+            open = now;
+        }
+        self.was_open = open;
+        Ok(Look { open, opened })
+    }
+
+    /// Whether a program has it open at this moment.
+    ///
+    /// # Errors
+    /// Only those of a system that is out of memory.
+    pub(crate) fn is_open(&self) -> io::Result<bool> {
+        let mut fds = [PollFd::new(&self.ours, PollFlags::IN)];
+        poll(&mut fds, Some(&Timespec::default()))?;
+        Ok(!fds[0].revents().contains(PollFlags::HUP))
+    }
+
+    fn events(&self, mut tell: impl FnMut(ReadFlags)) -> io::Result<()> {
         let mut space = [MaybeUninit::uninit(); 512];
         let mut events = inotify::Reader::new(&self.opens, &mut space);
         loop {
             match events.next() {
-                Ok(event) if event.events().contains(ReadFlags::OPEN) => opened |= closed,
-                Ok(_) => closed = true,
-                Err(rustix::io::Errno::WOULDBLOCK) => break,
+                Ok(event) => tell(event.events()),
+                Err(rustix::io::Errno::WOULDBLOCK) => return Ok(()),
                 Err(error) => return Err(error.into()),
             }
         }
-        let mut fds = [PollFd::new(&self.ours, PollFlags::IN)];
-        poll(&mut fds, Some(&Timespec::default()))?;
-        let open = !fds[0].revents().contains(PollFlags::HUP);
-        self.was_open = open;
-        Ok(Look { open, opened })
+    }
+
+    /// What the last program has not read is not for the next.
+    fn throw_away_unread(&self) -> io::Result<()> {
+        // It cannot be opened while a program has it for itself alone; then that
+        // program has thrown away what it found.
+        if let Ok(theirs) = other_end(&self.path) {
+            tcflush(&theirs, QueueSelector::IFlush)?;
+        }
+        self.events(|_our_own| {})
     }
 
     /// Reads what programs have written, 0 bytes if there is nothing.
@@ -122,6 +153,11 @@ impl Pty {
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         now(self.ours.write(bytes))
     }
+}
+
+fn other_end(path: &Path) -> rustix::io::Result<OwnedFd> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
+    rustix::fs::open(path, flags, Mode::empty())
 }
 
 const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
