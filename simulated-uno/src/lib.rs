@@ -25,8 +25,8 @@
 
 mod adc;
 mod boot;
-mod eeprom;
 mod disturb;
+mod eeprom;
 mod ffi;
 mod image;
 mod pin;
