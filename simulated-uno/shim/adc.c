@@ -127,6 +127,8 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 		adc->enabled = cycle;
 	}
 	avr->data[address] = control;
+	if (!(control & ADIF))
+		adc->stock->adc.pending = 0; /* a conversion that ends in this cycle counts */
 	if ((control & ADEN) && (value & ADSC) && !adc->converting)
 		begin(adc, next_edge(adc, cycle));
 	interrupts_changed(adc->interrupts);

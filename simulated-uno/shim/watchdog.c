@@ -79,6 +79,8 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	if ((value & WDCE) && (value & WDE))
 		watchdog->change_until = cycle + CHANGE_CYCLES;
 	avr->data[address] = control;
+	if (!(control & WDIF))
+		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle counts */
 	if (!is_on(old))
 		watchdog->since = cycle;
 	schedule(watchdog);
