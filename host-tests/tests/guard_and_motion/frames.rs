@@ -4,6 +4,7 @@
 use fastrand::Rng;
 use lizard_core::console::{Console, Counters};
 use lizard_core::gait::GaitId;
+use lizard_core::memory::Bytes;
 use lizard_core::motion::{Activity, Motion};
 use lizard_core::pose::{Pose, Pulses};
 use lizard_core::restart::Restart;
