@@ -8,6 +8,7 @@ fn main() {
         "chip",
         "chip_access",
         "eeprom",
+        "disturbance",
         "handlers",
         "hook",
         "instruction",

@@ -339,7 +339,7 @@ fn the_ready_interrupt_comes_at_once_and_again_after_one_instruction() {
 fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     // "If a reset occurs while a write operation is in progress, the write
     // operation will be completed provided that the power supply voltage is
-    // sufficient" (8.4.3); "During reset, the EEPMn bits will be reset to 0b00
+    // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
     // unless the EEPROM is busy programming" (8.6.3).
     let mut uno = Uno::with_image(
         program(
@@ -474,6 +474,32 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
     assert_eq!(marks(&uno), [0x35 | 0x08]);
     let causes: Vec<ResetCause> = uno.reset_events().iter().map(|r| r.cause).collect();
     assert_eq!(causes, [ResetCause::PowerOn, ResetCause::PowerOn]);
+}
+
+#[test]
+fn a_power_cut_comes_once() {
+    let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
+    for when in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
+        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+        uno.cut_power(when, 0xff);
+        assert_eq!(*uno.run_ms(5), State::Off);
+        uno.power_cycle();
+        assert_eq!(*uno.run_ms(5), State::Alive);
+        assert_eq!(uno.eeprom()[0], 0xfe);
+    }
+}
+
+#[test]
+fn a_reset_before_a_power_cut_does_not_prevent_it() {
+    for when in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
+        let mut uno = two_bytes();
+        uno.cut_power(when, 0x02);
+        uno.run_ms(1);
+        uno.reset();
+        assert_eq!(*uno.run_ms(20), State::Off);
+        assert_eq!(uno.eeprom()[0], 0x37);
+        assert!(uno.cycle().abs_diff(40_900) < 1_000, "{}", uno.cycle());
+    }
 }
 
 #[test]

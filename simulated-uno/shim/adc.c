@@ -14,10 +14,10 @@ enum { /* ADMUX */
 };
 
 #define NOMINAL_BANDGAP 1100.0
-#define ROOM_TEMPERATURE 314.0 /* mV of its sensor at 25 deg C (table 23-2) */
-#define SETTLING (70 * CHIP_CYCLES_PER_US) /* tBG, the longest (28.5) */
+#define ROOM_TEMPERATURE 314.0 /* mV of its sensor at 25 deg C (table 24-2) */
+#define SETTLING (70 * CHIP_CYCLES_PER_US) /* tBG, the longest (29.5) */
 
-/* Table 23-1, in halves of an ADC clock. */
+/* Table 24-1, in halves of an ADC clock. */
 static const unsigned sample_halves[2] = { 3, 27 }; /* others, first */
 static const unsigned length_halves[2] = { 26, 50 };
 
@@ -35,7 +35,7 @@ static double channel_mv(const struct adc *adc, uint8_t mux)
 }
 
 /* "If not stabilized, the first value read after the first conversion may be
- * wrong" (22.2): here it lies on a line from the channel before to the bandgap. */
+ * wrong" (24.4): here it lies on a line from the channel before to the bandgap. */
 static double input_mv(const struct adc *adc)
 {
 	double mv = channel_mv(adc, adc->mux);
@@ -106,7 +106,7 @@ static void begin(struct adc *adc, uint64_t edge)
 }
 
 /* "The conversion starts at the following rising edge of the ADC clock cycle";
- * the prescaler "starts counting from the moment the ADC is switched on" (23.4). */
+ * the prescaler "starts counting from the moment the ADC is switched on" (24.4). */
 static uint64_t next_edge(const struct adc *adc, uint64_t cycle)
 {
 	uint64_t clock = clock_cycles(adc->avr);
@@ -157,7 +157,7 @@ static uint8_t read_result(avr_t *avr, avr_io_addr_t address, void *param)
 	struct adc *adc = param;
 	uint16_t shown = avr->data[REG_ADMUX] & ADLAR ? adc->result << 6 : adc->result;
 	/* "When ADCL is read, the ADC Data Register is not updated until ADCH is
-	 * read" (23.9.3). */
+	 * read" (24.9.3). */
 	adc->locked = address == REG_ADCL;
 	return adc->locked ? shown : shown >> 8;
 }

@@ -1,4 +1,4 @@
-/* The ADC by the ATmega328P's data sheet, chapter 23: a supply that changes, the
+/* The ADC by the ATmega328P's data sheet, chapter 24: a supply that changes, the
  * bandgap that needs time to settle, 25 clocks for the first conversion and 13
  * for each other, and a result that is read in two halves.
  *

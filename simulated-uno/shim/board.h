@@ -7,6 +7,7 @@
 
 #include "adc.h"
 #include "call_timer.h"
+#include "disturbance.h"
 #include "eeprom.h"
 #include "instruction.h"
 #include "interrupts.h"
@@ -42,6 +43,7 @@ struct uno {
 	struct serial_bytes transmitted;
 	struct stock_uart stock_uart;
 	struct sender sender;
+	struct disturbance disturbance;
 	struct reset reset;
 	struct supply supply;   /* the stock fidelity keeps VCC here */
 	struct eeprom eeprom;   /* and the list of no operations */

@@ -55,7 +55,7 @@ void eeprom_attach(struct eeprom *eeprom, avr_t *avr);
 void eeprom_correct(struct eeprom *eeprom, const struct instruction *instruction,
                     struct interrupts *interrupts, struct reset *reset);
 /* "If a reset occurs while a write operation is in progress, the write
- * operation will be completed" (8.4.3). */
+ * operation will be completed" (8.4.2). */
 void eeprom_reset(struct eeprom *eeprom);
 /* The supply fails: an operation under way leaves a torn byte. */
 void eeprom_tear(struct eeprom *eeprom);

@@ -42,12 +42,7 @@ uint8_t instruction_touched_bits(const struct instruction *instruction)
 
 void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles)
 {
-	avr_t *avr = instruction->avr;
-	avr->cycle += cycles;
-	/* simavr ends its slice when this count is used up, so that timers are on
-	 * time; it never sees the cycles added here. */
-	bool enough = avr->run_cycle_count > cycles;
-	avr->run_cycle_count = enough ? avr->run_cycle_count - cycles : 1;
+	instruction->avr->cycle += cycles;
 }
 
 void instruction_end_slice(const struct instruction *instruction)

@@ -28,7 +28,8 @@ uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t 
 /* The bits of an I/O register that the instruction being executed can change:
  * one if it is `sbi` or `cbi`, else all. */
 uint8_t instruction_touched_bits(const struct instruction *instruction);
-/* The CPU stands still for `cycles` after the instruction being executed. */
+/* The CPU stands still for `cycles` after the instruction being executed. simavr
+ * does not count them in its slice: end that, too, or timers are late. */
 void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles);
 /* Lets interrupts and timers have their turn right after the instruction being
  * executed, not after simavr's slice of many. */

@@ -6,7 +6,7 @@
 #include "chip.h"
 
 #define NOMINAL 5000.0
-#define BROWN_OUT 2700.0      /* VBOT of the UNO's fuses, BODLEVEL = 101 (28.9) */
+#define BROWN_OUT 2700.0      /* VBOT of the UNO's fuses, BODLEVEL = 101 (29.5) */
 #define HYSTERESIS 50.0       /* VHYST */
 #define POWER_ON_RISING 1400.0  /* VPOT, typical */
 #define POWER_ON_FALLING 1300.0

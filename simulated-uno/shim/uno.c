@@ -103,6 +103,7 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 	recorder_attach(&uno->recorder, &uno->instruction, pins);
 	handlers_attach(&uno->handlers, avr);
 	call_timer_attach(&uno->call_timer, avr, &uno->handlers);
+	disturbance_attach(&uno->disturbance, avr, &uno->handlers);
 	serial_bytes_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
@@ -165,6 +166,8 @@ static void run_instructions(struct uno *uno, uint64_t until)
 	if (uno->call_timer.on) {
 		call_timer_look(&uno->call_timer);
 		avr->run_cycle_limit = 1;
+	} else if (disturbance_waits(&uno->disturbance)) {
+		avr->run_cycle_limit = 1;
 	} else {
 		uint64_t left = until > avr->cycle ? until - avr->cycle : 1;
 		avr->run_cycle_limit = left < SLICE ? left : SLICE;
@@ -210,6 +213,13 @@ static bool is_halted(const struct uno *uno)
 	       !(watchdog_may_reset(&uno->watchdog) || supply_may_reset(&uno->supply));
 }
 
+/* simavr lets an enabled interrupt wake a CPU that has interrupts off. */
+static void stay_asleep(avr_t *avr)
+{
+	if (avr->state == cpu_Running && !avr->sreg[S_I])
+		avr->state = cpu_Sleeping;
+}
+
 static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 {
 	avr_t *avr = uno->avr;
@@ -217,8 +227,12 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		return !uno->off;
 	if (uno->supply.held)
 		return restart_wait(uno, until);
+	if (avr->state == cpu_Sleeping)
+		disturbance_serve(&uno->disturbance);
 	bool running = avr->state == cpu_Running;
-	if (running) {
+	if (running && disturbance_stalls(&uno->disturbance)) {
+		disturbance_wait(&uno->disturbance, until);
+	} else if (running) {
 		uno->interrupts.slept = false;
 		/* One more turn of simavr's order: instruction, timers, interrupts. */
 		run_instructions(uno, until);
@@ -228,8 +242,8 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		restart_by_stock_watchdog(uno, normal);
 		return true;
 	}
-	if (!running && avr->state == cpu_Running && !avr->sreg[S_I])
-		avr->state = cpu_Sleeping; /* no interrupt wakes it; simavr thinks so */
+	if (!running)
+		stay_asleep(avr);
 	if (avr->state == cpu_Sleeping) {
 		if (is_halted(uno)) {
 			avr->state = cpu_Done;
@@ -237,9 +251,12 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		}
 		if (!sleep_cycles(uno, sleep, until))
 			return false;
-		if (uno->data_sheet)
+		if (uno->data_sheet) {
 			avr_cycle_timer_process(avr); /* fires what woke it, now */
+			stay_asleep(avr);
+		}
 	}
+	disturbance_serve(&uno->disturbance);
 	service_interrupts(uno);
 	return true;
 }
@@ -291,6 +308,33 @@ void uno_send(struct uno *uno, const uint8_t *bytes, size_t length)
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 {
 	sender_flood(&uno->sender, bytes, length, uno->now);
+}
+
+void uno_hold(struct uno *uno, uint64_t cycles)
+{
+	avr_t *avr = uno->avr;
+	uno->disturbance.held = cycles;
+	if (avr->state != cpu_Sleeping)
+		return; /* in the middle of something: when interrupts are on */
+	uno->asleep += uno->now - avr->cycle;
+	avr->cycle = uno->now;
+	disturbance_serve(&uno->disturbance);
+	uno->now = avr->cycle;
+}
+
+void uno_stall_main(struct uno *uno, uint64_t until)
+{
+	uno->disturbance.stalled_until = until;
+}
+
+void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
+{
+	avr_t *avr = uno->avr;
+	avr_io_addr_t io = AVR_DATA_TO_IO(address);
+	if (address >= 32 && io < MAX_IOs && avr->io[io].w.c)
+		avr->io[io].w.c(avr, address, value, avr->io[io].w.param);
+	else if (address <= avr->ramend)
+		avr->data[address] = value;
 }
 
 void uno_set_baud(struct uno *uno, double baud) { sender_set_baud(&uno->sender, baud); }

@@ -34,6 +34,12 @@ void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
 void uno_send(struct uno *uno, const uint8_t *bytes, size_t length);
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length);
 void uno_set_baud(struct uno *uno, double baud);
+/* A foreign interrupt of so many cycles, now or when interrupts are on next. */
+void uno_hold(struct uno *uno, uint64_t cycles);
+/* Main executes nothing before cycle `until`; interrupts are served. */
+void uno_stall_main(struct uno *uno, uint64_t until);
+/* Writes a data address as `sts` would. */
+void uno_poke(struct uno *uno, uint16_t address, uint8_t value);
 size_t uno_unsent(const struct uno *uno);
 uint64_t uno_sent(const struct uno *uno);
 uint64_t uno_now(const struct uno *uno);

@@ -26,6 +26,7 @@
 mod adc;
 mod boot;
 mod eeprom;
+mod disturb;
 mod ffi;
 mod image;
 mod pin;

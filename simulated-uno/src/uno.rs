@@ -335,6 +335,12 @@ impl Uno {
         (unsafe { ffi::uno_stack_low(self.raw) }) - self.image.data_end()
     }
 
+    /// Byte address in flash of the next instruction.
+    #[must_use]
+    pub fn pc(&self) -> u32 {
+        unsafe { ffi::uno_pc(self.raw) }
+    }
+
     /// The byte at a data address (registers, I/O or SRAM), 0 beyond SRAM.
     #[must_use]
     pub fn peek(&self, address: u16) -> u8 {
