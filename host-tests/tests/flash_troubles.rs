@@ -131,7 +131,8 @@ fn without_permission_it_says_which_group_to_join() {
 
 #[test]
 fn a_missing_avrdude_says_what_to_install() {
-    // A PATH without avrdude and sudo, and a user who is not root.
+    // Nothing installed, no avrdude and no sudo on the PATH, and a user who is not
+    // root.
     let bin = folder();
     for tool in [
         "bash",
@@ -145,6 +146,9 @@ fn a_missing_avrdude_says_what_to_install() {
         let at = Path::new("/usr/bin").join(tool);
         symlink(at, bin.path().join(tool)).expect("a link");
     }
+    let no_package = bin.path().join("dpkg-query");
+    fs::write(&no_package, "#!/usr/bin/bash\nexit 1\n").expect("it is ours");
+    fs::set_permissions(&no_package, Permissions::from_mode(0o755)).expect("it is ours");
     let scripts = scripts();
     let script = scripts.path().join("scripts/setup-flash");
     let mut command = Command::new("/usr/bin/setpriv");
@@ -158,7 +162,7 @@ fn a_missing_avrdude_says_what_to_install() {
     }
     assert!(!output.status.success());
     assert!(
-        said.contains("As root, run:\n    apt-get install -y"),
+        said.contains("As root, run:\n    apt-get install -y avrdude"),
         "{said}"
     );
 }

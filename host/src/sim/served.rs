@@ -57,6 +57,9 @@ fn point(link: &Path, port: &Path) -> Result<(), Failure> {
     if fs::symlink_metadata(link).is_ok_and(|there| there.is_symlink()) {
         fs::remove_file(link)?;
     }
+    if let Some(folder) = link.parent() {
+        fs::create_dir_all(folder)?;
+    }
     symlink(port, link).map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => {
             Failure::Input(format!("{name} is there already and no link"))
