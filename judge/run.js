@@ -25,7 +25,7 @@ function run(file, script) {
   uno.usart.onByteTransmit = (byte) => lines.push(`sent ${uno.cpu.cycles} ${hex(byte)}`);
   uno.deliver(bytes);
   uno.run(end);
-  lines.push(`eeprom ${Array.from(uno.eeprom.memory, hex).join('')}`);
+  lines.push(`eeprom ${Array.from(uno.eeprom.backend.memory, hex).join('')}`);
   return lines;
 }
 

@@ -50,9 +50,9 @@ export class Uno {
     this.timers = timers.map((config) => new AVRTimer(cpu, config));
     this.usart = new AVRUSART(cpu, usart0Config, FREQUENCY);
     this.adc = new AVRADC(cpu, adcConfig);
-    this.eeprom = new EEPROMMemoryBackend(EEPROM);
     const cycles = { eraseCycles: EEPROM_CYCLES, writeCycles: EEPROM_CYCLES };
-    new AVREEPROM(cpu, this.eeprom, { ...eepromConfig, ...cycles });
+    const memory = new EEPROMMemoryBackend(EEPROM);
+    this.eeprom = new AVREEPROM(cpu, memory, { ...eepromConfig, ...cycles });
     new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY));
     cpu.data[MCUSR] = PORF;
     // avr8js resets the processor alone and leaves every peripheral as it was.

@@ -3,6 +3,7 @@ import { wakeTimersAtTheirFlags } from '../timer-events.js';
 import { compareBeyondTop } from './compare-beyond-top.js';
 import { dataRegisterEmpty } from './data-register-empty.js';
 import { dueEvents } from './due-events.js';
+import { eepromReady } from './eeprom-ready.js';
 import { interruptEntry } from './interrupt-entry.js';
 import { interruptWaits } from './interrupt-waits.js';
 import { sleep } from './sleep.js';
@@ -14,6 +15,7 @@ export const corrections = [
   dataRegisterEmpty,
   waitingByte,
   transmitBuffer,
+  eepromReady,
   wakeTimersAtTheirFlags,
   dueEvents,
   interruptEntry,
