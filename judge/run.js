@@ -22,7 +22,7 @@ function run(file, script) {
   const { bytes, end } = read(script);
   const lines = [];
   new Scope(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
-  uno.usart.onByteTransmit = (byte) => lines.push(`sent ${uno.cpu.cycles} ${hex(byte)}`);
+  uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${hex(byte)}`);
   uno.deliver(bytes);
   uno.run(end);
   lines.push(`eeprom ${Array.from(uno.eeprom.backend.memory, hex).join('')}`);

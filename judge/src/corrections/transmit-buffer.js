@@ -4,10 +4,13 @@
 export function transmitBuffer({ cpu, usart }) {
   let busy = false;
   let next = null;
+  // The line's own time: an event is seen only at the end of an instruction.
+  let due;
   const shift = (byte) => {
     busy = true;
+    due += usart.cyclesPerChar;
     cpu.addClockEvent(() => {
-      usart.onByteTransmit?.(byte);
+      usart.onByteTransmit?.(byte, due);
       busy = false;
       if (next === null) {
         cpu.setInterruptFlag(usart.TXC);
@@ -16,10 +19,11 @@ export function transmitBuffer({ cpu, usart }) {
         next = null;
         cpu.setInterruptFlag(usart.UDRE);
       }
-    }, usart.cyclesPerChar);
+    }, due - cpu.cycles);
   };
   cpu.writeHooks[usart.config.UDR] = (byte) => {
     if (!busy) {
+      due = cpu.cycles;
       shift(byte);
     } else if (next === null) {
       next = byte;
