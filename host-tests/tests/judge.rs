@@ -6,7 +6,7 @@ use std::thread;
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::judge::{
-    Account, PinPulse, compare_console, compare_pulses, judge, own_tests,
+    Account, LATER, PinPulse, compare_console, compare_pulses, judge, own_tests,
 };
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
