@@ -24,10 +24,10 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash lint cli bench prove docs clean .firmware .gaits .flash .lint .cli .simulator .sim .tests .test .bench .prove .docs
+.PHONY: help sim test firmware flash flash-test lint cli bench prove docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .docs
 
 help: ## this list
-	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
 	@echo "firmware, sim, test, bench, prove and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
@@ -38,6 +38,8 @@ firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and
 	$(call prepared,.gaits)
 flash: ## build, write to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
+flash-test: ## what `make flash` does, and says when it cannot, with a simulated board
+	$(call prepared,.flash-test)
 lint: ## rustfmt and clippy, warnings are errors
 	$(call prepared,.lint)
 cli: ## build the host program, host/target/release/lizard
@@ -61,9 +63,18 @@ clean: ## remove everything that was built
 	@echo
 	@cat $(dir $(ELF))gaits.txt
 
-.flash: .firmware
+# The port is looked at first, so that nobody waits for a build without a board.
+.flash:
+	@scripts/flash --check
+	@$(MAKE) .firmware
 	@scripts/setup-flash
-	@RUSTC_BOOTSTRAP=1 cargo run --release
+	@scripts/flash
+
+# The README's `make flash`, played on a simulated board behind a pseudo terminal.
+.flash-test: .firmware
+	@scripts/setup-flash
+	@scripts/setup-flash-test
+	@cd host && cargo test -p lizard-host-tests --test flash --test flash_troubles --quiet -- --include-ignored
 
 # The second line puts the program where the documentation says it is.
 .cli:

@@ -10,4 +10,4 @@ mod robots;
 pub use bench::{FirmwareBench, bench_of};
 pub use lizard_host::sim::frame::{FRAME, Frame};
 pub use lizard_host::sim::lines::Line;
-pub use robots::{Named, paper, rng, robot, robots, seed};
+pub use robots::{Named, paper, rng, robot, robots, root, seed};

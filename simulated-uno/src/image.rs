@@ -240,6 +240,36 @@ impl Image {
             .then_some(first)
     }
 
+    /// Data address of the one variable whose path ends with `path`, such as
+    /// `pulses::LATE`; `None` if there is none or more than one.
+    #[must_use]
+    pub fn variable(&self, path: &str) -> Option<u16> {
+        let in_data = |symbol: &&Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
+        let mut found = self.symbols.iter().filter(in_data).filter(|s| s.is(path));
+        let first = found.next()?;
+        found
+            .all(|other| other.address == first.address)
+            .then_some((first.address - DATA_SPACE) as u16)
+    }
+
+    /// What flash holds: its bytes from address 0 to the last one used, 0xff where
+    /// the image has none.
+    #[must_use]
+    pub fn flash(&self) -> Vec<u8> {
+        let mut flash = vec![0xff; self.code_end() as usize];
+        for (at, bytes) in &self.segments {
+            let at = *at as usize;
+            flash[at..at + bytes.len()].copy_from_slice(bytes);
+        }
+        flash
+    }
+
+    /// Address of the first byte of flash used.
+    pub(crate) fn code_start(&self) -> u32 {
+        let starts = self.segments.iter().map(|(at, _)| *at);
+        starts.min().unwrap_or(0)
+    }
+
     /// Address after the last byte of flash used.
     pub(crate) fn code_end(&self) -> u32 {
         let ends = self

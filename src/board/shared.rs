@@ -85,15 +85,16 @@ impl Counter {
     #[inline(always)]
     pub fn count(&self) {
         // Byte by byte, because the common way through is then four instructions.
-        let low = self.0.low.get().wrapping_add(1);
-        if low == 0 {
-            let high = self.0.high.get().wrapping_add(1);
-            if high == 0 {
-                return;
-            }
-            self.0.high.set(high);
+        match self.0.low.get() {
+            u8::MAX => match self.0.high.get() {
+                u8::MAX => {}
+                high => {
+                    self.0.high.set(high + 1);
+                    self.0.low.set(0);
+                }
+            },
+            low => self.0.low.set(low + 1),
         }
-        self.0.low.set(low);
     }
 
     /// The count so far. Switches interrupts off for about 10 cycles.

@@ -17,13 +17,22 @@ use simulated_uno::Fidelity;
 
 mod console;
 mod costs;
+mod counters;
+mod every_cycle;
 mod gaits;
 mod guard;
+mod held_up;
 mod image;
+mod led;
+mod line;
+mod no_pulse;
+mod power_up;
 mod pulses;
 mod serial;
+mod slow_main;
 mod stopping;
 mod twin;
+mod walk;
 
 /// Frames in a second.
 const SECOND: u64 = 50;

@@ -8,7 +8,7 @@ use simulated_uno::{Edge, Fidelity, Uno, most_pins_high};
 use crate::{SECOND, Status, awake, end_flood, for_each, in_both, moving};
 
 /// The servos' edges among those of the last frames.
-fn servo_edges(uno: &Uno) -> Vec<Edge> {
+pub fn servo_edges(uno: &Uno) -> Vec<Edge> {
     let pins = servo_pins(robot());
     let of_servo = |edge: &Edge| pins.contains(&edge.pin);
     uno.edges().into_iter().filter(of_servo).collect()
@@ -30,14 +30,14 @@ fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
 }
 
 /// A1's first pulse since power-on, on a bench that has not run for frames yet.
-fn first_pulse(bench: &FirmwareBench) -> u64 {
+pub fn first_pulse(bench: &FirmwareBench) -> u64 {
     let edges = servo_edges(&bench.uno);
     edges.first().expect("the robot stands").cycle
 }
 
 /// The widths that the core asks for when it receives no more than the first `received`
 /// bytes.
-fn commanded(
+pub fn commanded(
     bench: &FirmwareBench,
     first: u64,
     received: usize,

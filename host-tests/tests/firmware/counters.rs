@@ -1,0 +1,103 @@
+//! Every counter provoked, and read while it changes.
+
+use lizard_host::sim::frame::FRAME;
+use simulated_uno::Fidelity;
+
+use crate::walk::{SLOT, Walk};
+use crate::{Status, awake, in_both};
+
+#[test]
+fn each_overrun_of_the_receiver_is_counted() {
+    let mut bench = awake(Fidelity::DataSheet);
+    let mut overruns = 0;
+    for n in 1..=5 {
+        // Two bytes wait, a third is in the shift register, and some more come.
+        bench.uno.send(&[b' '; 12]);
+        bench.uno.run_cycles(2_000);
+        bench.uno.hold(8_000);
+        bench.run_ms(20);
+        assert!(bench.uno.overruns() > overruns);
+        overruns = bench.uno.overruns();
+        bench.uno.send(b"\n");
+        bench.run_ms(20);
+        assert_eq!(Status::of(&mut bench).number("rx_lost"), f64::from(n));
+    }
+}
+
+#[test]
+fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
+    in_both(|fidelity| {
+        let mut walk = Walk::stand(fidelity);
+        let late = walk.address("pulses::LATE");
+        let begin = walk.next_frame();
+        let mut seen = [0, 0];
+        // Main reads the count shortly before it writes the answer's first byte.
+        let written = first_byte(&mut walk, begin + SLOT);
+        // It stops anywhere around there, and meanwhile A2's rise is late.
+        for n in 0..500 {
+            let rise = begin + (n + 1) * FRAME + SLOT;
+            walk.run_to(rise - 40_000);
+            walk.bench.uno.poke(late, 255);
+            walk.bench.uno.poke(late + 1, 0);
+            let said = walk.bench.lines().len();
+            ask_at(&mut walk, rise - 2_000 - written);
+            walk.run_to(rise - 2_800 + 2 * n);
+            let now = walk.bench.uno.cycle();
+            walk.bench.uno.stall_main(rise + 1_000 - now);
+            walk.run_to(rise - 600);
+            walk.bench.uno.hold(700);
+            walk.run_to(rise + 250_000);
+            assert_eq!(walk.word("pulses::LATE"), 256);
+            let answer = walk.bench.lines()[said].text.clone();
+            let count = answer
+                .split(' ')
+                .find_map(|pair| pair.strip_prefix("late="));
+            match count {
+                Some("255") => seen[0] += 1,
+                Some("256") => seen[1] += 1,
+                other => panic!("{other:?} in the sweep's step {n}: {answer}"),
+            }
+        }
+        assert!(
+            seen[0] > 20 && seen[1] > 20,
+            "{seen:?}: both sides of the read"
+        );
+    });
+}
+
+/// Asks for the status; its last byte has come at cycle `comes`.
+fn ask_at(walk: &mut Walk, comes: u64) {
+    walk.run_to(comes - 12_000);
+    walk.bench.uno.send(b"status");
+    // The receiver has a byte 9.5 bits after its start.
+    walk.run_to(comes - 1_320);
+    walk.bench.uno.send(b"\n");
+}
+
+/// Cycles from the last byte of `status` to the store of its answer's first.
+fn first_byte(walk: &mut Walk, comes: u64) -> u64 {
+    let said = walk.bench.bytes().len();
+    ask_at(walk, comes);
+    walk.run_to(comes + 100_000);
+    let stored = walk.bench.bytes()[said].cycle - comes;
+    // By the data sheet a byte is stamped at its end.
+    if walk.is_by_the_data_sheet() {
+        stored - 1_360
+    } else {
+        stored
+    }
+}
+
+#[test]
+fn a_counter_that_is_full_stays_full() {
+    let mut walk = Walk::stand(Fidelity::DataSheet);
+    let late = walk.address("pulses::LATE");
+    walk.bench.uno.poke(late, 0xff);
+    walk.bench.uno.poke(late + 1, 0xff);
+    let rise = walk.next_frame();
+    walk.run_to(rise - 600);
+    walk.bench.uno.hold(700);
+    walk.bench.run_ms(20);
+    assert_eq!(walk.late(), 65_535);
+    assert_eq!(Status::of(&mut walk.bench).number("late"), 65_535.0);
+}

@@ -1,0 +1,44 @@
+//! A byte at every cycle of a frame: none moves an edge, none is lost.
+
+use lizard_host::sim::frame::FRAME;
+use simulated_uno::Fidelity;
+
+use crate::in_both;
+use crate::walk::Walk;
+
+/// Bytes and the cycles between two of them, which leave main time to fall asleep. By
+/// the data sheet at every cycle of a frame: the distance shares no factor with a
+/// frame. In stock simavr at every fifth: it shares five.
+const fn sweep(fidelity: Fidelity) -> (u64, u64) {
+    match fidelity {
+        Fidelity::DataSheet => (FRAME, 3_001),
+        Fidelity::Stock => (FRAME / 5, 3_005),
+    }
+}
+
+#[test]
+fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
+    // Not a command, so that answers go out, too, but far fewer bytes than come.
+    let line = format!("{}\n", "z".repeat(31));
+    in_both(|fidelity| {
+        let (bytes, apart) = sweep(fidelity);
+        let mut walk = Walk::begin(fidelity);
+        let answers = walk.bench.lines().len();
+        let start = walk.next_frame();
+        let begin = walk.bench.uno.cycle();
+        for n in 0..bytes {
+            walk.run_to(begin + n * apart);
+            let byte = line.as_bytes()[n as usize % line.len()];
+            walk.bench.uno.send(&[byte]);
+        }
+        walk.bench.run_ms(40);
+        let frames = walk.frames_since(start);
+        assert!(frames.len() as u64 >= bytes * apart / FRAME);
+        for (frame, asked) in frames {
+            assert_eq!(frame.all(), Some(asked), "{frame:?}");
+        }
+        assert_eq!((walk.late(), walk.word("serial::LOST")), (0, 0));
+        let answers = (walk.bench.lines().len() - answers) as u64;
+        assert_eq!(answers, bytes / line.len() as u64);
+    });
+}

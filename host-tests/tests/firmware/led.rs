@@ -1,0 +1,31 @@
+//! The LED on D13, which says that the board lives.
+
+use lizard_host::sim::frame::FRAME;
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::{Edge, Pin};
+
+use crate::in_both;
+
+const LED: Pin = Pin::d(13);
+
+#[test]
+fn the_led_is_lit_at_power_on_and_beats_every_64_hundredths_of_a_second() {
+    in_both(|fidelity| {
+        let mut bench = FirmwareBench::power_on(fidelity);
+        bench.run_ms(5000);
+        let edges = bench.uno.edges();
+        let beats: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
+        assert!(
+            beats[0].high && beats[0].cycle < 3 * FRAME,
+            "{:?}",
+            beats[0]
+        );
+        assert!(beats.len() >= 7, "{} changes in 5 s", beats.len());
+        for (n, pair) in beats.windows(2).enumerate().skip(1) {
+            assert_ne!(pair[0].high, pair[1].high);
+            // When in its frame main gets to it depends on the frame's computation.
+            let apart = pair[1].cycle - pair[0].cycle;
+            assert!(apart.abs_diff(32 * FRAME) < FRAME / 10, "beat {n}: {apart}");
+        }
+    });
+}

@@ -1,0 +1,43 @@
+//! The settings of the serial line, read from the chip and measured on the wire.
+
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::Fidelity;
+
+use crate::in_both;
+
+/// Registers of the USART, data sheet 20.11.
+const UCSR0A: u16 = 0xc0;
+const UCSR0C: u16 = 0xc2;
+const UBRR0: [u16; 2] = [0xc4, 0xc5];
+
+#[test]
+fn the_line_is_set_to_eight_data_bits_no_parity_and_one_stop_bit() {
+    in_both(|fidelity| {
+        let bench = FirmwareBench::boot_with(fidelity);
+        // Asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
+        assert_eq!(bench.uno.peek(UCSR0C), 0b0000_0110);
+    });
+}
+
+#[test]
+fn the_line_runs_at_the_nearest_rate_to_115_200_baud_that_the_clock_allows() {
+    in_both(|fidelity| {
+        let bench = FirmwareBench::boot_with(fidelity);
+        let divisor = u16::from_le_bytes(UBRR0.map(|register| bench.uno.peek(register)));
+        let double = bench.uno.peek(UCSR0A) & 2 != 0;
+        let samples = if double { 8.0 } else { 16.0 };
+        let baud = 16e6 / samples / f64::from(divisor + 1);
+        assert!((baud / 115_200.0 - 1.0).abs() < 0.022, "{baud} baud");
+    });
+}
+
+#[test]
+fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
+    let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
+    bench.say("help");
+    let cycles: Vec<u64> = bench.bytes().iter().map(|byte| byte.cycle).collect();
+    let apart: Vec<u64> = cycles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert_eq!(apart.iter().min(), Some(&1360));
+    let back_to_back = apart.iter().filter(|apart| **apart == 1360).count();
+    assert!(back_to_back > apart.len() * 9 / 10, "of {}", apart.len());
+}

@@ -1,0 +1,73 @@
+//! Pulses that must not be: of a width that no slot has room for, and any after the
+//! switch that ends them for good.
+
+use lizard_host::sim::frame::FRAME;
+
+use crate::walk::{SLOT, Walk};
+use crate::{Status, in_both, neutral_widths};
+
+/// Widths that a slot has room for, cycles.
+const ROOM: std::ops::RangeInclusive<u16> = 1_000..=63_000;
+
+#[test]
+fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
+    in_both(|fidelity| {
+        let mut walk = Walk::stand(fidelity);
+        // Two sets of four widths of two bytes; A3's in both.
+        let frames = walk.address("pulses::FRAMES");
+        let a3 = [frames + 4, frames + 12];
+        let widths = [
+            1, 219, 220, 221, 999, 1_000, 1_001, 30_000, 62_999, 63_000, 63_001, 63_780, 63_781,
+            63_999, 64_000, 65_315, 65_535,
+        ];
+        for width in widths {
+            let start = walk.next_frame();
+            // After the hand-over and before A3's slot is planned.
+            walk.run_to(start + 2_000);
+            for (address, n) in a3.into_iter().flat_map(|a| [(a, 0), (a + 1, 1)]) {
+                let was = u16::from(walk.bench.uno.peek(address));
+                let neutral = (neutral_widths()[2] as u16).to_le_bytes()[n];
+                assert_eq!(was, u16::from(neutral), "where A3's width is");
+                walk.bench.uno.poke(address, u16::to_le_bytes(width)[n]);
+            }
+            walk.run_to(start + FRAME - SLOT / 2);
+            let (frame, asked) = walk.frames_since(start)[0];
+            let expected = ROOM.contains(&width).then_some(u64::from(width));
+            assert_eq!(frame.widths[2], expected, "{width}");
+            for other in [0, 1, 3] {
+                assert_eq!(frame.widths[other], Some(asked[other]), "{width}");
+            }
+            walk.bench.run_ms(40);
+        }
+        assert_eq!(walk.late(), 0);
+    });
+}
+
+#[test]
+fn after_the_switch_no_pulse_begins_the_one_under_way_ends_as_planned_and_the_tick_goes_on() {
+    in_both(|fidelity| {
+        // Moments in every part of a frame: before, in and after each pulse.
+        for n in 0..40 {
+            let mut walk = Walk::stand(fidelity);
+            let start = walk.next_frame();
+            walk.run_to(start + n * FRAME / 40 + 777);
+            let switched = walk.bench.uno.cycle();
+            let switch = walk.address("pulses::ALLOWED");
+            walk.bench.uno.poke(switch, 0);
+            let frames = Status::of(&mut walk.bench).number("frames");
+            walk.bench.run_ms(1000);
+            for edge in crate::pulses::servo_edges(&walk.bench.uno) {
+                // One cycle is that of the store under way.
+                assert!(!edge.high || edge.cycle <= switched + 1, "{n}: {edge:?}");
+            }
+            for (pin, neutral) in walk.bench.pins().into_iter().zip(neutral_widths()) {
+                for pulse in walk.bench.uno.pulses(pin) {
+                    assert_eq!(pulse.width, neutral, "{n}: {pin}");
+                }
+                assert!(!walk.bench.uno.is_high(pin), "{n}: {pin}");
+            }
+            let ticks = Status::of(&mut walk.bench).number("frames") - frames;
+            assert!((50.0..=52.0).contains(&ticks), "{ticks} ticks in a second");
+        }
+    });
+}

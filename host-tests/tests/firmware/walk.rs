@@ -1,0 +1,101 @@
+//! A robot in a gait and the widths that it should send: what the sweeps over every
+//! cycle are compared with.
+
+use lizard_host::sim::frame::{FRAME, Frame, frames, servo_pins};
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::Fidelity;
+
+use crate::pulses::{commanded, first_pulse};
+use crate::{awake, moving};
+
+/// Cycles from one servo's pulse to the next one's.
+pub const SLOT: u64 = FRAME / 5;
+
+/// A robot that has been told a gait and then nothing else that moves.
+pub struct Walk {
+    pub bench: FirmwareBench,
+    fidelity: Fidelity,
+    first: u64,
+    received: usize,
+}
+
+impl Walk {
+    /// In the robot's first gait, a second after it was told to.
+    pub fn begin(fidelity: Fidelity) -> Self {
+        Self::doing(&moving(), fidelity)
+    }
+
+    /// In the neutral pose.
+    pub fn stand(fidelity: Fidelity) -> Self {
+        Self::doing("stand", fidelity)
+    }
+
+    fn doing(line: &str, fidelity: Fidelity) -> Self {
+        let mut bench = awake(fidelity);
+        let first = first_pulse(&bench);
+        bench.say(line);
+        let received = bench.uno.received_by_uno().len();
+        bench.run_ms(1000);
+        Self {
+            bench,
+            fidelity,
+            first,
+            received,
+        }
+    }
+
+    /// Runs to just before the next frame's first pulse and returns the cycle of that
+    /// one. Edges so far are dropped.
+    pub fn next_frame(&mut self) -> u64 {
+        self.bench.run_for_frames(0);
+        let since = self.bench.uno.cycle() - self.first;
+        self.first + since.div_ceil(FRAME) * FRAME
+    }
+
+    /// The frames from cycle `start` to now, and the widths that they should have.
+    pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
+        let count = (self.bench.uno.cycle() + SLOT / 2 - start) / FRAME;
+        let edges = self.bench.uno.edges();
+        let sent = frames(&edges, servo_pins(robot()), start, count);
+        let asked = self.commands(start, count);
+        sent.into_iter().zip(asked).collect()
+    }
+
+    /// The widths that `count` frames from cycle `start` on should have.
+    pub fn commands(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
+        let nothing = Frame {
+            start,
+            starts: [None; 4],
+            widths: [None; 4],
+        };
+        let frames = vec![nothing; count as usize];
+        commanded(&self.bench, self.first, self.received, &frames)
+    }
+
+    /// Whether the simulation is the one corrected by the data sheet.
+    pub fn is_by_the_data_sheet(&self) -> bool {
+        self.fidelity == Fidelity::DataSheet
+    }
+
+    /// Runs to a cycle.
+    pub fn run_to(&mut self, cycle: u64) {
+        self.bench.uno.run_until_cycle(cycle);
+    }
+
+    /// The address of one of the firmware's variables, as in `pulses::LATE`.
+    pub fn address(&self, variable: &str) -> u16 {
+        let address = self.bench.uno.image().variable(variable);
+        address.unwrap_or_else(|| panic!("the firmware has no variable {variable}"))
+    }
+
+    /// What one of its 16-bit variables holds.
+    pub fn word(&self, variable: &str) -> u16 {
+        let address = self.address(variable);
+        u16::from_le_bytes([0, 1].map(|n| self.bench.uno.peek(address + n)))
+    }
+
+    /// Edges counted as late.
+    pub fn late(&self) -> u64 {
+        self.word("pulses::LATE").into()
+    }
+}

@@ -1,0 +1,143 @@
+//! The simulated UNO disturbed: interrupts out of nowhere, a main program that
+//! stands still, registers as something before the firmware may have left them.
+
+use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::{Fidelity, Pin, Uno};
+
+const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
+const LED: Pin = Pin::d(13);
+
+/// The LED is up for 100 cycles of instructions without interrupts, and down for
+/// 99 or so with them.
+const PULSES: &str = "
+        ldi r16, 0x08 $ out SPH, r16
+        ldi r16, 0xff $ out SPL, r16
+        sbi DDRB, 5
+    loop:
+        cli
+        sbi PORTB, 5
+        ldi r20, 32
+    up: dec r20 $ brne up
+        nop
+        cbi PORTB, 5
+        sei
+        ldi r20, 32
+    low: dec r20 $ brne low
+        rjmp loop";
+
+/// Timer1 counts to 9999; its interrupt adds one to GPIOR0 and main toggles D13.
+const COUNT: &str = "#include <avr/io.h>
+    #include <avr/interrupt.h>
+    ISR(TIMER1_COMPA_vect) { GPIOR0++; }
+    int main(void) {
+        DDRB = 0x20; OCR1A = 9999; TIMSK1 = 2; TCCR1B = 9;
+        sei();
+        for (;;) PINB = 0x20;
+    }";
+
+fn widths(uno: &Uno) -> Vec<u64> {
+    uno.pulses(LED).iter().map(|pulse| pulse.width).collect()
+}
+
+#[test]
+fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
+    for fidelity in BOTH {
+        for at in 300..600 {
+            let mut uno = Uno::with_image(assembler(PULSES), fidelity);
+            uno.run_until_cycle(at);
+            uno.hold(5000);
+            uno.run_until_cycle(10_000);
+            let pulses = uno.pulses(LED);
+            let widths = widths(&uno);
+            assert!(widths.iter().all(|width| *width == widths[0]), "at {at}");
+            let apart = |pair: &[simulated_uno::Pulse]| pair[1].start - pair[0].start;
+            let periods: Vec<u64> = pulses.windows(2).map(apart).collect();
+            let longer: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
+            assert_eq!(longer, [&(periods[0] + 5000)], "at {at}");
+        }
+    }
+}
+
+#[test]
+fn a_foreign_interrupt_ends_a_sleep_and_comes_before_the_chips_own() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1 >> 4; }
+        int main(void) {
+            SMCR = 1; OCR1A = 9999; TIMSK1 = 2; TCCR1B = 9;
+            sei();
+            for (;;) asm volatile (\"sleep\");
+        }");
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_until_cycle(9_000);
+        uno.hold(3_000);
+        uno.run_until_cycle(35_000);
+        let marks: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
+        // The first came some 2000 cycles late, the others at once.
+        assert!((120..135).contains(&marks[0]), "{marks:?}");
+        assert!(marks[1..].iter().all(|mark| *mark < 4), "{marks:?}");
+        assert_eq!(marks.len(), 3);
+    }
+}
+
+#[test]
+fn bytes_that_come_while_nothing_is_executed_are_lost_as_on_the_chip() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(USART_RX_vect) { GPIOR0 = UDR0; }
+        int main(void) {
+            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
+            sei();
+            for (;;) {}
+        }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_until_cycle(1000);
+    uno.send(b"abcdefgh");
+    // Three are in; a hold of five more bytes leaves room for two and the last.
+    uno.run_until_cycle(1000 + 3 * 1389 + 100);
+    uno.hold(5 * 1389);
+    uno.run_until_cycle(30_000);
+    let got: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
+    assert_eq!(String::from_utf8_lossy(&got), "abcdeh");
+    assert_eq!(uno.overruns(), 2);
+}
+
+#[test]
+fn main_stands_still_while_interrupts_are_served() {
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(c(COUNT), fidelity);
+        uno.run_until_cycle(25_000);
+        uno.take_edges();
+        uno.stall_main(100_000);
+        uno.run_until_cycle(124_000);
+        assert_eq!(uno.edges().len(), 0, "main toggles nothing");
+        let marks = uno.marks();
+        assert_eq!(marks.len(), 12, "and twelve interrupts came");
+        let steady =
+            |pair: &[simulated_uno::Mark]| pair[1].cycle.abs_diff(pair[0].cycle + 10_000) < 8;
+        assert!(marks.windows(2).all(steady));
+        uno.run_until_cycle(126_000);
+        assert!(uno.edges().len() > 100, "then main goes on");
+    }
+}
+
+#[test]
+fn a_poked_register_does_what_a_store_does() {
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(assembler("sbi DDRB, 5\nend: rjmp end"), fidelity);
+        uno.run_until_cycle(1000);
+        uno.poke(0x25, 0x20);
+        assert!(uno.is_high(LED));
+        uno.poke(0x25, 0);
+        assert!(!uno.is_high(LED));
+        assert_eq!(widths(&uno).len(), 1);
+        // Timer1 begins to count.
+        uno.poke(0x81, 1);
+        uno.run_until_cycle(2000);
+        uno.poke(0x8ff, 0x5a);
+        assert_eq!(uno.peek(0x8ff), 0x5a);
+        uno.poke(0x900, 0x5a);
+        assert_eq!(uno.peek(0x900), 0);
+    }
+}
