@@ -37,6 +37,10 @@ fn agree(bench: &mut FirmwareBench, what: &str) {
     assert_eq!(pulses.offset, LATER, "{what}: the pulses' cycle in the slot");
     let console = compare_console(&simavr, &verdict.account);
     let console = console.unwrap_or_else(|difference| panic!("{what}: {difference}"));
+    assert!(
+        console.offset.abs() <= 1 && console.wander <= 1,
+        "{what}: the console's times differ: {console:?}"
+    );
     println!(
         "{what}: {} bytes received, {pulses}, {console}; {:.1} s in {} ms of processor time",
         received.len(),
