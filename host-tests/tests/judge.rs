@@ -34,7 +34,10 @@ fn agree(bench: &mut FirmwareBench, what: &str) {
     let verdict = done(judge(&FirmwareBench::elf(), &received, end));
     let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
     let pulses = pulses.unwrap_or_else(|difference| panic!("{what}: {difference}"));
-    assert_eq!(pulses.offset, LATER, "{what}: the pulses' cycle in the slot");
+    assert_eq!(
+        pulses.offset, LATER,
+        "{what}: the pulses' cycle in the slot"
+    );
     let console = compare_console(&simavr, &verdict.account);
     let console = console.unwrap_or_else(|difference| panic!("{what}: {difference}"));
     assert!(
