@@ -44,6 +44,9 @@ fn agree(bench: &mut FirmwareBench, what: &str) {
         console.offset.abs() <= 1 && console.wander <= 1,
         "{what}: the console's times differ: {console:?}"
     );
+    let eeprom = bench.uno.eeprom();
+    let differs = eeprom.iter().zip(&verdict.eeprom).position(|(a, b)| a != b);
+    assert_eq!(differs, None, "{what}: the EEPROMs differ at this address");
     println!(
         "{what}: {} bytes received, {pulses}, {console}; {:.1} s in {} ms of processor time",
         received.len(),
