@@ -51,7 +51,7 @@ prove: ## the guard against floating point at every pose there is; about a minut
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
 clean: ## remove everything that was built
-	rm -rf target host/target out
+	rm -rf target host/target out judge/node_modules
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:
@@ -96,7 +96,9 @@ clean: ## remove everything that was built
 	@cd host && cargo test --workspace --no-run --quiet
 
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
+# Where the judge cannot be set up, its tests fail and say so; the others run.
 .test:
+	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
 	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test --workspace --no-fail-fast --quiet
 

@@ -3,6 +3,7 @@
 
 pub mod avr_gcc;
 mod bench;
+pub mod judge;
 pub mod random_robot;
 mod robots;
 
