@@ -2,7 +2,11 @@
 
 fn main() {
     let parts = [
+        "adc",
         "call_timer",
+        "chip",
+        "chip_access",
+        "eeprom",
         "disturbance",
         "handlers",
         "hook",
@@ -11,12 +15,16 @@ fn main() {
         "list",
         "pin_toggle",
         "recorder",
+        "reset",
+        "restart",
         "sender",
         "serial_bytes",
         "stock_uart",
+        "supply",
         "timer1",
         "uno",
         "usart",
+        "watchdog",
     ];
     println!("cargo:rerun-if-changed=shim");
     let compiled = cc::Build::new()

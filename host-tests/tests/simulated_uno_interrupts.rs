@@ -137,6 +137,31 @@ fn enabling_an_interrupt_whose_flag_is_up_fires_it() {
 }
 
 #[test]
+fn an_interrupt_that_is_enabled_while_its_flag_is_up_comes_after_that_instruction() {
+    // sts 2, entry 4, jmp 3, out 1
+    let image = assembler(
+        "jmp start
+         .org 0x34                  ; TIMER1_OVF
+         jmp over
+         .org 0x68
+    start:
+         ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
+         ldi r16, 1 $ sts TCCR1B, r16
+    wait: sbis TIFR1, 0 $ rjmp wait
+         sei
+         out GPIOR0, r16
+         sts TIMSK1, r16
+    end: rjmp end
+    over: out GPIOR0, r16
+         reti",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_cycles(70_000);
+    let marks: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
+    assert_eq!(marks[1] - marks[0], 2 + 4 + 3 + 1);
+}
+
+#[test]
 fn writing_one_timer_flag_leaves_the_others() {
     let image = c("#include <avr/io.h>
         int main(void) {

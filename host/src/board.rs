@@ -45,6 +45,9 @@ pub enum BoardError {
     /// The firmware went where there is nothing.
     #[error("the firmware crashed: {0}")]
     Crashed(String),
+    /// The power has been cut.
+    #[error("the board has no power")]
+    Off,
     /// The watchdog fired.
     #[error("the watchdog reset the firmware")]
     Reset,
@@ -233,6 +236,7 @@ impl Board {
             State::Alive => {}
             State::Halted => return Err(BoardError::Halted),
             State::Crashed { message, .. } => return Err(BoardError::Crashed(message.clone())),
+            State::Off => return Err(BoardError::Off),
         }
         if self.uno.resets() == resets {
             Ok(())

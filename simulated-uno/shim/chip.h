@@ -5,7 +5,13 @@
 #ifndef CHIP_H
 #define CHIP_H
 
+#include <simavr/sim_avr.h>
+#include <simavr/sim_io.h>
+
 #define CHIP_FREQUENCY 16000000u
+#define CHIP_CYCLES_PER_US (CHIP_FREQUENCY / 1000000u)
+#define CHIP_EEPROM 1024u /* bytes */
+#define CHIP_SRAM 0x100u  /* its first address, after the registers */
 #define CHIP_VECTORS 26 /* reset included */
 
 /* I/O registers, as data addresses. */
@@ -13,11 +19,23 @@ enum {
 	REG_PINB = 0x23, REG_PINC = 0x26, REG_PIND = 0x29,
 	REG_TIFR0 = 0x35, REG_TIFR1 = 0x36, REG_TIFR2 = 0x37,
 	REG_EIMSK = 0x3d, REG_GPIOR0 = 0x3e,
+	REG_EECR = 0x3f, REG_EEDR = 0x40, REG_EEARL = 0x41, REG_EEARH = 0x42,
+	REG_TCCR0A = 0x44, REG_TCCR0B = 0x45,
+	REG_MCUSR = 0x54, REG_WDTCSR = 0x60,
 	REG_PCICR = 0x68,
 	REG_TIMSK0 = 0x6e, REG_TIMSK1 = 0x6f, REG_TIMSK2 = 0x70,
+	REG_ADCL = 0x78, REG_ADCH = 0x79, REG_ADCSRA = 0x7a, REG_ADMUX = 0x7c,
+	REG_TCCR1A = 0x80, REG_TCCR1B = 0x81, REG_TCCR2A = 0xb0, REG_TCCR2B = 0xb1,
 	REG_TCNT1L = 0x84, REG_ICR1L = 0x86, REG_OCR1AL = 0x88, REG_OCR1BL = 0x8a,
 	REG_UCSR0A = 0xc0, REG_UCSR0B = 0xc1, REG_UCSR0C = 0xc2,
 	REG_UBRR0L = 0xc4, REG_UBRR0H = 0xc5, REG_UDR0 = 0xc6,
 };
+
+/* simavr's part of this kind, such as "eeprom". Ends the program if this
+ * libsimavr has none. */
+avr_io_t *chip_part(avr_t *avr, const char *kind);
+
+/* Cycles until then, at least one: what simavr's timers want to know. */
+uint64_t chip_cycles_until(const avr_t *avr, uint64_t cycle);
 
 #endif

@@ -32,3 +32,20 @@ uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t 
 	bool is_sbi = instruction->executing && (code & 0xff00) == 0x9a00;
 	return is_sbi ? 1 << (code & 7) : value;
 }
+
+uint8_t instruction_touched_bits(const struct instruction *instruction)
+{
+	uint16_t code = opcode(instruction->avr);
+	bool is_bit = instruction->executing && (code & 0xfd00) == 0x9800; /* cbi, sbi */
+	return is_bit ? 1 << (code & 7) : 0xff;
+}
+
+void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles)
+{
+	instruction->avr->cycle += cycles;
+}
+
+void instruction_end_slice(const struct instruction *instruction)
+{
+	instruction->avr->run_cycle_count = 1;
+}

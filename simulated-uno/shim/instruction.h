@@ -25,5 +25,14 @@ uint64_t instruction_effect_cycle(const struct instruction *instruction);
 /* What a write of `value` to an I/O register really writes: `sbi` touches one
  * bit only, but simavr turns it into a read and a write of all eight. */
 uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value);
+/* The bits of an I/O register that the instruction being executed can change:
+ * one if it is `sbi` or `cbi`, else all. */
+uint8_t instruction_touched_bits(const struct instruction *instruction);
+/* The CPU stands still for `cycles` after the instruction being executed. simavr
+ * does not count them in its slice: end that, too, or timers are late. */
+void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles);
+/* Lets interrupts and timers have their turn right after the instruction being
+ * executed, not after simavr's slice of many. */
+void instruction_end_slice(const struct instruction *instruction);
 
 #endif

@@ -11,23 +11,27 @@
 #define ENTRY_CYCLES 4
 #define WAKE_CYCLES 4
 
-static bool is_due(avr_t *avr, const avr_int_vector_t *vector)
+static bool is_due(const struct interrupts *interrupts, const avr_int_vector_t *vector)
 {
+	avr_t *avr = interrupts->avr;
 	if (!avr_regbit_get(avr, vector->enable))
 		return false;
+	if (vector == interrupts->eeprom_ready.vector)
+		return interrupts->eeprom_ready.up;
 	return vector->raised.reg ? avr_regbit_get(avr, vector->raised) : vector->pending;
 }
 
 /* Rebuilds simavr's list of pending interrupts, which `sleep` looks at, from
  * the flags. Returns the one that outranks the others. */
-static avr_int_vector_t *collect_due(avr_t *avr)
+static avr_int_vector_t *collect_due(const struct interrupts *interrupts)
 {
+	avr_t *avr = interrupts->avr;
 	avr_int_table_t *table = &avr->interrupts;
 	avr_int_vector_t *first = NULL;
 	table->pending.read = table->pending.write = 0;
 	for (int i = 0; i < table->vector_count; i++) {
 		avr_int_vector_t *vector = table->vector[i];
-		vector->pending = is_due(avr, vector);
+		vector->pending = is_due(interrupts, vector);
 		if (!vector->pending)
 			continue;
 		table->pending.buffer[table->pending.write++] = vector;
@@ -50,7 +54,7 @@ static void enter(struct interrupts *interrupts, avr_int_vector_t *vector)
 	if (table->running_ptr < ARRAY_SIZE(table->running))
 		table->running[table->running_ptr++] = vector;
 	avr_clear_interrupt(avr, vector);
-	collect_due(avr);
+	collect_due(interrupts);
 }
 
 bool interrupts_serve(struct interrupts *interrupts)
@@ -58,7 +62,7 @@ bool interrupts_serve(struct interrupts *interrupts)
 	avr_t *avr = interrupts->avr;
 	if (!avr->sreg[S_I]) {
 		if (interrupts->recheck)
-			collect_due(avr);
+			collect_due(interrupts);
 		interrupts->recheck = false;
 		return false;
 	}
@@ -68,7 +72,7 @@ bool interrupts_serve(struct interrupts *interrupts)
 			return false;
 	}
 	interrupts->recheck = false;
-	avr_int_vector_t *vector = collect_due(avr);
+	avr_int_vector_t *vector = collect_due(interrupts);
 	avr->interrupt_state = vector != NULL;
 	if (!vector)
 		return false;
@@ -80,14 +84,25 @@ static void write_enable(avr_t *avr, avr_io_addr_t address, uint8_t value, void 
 {
 	struct interrupts *interrupts = param;
 	avr->data[address] = value;
-	interrupts->recheck = true;
+	interrupts_changed(interrupts);
 }
 
 static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct interrupts *interrupts = param;
 	avr->data[address] &= ~instruction_written_bits(interrupts->instruction, value);
+	interrupts_changed(interrupts);
+}
+
+void interrupts_changed(struct interrupts *interrupts)
+{
 	interrupts->recheck = true;
+	instruction_end_slice(interrupts->instruction);
+}
+
+void interrupts_reset(struct interrupts *interrupts)
+{
+	interrupts->slept = interrupts->recheck = false;
 }
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction)

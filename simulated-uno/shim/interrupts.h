@@ -17,14 +17,22 @@
 
 #include "instruction.h"
 
+/* An interrupt without a flag: it is requested as long as something holds. */
+struct level { const avr_int_vector_t *vector; bool up; };
+
 struct interrupts {
 	const struct instruction *instruction;
 	avr_t *avr;
+	struct level eeprom_ready;
 	bool slept;   /* the interrupt about to be served ends a sleep */
 	bool recheck; /* a flag or an enable bit changed: look at all again */
 };
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction);
+void interrupts_reset(struct interrupts *interrupts);
+/* A flag or an enable bit has changed: looks at all again after the
+ * instruction being executed. */
+void interrupts_changed(struct interrupts *interrupts);
 /* Serves the highest enabled interrupt. True if cycles passed. */
 bool interrupts_serve(struct interrupts *interrupts);
 

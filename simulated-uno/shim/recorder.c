@@ -57,6 +57,17 @@ void recorder_attach(struct recorder *recorder, const struct instruction *instru
 	avr_register_io_write(avr, REG_GPIOR0, on_mark, recorder);
 }
 
+void recorder_release_pins(struct recorder *recorder)
+{
+	avr_t *avr = recorder->instruction->avr;
+	for (int i = 0; i < 3; i++) {
+		const struct recorded_port *port = &recorder->ports[i];
+		for (int bit = 0; bit < port->bits; bit++)
+			avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port->name), bit),
+			              0);
+	}
+}
+
 void recorder_free(struct recorder *recorder)
 {
 	list_free(&recorder->edges);

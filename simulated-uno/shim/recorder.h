@@ -34,6 +34,8 @@ struct recorder {
 
 void recorder_attach(struct recorder *recorder, const struct instruction *instruction,
                      uint32_t pins);
+/* Every recorded pin that is high goes low: a reset makes all pins inputs. */
+void recorder_release_pins(struct recorder *recorder);
 void recorder_free(struct recorder *recorder);
 
 #endif

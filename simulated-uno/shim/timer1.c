@@ -59,3 +59,8 @@ void timer1_attach(struct timer1 *timer1, avr_t *avr)
 	hook_read(avr, REG_ICR1L, read_capture_low, timer1);
 	hook_read(avr, REG_ICR1L + 1, read_temp, timer1);
 }
+
+void timer1_reset(struct timer1 *timer1)
+{
+	timer1->temp = 0;
+}

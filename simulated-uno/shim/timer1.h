@@ -19,5 +19,6 @@ struct timer1 {
 };
 
 void timer1_attach(struct timer1 *timer1, avr_t *avr);
+void timer1_reset(struct timer1 *timer1);
 
 #endif

@@ -15,49 +15,12 @@
 #include <simavr/avr_extint.h>
 #include <simavr/sim_core.h>
 
-#include "call_timer.h"
+#include "board.h"
 #include "chip.h"
-#include "disturbance.h"
-#include "instruction.h"
-#include "interrupts.h"
-#include "pin_toggle.h"
-#include "recorder.h"
-#include "sender.h"
-#include "serial_bytes.h"
-#include "stock_uart.h"
-#include "timer1.h"
-#include "usart.h"
+#include "restart.h"
 
 #define SLICE 256  /* most cycles simavr runs on its own: a run ends this exactly */
-#define PAINT 0xc5 /* fills unused SRAM, so that the stack's lowest mark shows */
 
-struct uno {
-	avr_t *avr;
-	avr_io_t io;            /* our place in simavr's reset chain */
-	bool data_sheet;
-
-	uint64_t now;           /* time reached; ahead of avr->cycle only while asleep */
-	uint64_t asleep;        /* cycles spent asleep */
-	uint64_t resets;        /* resets after power-on (watchdog) */
-	bool stop_at_line;
-	uint16_t data_end;      /* first SRAM address after static data */
-	char message[256];      /* simavr's last complaint */
-
-	struct instruction instruction;
-	struct recorder recorder;
-	struct handlers handlers;
-	struct call_timer call_timer;
-	struct serial_bytes transmitted;
-	struct stock_uart stock_uart;
-	struct sender sender;
-	struct disturbance disturbance;
-
-	/* Corrections by the data sheet; idle in the stock fidelity. */
-	struct interrupts interrupts;
-	struct timer1 timer1;
-	struct pin_toggle pin_toggle;
-	struct usart usart;
-};
 
 static void on_log(avr_t *avr, const int level, const char *format, va_list args)
 {
@@ -80,8 +43,16 @@ static void on_reset(struct avr_io_t *io)
 	no_level_polling(uno->avr);
 	handlers_reset(&uno->handlers);
 	call_timer_reset(&uno->call_timer);
-	if (uno->data_sheet)
+	if (uno->data_sheet) {
+		interrupts_reset(&uno->interrupts);
+		timer1_reset(&uno->timer1);
 		usart_reset(&uno->usart);
+		eeprom_reset(&uno->eeprom);
+		adc_reset(&uno->adc);
+		if (!uno->supply.held)
+			watchdog_reset(&uno->watchdog);
+	}
+	supply_reset(&uno->supply);
 	sender_reset(&uno->sender, uno->now);
 }
 
@@ -136,6 +107,10 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 	serial_bytes_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
+	reset_attach(&uno->reset, avr, data_sheet);
+	eeprom_attach(&uno->eeprom, avr);
+	adc_attach(&uno->adc, avr);
+	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, data_sheet);
 	if (data_sheet) {
 		interrupts_attach(&uno->interrupts, &uno->instruction);
 		timer1_attach(&uno->timer1, avr);
@@ -143,10 +118,13 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 		usart_attach(&uno->usart, &uno->interrupts, uno->stock_uart.uart,
 		             &uno->transmitted);
 		receiver = usart_receiver(&uno->usart);
+		eeprom_correct(&uno->eeprom, &uno->instruction, &uno->interrupts, &uno->reset);
+		adc_correct(&uno->adc, &uno->instruction, &uno->interrupts, &uno->supply);
+		watchdog_attach(&uno->watchdog, &uno->instruction, &uno->interrupts, &uno->reset);
 	}
 	sender_attach(&uno->sender, avr, receiver, baud);
 	join_reset_chain(avr, &uno->io);
-	on_reset(&uno->io);
+	restart(uno, RESET_POWER_ON);
 	return uno;
 }
 
@@ -158,6 +136,8 @@ void uno_free(struct uno *uno)
 	call_timer_free(&uno->call_timer);
 	serial_bytes_free(&uno->transmitted);
 	sender_free(&uno->sender);
+	reset_free(&uno->reset);
+	eeprom_free(&uno->eeprom);
 	free(uno);
 }
 
@@ -173,15 +153,11 @@ void uno_power_on(struct uno *uno, uint32_t code_end, uint16_t data_end)
 {
 	uno->avr->codeend = code_end;
 	uno->data_end = data_end;
-	memset(uno->avr->data + data_end, PAINT, uno->avr->ramend + 1 - data_end);
 }
 
 uint16_t uno_stack_low(const struct uno *uno)
 {
-	uint16_t address = uno->data_end;
-	while (address <= uno->avr->ramend && uno->avr->data[address] == PAINT)
-		address++;
-	return address;
+	return reset_first_used(&uno->reset, uno->data_end);
 }
 
 static void run_instructions(struct uno *uno, uint64_t until)
@@ -228,9 +204,29 @@ static void service_interrupts(struct uno *uno)
 	}
 }
 
+/* Asleep with interrupts off: only a reset ends this. */
+static bool is_halted(const struct uno *uno)
+{
+	if (uno->avr->sreg[S_I])
+		return false;
+	return !uno->data_sheet ||
+	       !(watchdog_may_reset(&uno->watchdog) || supply_may_reset(&uno->supply));
+}
+
+/* simavr lets an enabled interrupt wake a CPU that has interrupts off. */
+static void stay_asleep(avr_t *avr)
+{
+	if (avr->state == cpu_Running && !avr->sreg[S_I])
+		avr->state = cpu_Sleeping;
+}
+
 static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 {
 	avr_t *avr = uno->avr;
+	if (restart_if_asked(uno))
+		return !uno->off;
+	if (uno->supply.held)
+		return restart_wait(uno, until);
 	if (avr->state == cpu_Sleeping)
 		disturbance_serve(&uno->disturbance);
 	bool running = avr->state == cpu_Running;
@@ -242,21 +238,23 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		run_instructions(uno, until);
 	}
 	uint64_t sleep = avr_cycle_timer_process(avr);
-	if (avr->run != normal) { /* the watchdog asks for a reset this way */
-		avr->run(avr);
-		avr->run = normal;
-		uno->resets++;
+	if (avr->run != normal) { /* stock simavr's watchdog asks for a reset this way */
+		restart_by_stock_watchdog(uno, normal);
 		return true;
 	}
+	if (!running)
+		stay_asleep(avr);
 	if (avr->state == cpu_Sleeping) {
-		if (!avr->sreg[S_I]) {
+		if (is_halted(uno)) {
 			avr->state = cpu_Done;
 			return true;
 		}
 		if (!sleep_cycles(uno, sleep, until))
 			return false;
-		if (uno->data_sheet)
+		if (uno->data_sheet) {
 			avr_cycle_timer_process(avr); /* fires what woke it, now */
+			stay_asleep(avr);
+		}
 	}
 	disturbance_serve(&uno->disturbance);
 	service_interrupts(uno);
@@ -268,7 +266,7 @@ enum stop uno_run(struct uno *uno, uint64_t until)
 	avr_t *avr = uno->avr;
 	avr_run_t normal = avr->run;
 	uno->transmitted.line_ended = false;
-	while (avr->cycle < until) {
+	while (avr->cycle < until && !uno->off) {
 		if (avr->state != cpu_Running && avr->state != cpu_Sleeping)
 			break;
 		if (!step(uno, normal, until))
@@ -276,10 +274,14 @@ enum stop uno_run(struct uno *uno, uint64_t until)
 		if (uno->transmitted.line_ended && uno->stop_at_line)
 			break;
 	}
+	restart_if_asked(uno); /* by the last cycle */
 	bool line = uno->transmitted.line_ended && uno->stop_at_line;
 	bool alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
 	/* Asleep and nothing due: the time is `until` though simavr lags. */
-	uno->now = alive && !line && avr->cycle < until ? until : avr->cycle;
+	bool lags = alive && !line && !uno->off && avr->cycle < until;
+	uno->now = lags ? until : avr->cycle;
+	if (uno->off)
+		return STOP_OFF;
 	if (avr->state == cpu_Done)
 		return STOP_HALTED;
 	if (!alive)

@@ -15,7 +15,7 @@
 struct uno;
 
 /* What ended a run. Kept in step with `Stop` in src/ffi.rs. */
-enum stop { STOP_TIME, STOP_LINE, STOP_HALTED, STOP_CRASHED };
+enum stop { STOP_TIME, STOP_LINE, STOP_HALTED, STOP_CRASHED, STOP_OFF };
 
 void uno_set_logger(void);
 /* `pins`: the pins whose edges are recorded, bit n = Arduino pin n. */
@@ -24,7 +24,7 @@ void uno_free(struct uno *uno);
 /* Puts `size` bytes into flash. False if they do not fit. */
 bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t address);
 /* Ends loading: `code_end` bytes of flash are code, static data ends at
- * `data_end`, and the SRAM after it is painted. */
+ * `data_end`. */
 void uno_power_on(struct uno *uno, uint32_t code_end, uint16_t data_end);
 /* Runs until cycle `until`, or the end of the firmware's next line. */
 enum stop uno_run(struct uno *uno, uint64_t until);
@@ -60,5 +60,28 @@ struct list *uno_marks(struct uno *uno);             /* struct mark */
 struct list *uno_transmitted(struct uno *uno);       /* struct serial_byte */
 struct list *uno_received(struct uno *uno);          /* struct serial_byte */
 struct list *uno_calls(struct uno *uno);             /* struct call */
+
+/* EEPROM, supply, ADC and resets: chip_access.c. */
+void uno_reset(struct uno *uno); /* the RESET pin */
+void uno_power_cycle(struct uno *uno);
+void uno_set_boot_loader(struct uno *uno, bool on);
+void uno_set_noise(struct uno *uno, uint64_t seed);
+bool uno_held_in_reset(const struct uno *uno);
+struct list *uno_reset_events(struct uno *uno);      /* struct reset_event */
+uint8_t *uno_eeprom(struct uno *uno);                /* 1024 bytes */
+struct list *uno_eeprom_operations(struct uno *uno); /* struct eeprom_operation */
+/* The bits of a torn byte that are one though they should not be yet, or still
+ * are though they should no longer. */
+void uno_set_torn_ones(struct uno *uno, uint8_t ones);
+void uno_cut_power_at(struct uno *uno, uint64_t cycle);
+/* In the first EEPROM operation to come after `skip` others. */
+void uno_cut_power_in_operation(struct uno *uno, uint64_t skip, bool in_write);
+/* Takes back a cut that has not happened. */
+void uno_keep_power(struct uno *uno);
+double uno_supply(const struct uno *uno);
+void uno_ramp_supply(struct uno *uno, double mv, uint64_t cycles);
+void uno_set_brown_out(struct uno *uno, double mv);
+void uno_set_bandgap(struct uno *uno, double mv);
+void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
 
 #endif

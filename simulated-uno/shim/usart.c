@@ -91,7 +91,7 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 		into_fifo(usart, usart->held, usart->held_frame_error);
 	}
 	usart->vectors->rxc.pending = 0;
-	usart->interrupts->recheck = true;
+	interrupts_changed(usart->interrupts);
 	show_receiver(usart);
 	avr->data[REG_UDR0] = byte;
 	return byte;
@@ -157,7 +157,7 @@ static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *p
 		usart->holding = usart->overrun = false;
 		show_receiver(usart);
 	}
-	usart->interrupts->recheck = true; /* enabling an interrupt whose flag is up fires it */
+	interrupts_changed(usart->interrupts); /* enabling an interrupt whose flag is up fires it */
 }
 
 static void write_plain(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)

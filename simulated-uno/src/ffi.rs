@@ -52,6 +52,26 @@ pub struct RawVector {
     pub cycles: u64,
 }
 
+/// `struct eeprom_operation`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RawOperation {
+    pub cycle: u64,
+    pub address: u16,
+    pub mode: u8,
+    pub old: u8,
+    pub stored: u8,
+    pub torn: u8,
+}
+
+/// `struct reset_event`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RawReset {
+    pub cycle: u64,
+    pub cause: u8,
+}
+
 /// `CHIP_VECTORS`.
 pub const VECTORS: usize = 26;
 
@@ -64,6 +84,7 @@ pub enum Stop {
     Line,
     Halted,
     Crashed,
+    Off,
 }
 
 unsafe extern "C" {
@@ -99,4 +120,21 @@ unsafe extern "C" {
     pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_marks(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_calls(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_reset(uno: *mut RawUno);
+    pub fn uno_power_cycle(uno: *mut RawUno);
+    pub fn uno_set_boot_loader(uno: *mut RawUno, on: bool);
+    pub fn uno_set_noise(uno: *mut RawUno, seed: u64);
+    pub fn uno_held_in_reset(uno: *const RawUno) -> bool;
+    pub fn uno_reset_events(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_eeprom(uno: *mut RawUno) -> *mut u8;
+    pub fn uno_eeprom_operations(uno: *mut RawUno) -> *mut RawList;
+    pub fn uno_set_torn_ones(uno: *mut RawUno, ones: u8);
+    pub fn uno_cut_power_at(uno: *mut RawUno, cycle: u64);
+    pub fn uno_cut_power_in_operation(uno: *mut RawUno, skip: u64, in_write: bool);
+    pub fn uno_keep_power(uno: *mut RawUno);
+    pub fn uno_supply(uno: *const RawUno) -> f64;
+    pub fn uno_ramp_supply(uno: *mut RawUno, mv: f64, cycles: u64);
+    pub fn uno_set_brown_out(uno: *mut RawUno, mv: f64);
+    pub fn uno_set_bandgap(uno: *mut RawUno, mv: f64);
+    pub fn uno_set_analog(uno: *mut RawUno, channel: u8, mv: u16);
 }

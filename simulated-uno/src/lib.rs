@@ -22,16 +22,22 @@
 //! Several [`Uno`]s may run at once on as many threads: libsimavr keeps no
 //! state outside an instance but the logger, which is set once.
 
+mod adc;
+mod eeprom;
 mod disturb;
 mod ffi;
 mod image;
 mod pin;
 mod record;
+mod reset;
+mod supply;
 mod uno;
 
+pub use eeprom::{EEPROM_SIZE, EepromMode, EepromOperation, PowerCut};
 pub use image::{FLASH_SIZE, Image, LoadError, SRAM_END, SRAM_START, Symbol};
 pub use pin::{Edge, Pin, Pulse, most_pins_high, pulses};
 pub use record::{Call, Mark, SerialByte, VectorUse, vector_name};
+pub use reset::{Reset, ResetCause};
 pub use uno::{Fidelity, State, Uno};
 
 /// CPU cycles in a second.

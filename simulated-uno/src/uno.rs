@@ -17,7 +17,8 @@ pub enum Fidelity {
     Stock,
     /// Corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8
     /// from sleep), a two-byte receive buffer with overrun, 10-bit frames,
-    /// Timer1's TEMP byte, flags cleared one by one.
+    /// Timer1's TEMP byte, flags cleared one by one; EEPROM, ADC, watchdog, resets
+    /// and brown-out with their times and limits.
     #[default]
     DataSheet,
 }
@@ -36,13 +37,15 @@ pub enum State {
         /// simavr's words.
         message: String,
     },
+    /// Without power, since [`Uno::cut_power`]; see [`Uno::power_cycle`].
+    Off,
 }
 
 /// A simulated Arduino UNO with a firmware in its flash.
 pub struct Uno {
     pub(crate) raw: *mut RawUno,
     image: Image,
-    state: State,
+    pub(crate) state: State,
 }
 
 // SAFETY: an instance owns all that its pointer reaches; libsimavr's only
@@ -167,6 +170,7 @@ impl Uno {
             ffi::Stop::Time => {}
             ffi::Stop::Line => return true,
             ffi::Stop::Halted => self.state = State::Halted,
+            ffi::Stop::Off => self.state = State::Off,
             ffi::Stop::Crashed => {
                 // SAFETY: a NUL-terminated buffer inside the instance.
                 let message = unsafe { CStr::from_ptr(ffi::uno_message(self.raw)) };
@@ -312,14 +316,14 @@ impl Uno {
         self.cycle() - self.asleep_cycles()
     }
 
-    /// Resets by the watchdog since power-on.
+    /// Resets by the watchdog so far; [`Uno::reset_events`] has them all.
     #[must_use]
     pub fn resets(&self) -> u64 {
         unsafe { ffi::uno_resets(self.raw) }
     }
 
-    /// The most bytes of stack ever in use. SRAM beside static data is painted
-    /// at power-on; a byte counts once the paint is gone.
+    /// The most bytes of stack in use since power-on. SRAM holds noise then; a
+    /// byte counts once it differs.
     #[must_use]
     pub fn stack_used(&self) -> u16 {
         SRAM_END - unsafe { ffi::uno_stack_low(self.raw) }
@@ -372,7 +376,7 @@ impl Uno {
         self.cycle() as f64 / FREQUENCY as f64
     }
 
-    fn list<Raw, Item>(
+    pub(crate) fn list<Raw, Item>(
         &self,
         of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList,
         make: impl Fn(&Raw) -> Item,
@@ -390,7 +394,7 @@ impl Uno {
         }
     }
 
-    fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
+    pub(crate) fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
         // SAFETY: the shim allows its caller to set the count to 0.
         unsafe { (*of(self.raw)).count = 0 }
     }

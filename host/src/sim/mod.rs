@@ -197,6 +197,7 @@ fn ended(recording: &Recording) -> String {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
         State::Crashed { pc, message } => format!("the firmware crashed at {pc:#06x}: {message}"),
+        State::Off => "the board has no power".to_owned(),
     }
 }
 

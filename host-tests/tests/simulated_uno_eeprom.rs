@@ -1,0 +1,535 @@
+//! The simulated EEPROM against the data sheet, chapter 8.4 and 8.6.
+
+use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::{
+    CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Pin, PowerCut, ResetCause, State, Uno,
+};
+
+/// Table 8-1: "Erase and Write in one operation (Atomic Operation)", 3.4 ms.
+const ATOMIC: u64 = 3400 * CYCLES_PER_US;
+/// Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
+const SINGLE: u64 = 1800 * CYCLES_PER_US;
+
+fn marks(uno: &Uno) -> Vec<u8> {
+    uno.marks().iter().map(|mark| mark.value).collect()
+}
+
+fn run(source: &str, cycles: u64) -> Uno {
+    let mut uno = Uno::with_image(assembler(source), Fidelity::DataSheet);
+    uno.run_cycles(cycles);
+    uno
+}
+
+/// `body` with `set(address, byte, mode)` and `get(address)` as the data sheet's
+/// examples have them, and `busy()`.
+fn program(body: &str) -> Image {
+    c(&format!(
+        "#include <avr/io.h>
+        #include <avr/interrupt.h>
+        #include <util/delay.h>
+        #define busy() (EECR & 2)
+        static __attribute__((unused)) void set(unsigned at, unsigned char byte, unsigned char mode) {{
+            while (busy()) {{}}
+            EECR = mode << 4; EEAR = at; EEDR = byte;
+            cli(); EECR |= 4; EECR |= 2;
+        }}
+        static __attribute__((unused)) unsigned char get(unsigned at) {{
+            while (busy()) {{}}
+            EEAR = at; EECR |= 1; return EEDR;
+        }}
+        {body}"
+    ))
+}
+
+fn run_c(body: &str, ms: u64) -> Uno {
+    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+    uno.run_ms(ms);
+    uno
+}
+
+#[test]
+fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
+    let mut uno = run_c(
+        "int main(void) { GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512); for (;;) {} }",
+        1,
+    );
+    assert_eq!(marks(&uno), [0xff, 0xff, 0xff]);
+    let mut contents = [0; EEPROM_SIZE];
+    contents[0] = 1;
+    contents[1023] = 2;
+    contents[512] = 3;
+    uno.set_eeprom(&contents);
+    uno.take_marks();
+    uno.reset();
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [1, 2, 3]);
+    assert_eq!(uno.eeprom(), contents);
+}
+
+#[test]
+fn an_address_has_ten_bits() {
+    // "EEAR9:0": the others always read as zero (8.6.1).
+    let uno = run_c(
+        "int main(void) { EEAR = 0xffff; GPIOR0 = EEARH; GPIOR0 = EEARL; for (;;) {} }",
+        1,
+    );
+    assert_eq!(marks(&uno), [0x03, 0xff]);
+}
+
+/// `sbi EEMPE`, `count` nops, `sbi EEPE`: `count + 2` cycles from one bit to the
+/// other.
+fn armed_then(count: usize) -> Uno {
+    let nops = "nop\n".repeat(count);
+    run(
+        &format!(
+            "ldi r16, 0x5a $ out EEDR, r16
+             sbi EECR, EEMPE
+             {nops}
+             sbi EECR, EEPE
+        end: rjmp end"
+        ),
+        ATOMIC + 100,
+    )
+}
+
+#[test]
+fn eepe_must_be_set_within_four_cycles_after_eempe() {
+    // "When EEMPE is set, setting EEPE within four clock cycles will write data to
+    // the EEPROM at the selected address. If EEMPE is zero, setting EEPE will have
+    // no effect" (8.6.3).
+    for (nops, written) in [(0, true), (1, true), (2, true), (3, false), (9, false)] {
+        let uno = armed_then(nops);
+        let expected = if written { 0x5a } else { 0xff };
+        assert_eq!(uno.eeprom()[0], expected, "{nops} nops");
+        assert_eq!(uno.eeprom_operations().len(), usize::from(written));
+    }
+    let never = run("sbi EECR, EEPE\nend: rjmp end", ATOMIC + 100);
+    assert!(never.eeprom_operations().is_empty());
+}
+
+#[test]
+fn hardware_clears_eempe_after_four_cycles() {
+    // "When EEMPE has been written to one by software, hardware clears the bit to
+    // zero after four clock cycles" (8.6.3). The bit is there from the end of the
+    // sbi on; the n-th `in` after it reads in the n-th cycle.
+    let uno = run(
+        "sbi EECR, EEMPE
+         in r16, EECR $ in r17, EECR $ in r18, EECR $ in r19, EECR $ in r20, EECR
+         out GPIOR0, r16 $ out GPIOR0, r17 $ out GPIOR0, r18
+         out GPIOR0, r19 $ out GPIOR0, r20
+    end: rjmp end",
+        100,
+    );
+    assert_eq!(marks(&uno), [4, 4, 4, 4, 0]);
+}
+
+#[test]
+fn setting_both_bits_at_once_arms_nothing() {
+    // "Write a logical one to the EEMPE bit while writing a zero to EEPE" (8.6.3).
+    let uno = run(
+        "ldi r16, 6 $ out EECR, r16 $ out EECR, r16
+    end: rjmp end",
+        ATOMIC,
+    );
+    assert!(uno.eeprom_operations().is_empty());
+}
+
+#[test]
+fn clearing_a_bit_with_cbi_does_not_arm_again() {
+    // "the CBI and SBI instructions will only operate on the specified bit" (8.5).
+    let uno = run(
+        "sbi EECR, EEMPE
+         cbi EECR, EERIE
+         nop
+         sbi EECR, EEPE
+    end: rjmp end",
+        ATOMIC,
+    );
+    assert!(uno.eeprom_operations().is_empty(), "5 cycles after EEMPE");
+}
+
+#[test]
+fn eepe_reads_one_for_as_long_as_table_8_1_says() {
+    // EEPM: 00 3.4 ms, 01 erase only 1.8 ms, 10 write only 1.8 ms.
+    for (mode, duration, kind) in [
+        (0, ATOMIC, EepromMode::EraseAndWrite),
+        (1, SINGLE, EepromMode::EraseOnly),
+        (2, SINGLE, EepromMode::WriteOnly),
+    ] {
+        let body = format!(
+            "int main(void) {{ set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1; for (;;) {{}} }}"
+        );
+        let uno = run_c(&body, 5);
+        let operation = uno.eeprom_operations()[0];
+        assert_eq!((operation.address, operation.mode), (7, kind));
+        let busy = uno.marks()[0].cycle - operation.cycle;
+        assert!((duration..duration + 10).contains(&busy), "{busy}");
+    }
+}
+
+#[test]
+fn erasing_sets_all_bits_and_writing_alone_clears_some() {
+    let body = "int main(void) {
+        set(0, 0x0f, 2); set(0, 0xf5, 2);
+        set(1, 0x0f, 0); set(1, 0x55, 1);
+        set(2, 0x0f, 0); set(2, 0xf0, 0);
+        for (;;) {} }";
+    let uno = run_c(body, 30);
+    assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
+    let bytes: Vec<(u8, u8)> = uno
+        .eeprom_operations()
+        .iter()
+        .map(|operation| (operation.old, operation.new))
+        .collect();
+    assert_eq!(
+        bytes,
+        [
+            (0xff, 0x0f),
+            (0x0f, 0x05),
+            (0xff, 0x0f),
+            (0x0f, 0xff),
+            (0xff, 0x0f),
+            (0x0f, 0xf0)
+        ]
+    );
+}
+
+#[test]
+fn a_byte_has_its_old_value_until_its_time_is_over() {
+    let mut uno = Uno::with_image(
+        program("int main(void) { set(9, 0x21, 0); for (;;) {} }"),
+        Fidelity::DataSheet,
+    );
+    uno.run_until(1000, 1, |uno| !uno.eeprom_operations().is_empty());
+    let end = uno.eeprom_operations()[0].cycle + ATOMIC;
+    uno.run_until_cycle(end - 10);
+    assert_eq!(uno.eeprom()[9], 0xff);
+    uno.run_until_cycle(end + 10);
+    assert_eq!(uno.eeprom()[9], 0x21);
+}
+
+#[test]
+fn while_busy_address_mode_and_data_of_the_running_write_cannot_be_changed() {
+    // "If a write operation is in progress, it is neither possible to read the
+    // EEPROM, nor to change the EEAR Register"; "While EEPE is set, any write to
+    // EEPMn will be ignored" (8.6.3).
+    let body = "int main(void) {
+        set(0x123, 0x42, 0);
+        EEAR = 0x2aa; EEDR = 0x99; EECR = 0x20;
+        GPIOR0 = EEARH; GPIOR0 = EEARL; GPIOR0 = EECR;
+        while (busy()) {}
+        EEAR = 0x2aa; GPIOR0 = EEARL;
+        for (;;) {} }";
+    let uno = run_c(body, 5);
+    assert_eq!(marks(&uno), [0x01, 0x23, 0x02, 0xaa]);
+    assert_eq!(uno.eeprom()[0x123], 0x42);
+    assert_eq!(uno.eeprom()[0x2aa], 0xff);
+}
+
+#[test]
+fn while_busy_a_read_and_a_second_write_are_ignored() {
+    let body = "int main(void) {
+        set(5, 0x42, 0);
+        EEDR = 0x77;
+        EECR |= 1; GPIOR0 = EEDR;
+        EECR = 4; EECR |= 2;
+        while (busy()) {}
+        for (;;) {} }";
+    let uno = run_c(body, 10);
+    assert_eq!(marks(&uno), [0x77]);
+    assert_eq!(uno.eeprom_operations().len(), 1);
+    assert_eq!(uno.eeprom()[5], 0x42);
+}
+
+#[test]
+fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
+    // "When the EEPROM is read, the CPU is halted for four clock cycles before the
+    // next instruction is executed"; "When EEPE has been set, the CPU is halted for
+    // two cycles before the next instruction is executed" (8.6.3).
+    let uno = run(
+        "sbi DDRB, 5
+         sbi PORTB, 5
+         sbi EECR, EERE
+         cbi PORTB, 5
+         sbi EECR, EEMPE
+         sbi PORTB, 5
+         sbi EECR, EEPE
+         cbi PORTB, 5
+         sbi PORTB, 5
+         sbi EECR, EEPE
+         cbi PORTB, 5
+    end: rjmp end",
+        100,
+    );
+    let widths: Vec<u64> = uno.pulses(Pin::d(13)).iter().map(|p| p.width).collect();
+    // sbi 2 + halt + cbi 2; the last EEPE is ignored.
+    assert_eq!(widths, [8, 6, 4]);
+}
+
+#[test]
+fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
+    // Timer1 counts while the CPU stands still, so its interrupt is not late.
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
+        int main(void) {
+            OCR1A = 1999; TIMSK1 = 2; TCCR1B = 9; sei();
+            for (;;) { EECR |= 1; EECR |= 1; EECR |= 1; EECR |= 1; }
+        }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(20);
+    let counts = marks(&uno);
+    assert!(counts.len() > 150);
+    let spread = counts.iter().max().unwrap() - counts.iter().min().unwrap();
+    assert!(spread <= 6, "{counts:?}"); // the longest instruction: sbi and its halt
+}
+
+#[test]
+fn the_ready_interrupt_is_a_level_while_eepe_is_zero() {
+    // "The EEPROM Ready interrupt generates a constant interrupt when EEPE is
+    // cleared" (8.6.3). The handler writes three bytes, then stops itself.
+    let image = program(
+        "static unsigned char count;
+        ISR(EE_READY_vect) {
+            GPIOR0 = count;
+            if (count == 3) { EECR &= ~8; return; }
+            EEAR = count; EEDR = count + 1; count++;
+            EECR |= 4; EECR |= 2;
+        }
+        int main(void) { SMCR = 1; EECR = 8; sei(); for (;;) asm volatile (\"sleep\"); }",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(15);
+    assert_eq!(marks(&uno), [0, 1, 2, 3]);
+    assert_eq!(uno.eeprom()[..4], [1, 2, 3, 0xff]);
+    let asleep = uno.asleep_cycles() as f64 / uno.cycle() as f64;
+    assert!(asleep > 0.6, "it sleeps while a byte is programmed");
+    let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
+    for pair in starts.windows(2) {
+        assert!((ATOMIC..ATOMIC + 150).contains(&(pair[1] - pair[0])));
+    }
+}
+
+#[test]
+fn the_ready_interrupt_comes_at_once_and_again_after_one_instruction() {
+    let uno = run(
+        "jmp start
+         .org 0x58                  ; EE_READY
+         sbi GPIOR0, 0
+         reti
+         .org 0x68
+    start:
+         ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
+         sei
+         nop
+         sbi EECR, EERIE
+         nop
+    end: rjmp end",
+        400,
+    );
+    // entry 4, sbi 2, reti 4, one instruction (nop 1, then rjmp 2)
+    let cycles: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
+    // jmp 3, ldi out ldi out 4, sei 1, nop 1, sbi 2: at 11; entry 4, sbi 2.
+    assert_eq!(cycles[0], 17);
+    assert_eq!(cycles[1] - cycles[0], 4 + 1 + 4 + 2);
+    assert_eq!(cycles[2] - cycles[1], 4 + 2 + 4 + 2);
+}
+
+#[test]
+fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
+    // "If a reset occurs while a write operation is in progress, the write
+    // operation will be completed provided that the power supply voltage is
+    // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
+    // unless the EEPROM is busy programming" (8.6.3).
+    let mut uno = Uno::with_image(
+        program(
+            "int main(void) {
+                GPIOR0 = EECR;
+                if (!busy()) set(3, 0x42, 2);
+                while (busy()) {}
+                GPIOR0 = 0xaa;
+                for (;;) {} }",
+        ),
+        Fidelity::DataSheet,
+    );
+    uno.run_ms(1);
+    uno.reset();
+    uno.run_cycles(100);
+    assert_eq!(marks(&uno), [0x00, 0x22]);
+    uno.run_ms(5);
+    assert_eq!(uno.eeprom()[3], 0x42);
+    let end = uno.marks()[2].cycle - uno.eeprom_operations()[0].cycle;
+    assert!((SINGLE..SINGLE + 20).contains(&end), "{end}");
+    uno.reset();
+    uno.run_cycles(100);
+    assert_eq!(marks(&uno)[3], 0x00, "EEPM after a reset when idle");
+}
+
+#[test]
+fn a_reset_disarms_eempe() {
+    let image = assembler(
+        "in r16, GPIOR1
+         sbi EECR, EEPE
+         sbi EECR, EEMPE
+    end: rjmp end",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_cycles(5); // up to and with the sbi to EEMPE
+    uno.reset();
+    uno.run_cycles(100);
+    assert!(uno.eeprom_operations().is_empty());
+}
+
+/// Writes 0x35 over 0xa6 at address 0, then 0x5c at address 1.
+const TWO_BYTES: &str = "int main(void) {
+    if (get(0) != 0xa6) { GPIOR0 = get(0); for (;;) {} }
+    set(0, 0x35, 0); set(1, 0x5c, 0); while (busy()) {}
+    for (;;) {} }";
+
+fn two_bytes() -> Uno {
+    let mut uno = Uno::with_image(program(TWO_BYTES), Fidelity::DataSheet);
+    let mut contents = [0xff; EEPROM_SIZE];
+    contents[0] = 0xa6;
+    uno.set_eeprom(&contents);
+    uno
+}
+
+#[test]
+fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
+    for ones in [0, 0x01, 0x58, 0x0f, 0xff] {
+        let mut uno = two_bytes();
+        uno.cut_power(PowerCut::InErase(0), ones);
+        assert_eq!(*uno.run_ms(20), State::Off);
+        assert_eq!(uno.eeprom()[..2], [0xa6 | ones, 0xff]);
+        let operations = uno.eeprom_operations();
+        assert_eq!(operations.len(), 1);
+        assert!(operations[0].torn);
+        assert_eq!(operations[0].new, 0xa6 | ones);
+        let after = uno.cycle() - operations[0].cycle;
+        assert!(after.abs_diff(ATOMIC / 4) < 10, "{after}");
+    }
+}
+
+#[test]
+fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
+    for ones in [0, 0x80, 0x4a, 0xff] {
+        let mut uno = two_bytes();
+        uno.cut_power(PowerCut::InWrite(1), ones);
+        assert_eq!(*uno.run_ms(20), State::Off);
+        assert_eq!(uno.eeprom()[..2], [0x35, 0x5c | ones]);
+        let operations = uno.eeprom_operations();
+        assert_eq!([operations[0].torn, operations[1].torn], [false, true]);
+        let after = uno.cycle() - operations[1].cycle;
+        assert!(after.abs_diff(ATOMIC / 4 * 3) < 10, "{after}");
+    }
+}
+
+#[test]
+fn a_power_cut_at_a_cycle_takes_the_phase_of_that_moment() {
+    let mut whole = two_bytes();
+    whole.run_ms(20);
+    let start = whole.eeprom_operations()[1].cycle;
+    for (after, expected) in [
+        (100, 0xff),
+        (ATOMIC / 2 - 100, 0xff),
+        (ATOMIC / 2 + 100, 0x5e),
+        (ATOMIC - 100, 0x5e),
+        (ATOMIC + 100, 0x5c),
+    ] {
+        let mut uno = two_bytes();
+        uno.cut_power(PowerCut::AtCycle(start + after), 0x02);
+        assert_eq!(*uno.run_ms(20), State::Off);
+        assert!(uno.cycle() - (start + after) < 5);
+        assert_eq!(uno.eeprom()[..2], [0x35, expected], "{after}");
+    }
+}
+
+#[test]
+fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
+    let torn = |mode: u8, when: PowerCut, ones: u8| {
+        let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
+        let mut uno = Uno::with_image(program(&body), Fidelity::DataSheet);
+        uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
+        uno.cut_power(when, ones);
+        assert_eq!(*uno.run_ms(5), State::Off);
+        uno.eeprom()[0]
+    };
+    for when in [PowerCut::InErase(0), PowerCut::InWrite(0)] {
+        assert_eq!(torn(1, when, 0x11), 0xa6 | 0x11);
+        assert_eq!(torn(2, when, 0x82), 0xa6 & (0x35 | 0x82));
+        assert_eq!(torn(2, when, 0x00), 0xa6 & 0x35);
+    }
+}
+
+#[test]
+fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
+    let mut uno = two_bytes();
+    uno.cut_power(PowerCut::InWrite(0), 0x08);
+    uno.run_ms(20);
+    let at = uno.cycle();
+    assert_eq!(*uno.run_ms(20), State::Off, "nothing runs without power");
+    assert_eq!(uno.cycle(), at);
+    uno.power_cycle();
+    assert_eq!(*uno.run_ms(20), State::Alive);
+    assert_eq!(marks(&uno), [0x35 | 0x08]);
+    let causes: Vec<ResetCause> = uno.reset_events().iter().map(|r| r.cause).collect();
+    assert_eq!(causes, [ResetCause::PowerOn, ResetCause::PowerOn]);
+}
+
+#[test]
+fn a_power_cut_comes_once() {
+    let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
+    for when in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
+        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+        uno.cut_power(when, 0xff);
+        assert_eq!(*uno.run_ms(5), State::Off);
+        uno.power_cycle();
+        assert_eq!(*uno.run_ms(5), State::Alive);
+        assert_eq!(uno.eeprom()[0], 0xfe);
+    }
+}
+
+#[test]
+fn a_reset_before_a_power_cut_does_not_prevent_it() {
+    for when in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
+        let mut uno = two_bytes();
+        uno.cut_power(when, 0x02);
+        uno.run_ms(1);
+        uno.reset();
+        assert_eq!(*uno.run_ms(20), State::Off);
+        assert_eq!(uno.eeprom()[0], 0x37);
+        assert!(uno.cycle().abs_diff(40_900) < 1_000, "{}", uno.cycle());
+    }
+}
+
+#[test]
+fn a_power_cut_that_is_taken_back_does_not_come() {
+    let mut uno = two_bytes();
+    uno.cut_power(PowerCut::AtCycle(60_000), 0);
+    uno.cut_power(PowerCut::InErase(1), 0);
+    uno.keep_power();
+    assert_eq!(*uno.run_ms(20), State::Alive);
+    assert_eq!(uno.eeprom()[..2], [0x35, 0x5c]);
+}
+
+#[test]
+fn a_power_cycle_in_a_write_tears_it() {
+    let mut uno = two_bytes();
+    uno.set_torn_bits(0x40);
+    uno.run_ms(1);
+    uno.power_cycle();
+    assert_eq!(uno.eeprom()[0], 0xe6);
+}
+
+#[test]
+fn stock_simavr_writes_at_once_and_never_reads_busy() {
+    let image = program("int main(void) { set(0, 0x21, 1); GPIOR0 = EECR; for (;;) {} }");
+    let mut uno = Uno::with_image(image, Fidelity::Stock);
+    uno.run_cycles(200);
+    assert_eq!(
+        marks(&uno),
+        [0x10],
+        "stock simavr has learnt this: drop the correction"
+    );
+    assert_eq!(uno.eeprom()[0], 0x21, "though it was an erase");
+}

@@ -1,0 +1,297 @@
+//! Resets of the simulated UNO against the data sheet, chapter 11.
+
+use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::{
+    CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, Pulse, ResetCause, SRAM_END, SRAM_START, State,
+    Uno,
+};
+
+const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
+
+fn marks(uno: &Uno) -> Vec<u8> {
+    uno.marks().iter().map(|mark| mark.value).collect()
+}
+
+fn causes(uno: &Uno) -> Vec<ResetCause> {
+    uno.reset_events().iter().map(|reset| reset.cause).collect()
+}
+
+/// Shows MCUSR at each start and leaves it.
+fn show_cause() -> Image {
+    c("#include <avr/io.h>
+    int main(void) { GPIOR0 = MCUSR; for (;;) {} }")
+}
+
+#[test]
+fn mcusr_gathers_the_causes_until_power_on() {
+    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the
+    // flag" (11.9.1), of EXTRF, BORF and WDRF.
+    let mut uno = Uno::with_image(show_cause(), Fidelity::DataSheet);
+    uno.run_ms(1);
+    uno.reset();
+    uno.run_ms(1);
+    uno.set_supply_mv(2500.0);
+    uno.run_ms(1);
+    uno.set_supply_mv(5000.0);
+    uno.run_ms(1);
+    uno.power_cycle();
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [0x01, 0x03, 0x07, 0x01]);
+    assert_eq!(
+        causes(&uno),
+        [
+            ResetCause::PowerOn,
+            ResetCause::External,
+            ResetCause::BrownOut,
+            ResetCause::PowerOn
+        ]
+    );
+}
+
+#[test]
+fn software_clears_flags_of_mcusr_and_cannot_set_them() {
+    let image = c("#include <avr/io.h>
+        int main(void) {
+            GPIOR0 = MCUSR; MCUSR = 0x0e; GPIOR0 = MCUSR;
+            MCUSR = 0x0f; GPIOR0 = MCUSR;
+            for (;;) {} }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(1);
+    uno.reset();
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [1, 0, 0, 2, 2, 2]);
+}
+
+#[test]
+fn stock_simavr_forgets_every_cause_but_the_last() {
+    let mut uno = Uno::with_image(show_cause(), Fidelity::Stock);
+    uno.run_ms(1);
+    uno.reset();
+    uno.run_ms(1);
+    uno.power_cycle();
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [1, 2, 1]);
+}
+
+#[test]
+fn sram_and_registers_survive_every_reset_but_power_on() {
+    // "During reset, all I/O Registers are set to their initial values" (11.1):
+    // SRAM and r0 to r31 are none.
+    let image = assembler(
+        "lds r18, 0x0234
+         out GPIOR0, r18
+         out GPIOR0, r2
+         ldi r16, 0x5a $ sts 0x0234, r16 $ mov r2, r16
+         ldi r16, 0x77 $ out GPIOR1, r16 $ sts OCR1AL, r16
+    end: rjmp end",
+    );
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_ms(1);
+        assert_eq!(uno.peek(0x4a), 0x77);
+        uno.reset();
+        assert_eq!(uno.peek(0x4a), 0, "GPIOR1 is an I/O register");
+        uno.run_ms(1);
+        assert_eq!(marks(&uno)[2..], [0x5a, 0x5a]);
+        uno.power_cycle();
+        uno.run_ms(1);
+        let after = &marks(&uno)[4..];
+        assert_ne!(after, [0x5a, 0x5a], "noise");
+    }
+}
+
+#[test]
+fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
+    let sram = |seed: Option<u64>| {
+        let mut uno = Uno::with_image(assembler("end: rjmp end"), Fidelity::DataSheet);
+        if let Some(seed) = seed {
+            uno.set_noise_seed(seed);
+            uno.power_cycle();
+        }
+        let bytes: Vec<u8> = (SRAM_START..SRAM_END).map(|at| uno.peek(at)).collect();
+        bytes
+    };
+    assert_eq!(sram(None), sram(None), "the same in every run");
+    assert_eq!(sram(Some(1)), sram(Some(1)));
+    assert_ne!(sram(Some(1)), sram(Some(2)));
+    let ones: u32 = sram(Some(0)).iter().map(|byte| byte.count_ones()).sum();
+    assert!((7_500..8_900).contains(&ones), "{ones} of 16 384 bits");
+}
+
+#[test]
+fn each_power_on_leaves_other_noise_and_the_stack_is_measured_anew() {
+    let image = assembler(
+        "ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
+         push r16 $ push r16 $ push r16
+    end: rjmp end",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let first = uno.peek(0x300);
+    uno.run_ms(1);
+    assert_eq!(uno.stack_used(), 3);
+    uno.reset();
+    assert_eq!(uno.stack_used(), 3, "since power-on");
+    uno.power_cycle();
+    assert_eq!(uno.stack_used(), 0);
+    let second = uno.peek(0x300);
+    uno.power_cycle();
+    assert!(first != second || second != uno.peek(0x300));
+}
+
+#[test]
+fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
+    // "the I/O ports of the AVR are immediately reset to their initial state when a
+    // reset source goes active" (11.1).
+    let image = c("#include <avr/io.h>
+        int main(void) {
+            DDRB = 2; PORTB = 2;
+            for (;;) {} }");
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_ms(1);
+        assert!(uno.is_high(Pin::d(9)));
+        uno.reset();
+        assert!(!uno.is_high(Pin::d(9)));
+        uno.run_ms(1);
+        uno.cut_power(PowerCut::AtCycle(3 * CYCLES_PER_MS), 0);
+        assert_eq!(*uno.run_ms(9), State::Off);
+        assert!(!uno.is_high(Pin::d(9)));
+        let pulses: Vec<Pulse> = uno.pulses(Pin::d(9));
+        let ends: Vec<u64> = pulses
+            .iter()
+            .map(|pulse| pulse.start + pulse.width)
+            .collect();
+        assert_eq!(ends[0], CYCLES_PER_MS);
+        assert!(ends[1] - 3 * CYCLES_PER_MS < 5);
+        assert_eq!(ends.len(), 2);
+    }
+}
+
+#[test]
+fn a_timer_stands_still_after_a_reset() {
+    // CTC with a match every 1000 cycles; after the reset the program only looks.
+    let image = c("#include <avr/io.h>
+        int main(void) {
+            if (MCUSR & 2) {
+                OCR1A = 77; GPIOR0 = TCNT1L;
+                __builtin_avr_delay_cycles(5000);
+                GPIOR0 = TCNT1L; GPIOR0 = TIFR1; GPIOR0 = TCCR1B;
+                for (;;) {}
+            }
+            OCR1A = 999; TCCR1B = 9;
+            for (;;) {} }");
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_ms(1);
+        uno.reset();
+        uno.run_ms(1);
+        assert_eq!(marks(&uno), [0, 0, 0, 0]);
+    }
+}
+
+#[test]
+fn temp_is_cleared_by_a_reset() {
+    let image = assembler(
+        "ldi r16, 0x12 $ sts OCR1AL, r16 $ lds r17, OCR1AH $ out GPIOR0, r17
+         ldi r16, 0x34 $ sts OCR1AH, r16
+    end: rjmp end",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(1);
+    uno.reset();
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [0, 0]);
+}
+
+#[test]
+fn a_reset_revives_a_firmware_that_sleeps_for_ever_or_has_crashed() {
+    for source in [
+        "ldi r16, 1 $ out SMCR, r16 $ cli $ sleep",
+        "ldi r16, 1 $ sts 0x0fff, r16",
+    ] {
+        let image = assembler(&format!("out GPIOR0, r1\n{source}\nend: rjmp end"));
+        let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+        assert_ne!(*uno.run_ms(1), State::Alive);
+        uno.reset();
+        assert_eq!(*uno.state(), State::Alive);
+        assert_ne!(*uno.run_ms(1), State::Alive);
+        assert_eq!(uno.marks().len(), 2);
+    }
+}
+
+#[test]
+fn a_board_that_sleeps_is_reset_at_the_cycle_reached() {
+    let image = assembler(
+        "out GPIOR0, r1 $ ldi r16, 1 $ out SMCR, r16 $ sei
+    end: sleep $ rjmp end",
+    );
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_cycles(12_345);
+    let asleep = uno.asleep_cycles();
+    uno.reset();
+    assert_eq!((uno.cycle(), uno.asleep_cycles()), (12_345, asleep));
+    uno.run_cycles(100);
+    assert_eq!(uno.marks()[1].cycle, 12_345 + 1);
+}
+
+#[test]
+fn a_serial_line_goes_on_after_a_reset() {
+    let image = c("#include <avr/io.h>
+        int main(void) {
+            UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
+            for (;;) { while (!(UCSR0A & 0x80)) {} UDR0 = UDR0; } }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(1);
+    uno.send(b"abcdefgh");
+    uno.run_cycles(3 * 1389 + 700);
+    uno.reset();
+    uno.run_ms(3);
+    let text: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
+    // `c` was on its way back, `d` on its way in.
+    assert_eq!(text, b"abefgh");
+}
+
+#[test]
+fn behind_a_boot_loader_mcusr_is_zero_and_the_watchdog_off() {
+    // Optiboot: `ch = MCUSR; MCUSR = 0; if (!(ch & _BV(EXTRF))) appStart();`, and
+    // appStart begins with watchdogConfig(WATCHDOG_OFF).
+    let image = c("#include <avr/io.h>
+        #include <avr/wdt.h>
+        int main(void) {
+            GPIOR0 = MCUSR; GPIOR0 = WDTCSR;
+            static volatile unsigned char starts __attribute__((section(\".noinit\")));
+            if (GPIOR0 == 0 && starts != 0x99) { starts = 0x99; wdt_enable(WDTO_15MS); }
+            for (;;) {} }");
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.set_boot_loader(true);
+    uno.run_ms(60);
+    uno.reset();
+    uno.run_ms(20);
+    uno.power_cycle();
+    uno.run_cycles(1000);
+    assert_eq!(marks(&uno), [0; 8]);
+    assert_eq!(
+        causes(&uno),
+        [
+            ResetCause::PowerOn,
+            ResetCause::Watchdog,
+            ResetCause::External,
+            ResetCause::PowerOn
+        ],
+        "the bench knows them all the same"
+    );
+    uno.set_boot_loader(false);
+    uno.reset();
+    uno.run_cycles(1000);
+    assert_eq!(marks(&uno)[8..], [2, 0]);
+}
+
+#[test]
+fn a_boot_loader_set_before_the_first_cycle_may_be_taken_back() {
+    let mut uno = Uno::with_image(show_cause(), Fidelity::DataSheet);
+    uno.set_boot_loader(true);
+    uno.set_boot_loader(false);
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [1]);
+    assert_eq!(causes(&uno), [ResetCause::PowerOn]);
+}

@@ -1,0 +1,296 @@
+//! The simulated watchdog against the data sheet, chapter 11.8 and 11.9.2.
+
+use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
+
+/// 2 048 cycles of the 128 kHz oscillator: the shortest time-out.
+const SHORTEST: u64 = 16 * CYCLES_PER_MS;
+
+fn marks(uno: &Uno) -> Vec<u8> {
+    uno.marks().iter().map(|mark| mark.value).collect()
+}
+
+/// Cycles of the watchdog's resets.
+fn bites(uno: &Uno) -> Vec<u64> {
+    let resets = uno.reset_events().into_iter();
+    let bites = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
+    bites.map(|reset| reset.cycle).collect()
+}
+
+/// `set(value)` runs the timed sequence and writes `value`.
+fn program(body: &str) -> Image {
+    c(&format!(
+        "#include <avr/io.h>
+        #include <avr/interrupt.h>
+        #include <util/delay.h>
+        #define wdr() asm volatile (\"wdr\")
+        #define set(value) do {{ unsigned char v = (value); asm volatile ( \
+            \"sts %1, %2\\n sts %1, %0\" :: \"r\"(v), \"n\"(_SFR_MEM_ADDR(WDTCSR)), \
+            \"r\"((unsigned char)0x18)); }} while (0)
+        {body}"
+    ))
+}
+
+fn run(body: &str, ms: u64) -> Uno {
+    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+    uno.run_ms(ms);
+    uno
+}
+
+#[test]
+fn every_prescaler_gives_the_time_out_of_table_11_2() {
+    // "WDP3:0 0 to 9: 2K to 1024K cycles, 16 ms to 8.0 s" at 128 kHz.
+    for wdp in 0..10u8 {
+        let value = 0x08 | (wdp & 7) | (wdp & 8) << 2;
+        // Once only, so that the reset is seen before the next.
+        let body = format!(
+            "int main(void) {{
+                if (MCUSR & 8) {{ MCUSR = 0; set(0); for (;;) {{}} }}
+                GPIOR0 = 1; set({value}); SMCR = 1; asm volatile (\"sleep\"); for (;;) {{}} }}"
+        );
+        let mut uno = Uno::with_image(program(&body), Fidelity::DataSheet);
+        let expected = (2048u64 << wdp) * 125;
+        uno.run_cycles(expected + CYCLES_PER_MS);
+        let bites = bites(&uno);
+        assert_eq!(bites.len(), 1, "WDP = {wdp}");
+        let passed = bites[0] - uno.marks()[0].cycle;
+        assert!((expected..expected + 12).contains(&passed), "{passed}");
+    }
+}
+
+#[test]
+fn wdr_starts_the_time_anew() {
+    let body = "int main(void) {
+        MCUSR = 0; set(8);
+        for (unsigned char i = 0; i < 10; i++) { _delay_ms(15); GPIOR0 = i; wdr(); }
+        for (;;) {} }";
+    let uno = run(body, 175);
+    let last = uno.marks()[9].cycle;
+    let passed = bites(&uno)[0] - last;
+    assert!((SHORTEST..SHORTEST + 5).contains(&passed), "{passed}");
+}
+
+/// Starts at 16 ms; then WDCE and WDE, `count` nops, and 0 to WDTCSR.
+fn off_after(count: usize) -> Uno {
+    let source = format!(
+        "ldi r16, 0 $ out MCUSR, r16
+         ldi r17, 0x18 $ ldi r18, 0
+         ldi r16, 0x08 $ sts WDTCSR, r16
+         sts WDTCSR, r17
+         {}
+         sts WDTCSR, r18
+    end: rjmp end",
+        "nop\n".repeat(count)
+    );
+    let mut uno = Uno::with_image(assembler(&source), Fidelity::DataSheet);
+    uno.run_ms(17);
+    uno
+}
+
+#[test]
+fn wde_is_cleared_only_within_four_cycles_after_wdce() {
+    // "Within the next four clock cycles, write the WDE and Watchdog prescaler bits
+    // (WDP) as desired, but with the WDCE bit cleared" (11.8.2).
+    for (nops, off) in [(0, true), (2, true), (3, false), (8, false)] {
+        assert_eq!(bites(&off_after(nops)).is_empty(), off, "{nops} nops");
+    }
+}
+
+#[test]
+fn wde_is_not_cleared_nor_the_prescaler_changed_without_the_sequence() {
+    let uno = run(
+        "int main(void) { MCUSR = 0; WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27; GPIOR0 = WDTCSR; for (;;) {} }",
+        17,
+    );
+    assert_eq!(marks(&uno)[0], 0x08);
+    assert_eq!(bites(&uno).len(), 1);
+}
+
+#[test]
+fn the_second_write_must_have_wdce_cleared() {
+    // "but with the WDCE bit cleared" (11.8.2).
+    let uno = run(
+        "int main(void) { MCUSR = 0; WDTCSR = 0x18; WDTCSR = 0x1e; GPIOR0 = WDTCSR & 0x27; for (;;) {} }",
+        1,
+    );
+    assert_eq!(marks(&uno), [0]);
+}
+
+#[test]
+fn wdce_alone_opens_nothing_and_goes_after_four_cycles() {
+    // "A logic one must be written to WDE regardless of the previous value of the
+    // WDE bit" (11.8.2); "hardware will clear WDCE after four clock cycles" (11.9.2).
+    let uno = run(
+        "int main(void) { MCUSR = 0; WDTCSR = 0x10; WDTCSR = 7; GPIOR0 = WDTCSR; for (;;) {} }",
+        1,
+    );
+    assert_eq!(marks(&uno), [0]);
+    let source = "ldi r17, 0x18 $ sts WDTCSR, r17
+         lds r18, WDTCSR $ lds r19, WDTCSR $ lds r20, WDTCSR
+         out GPIOR0, r18 $ out GPIOR0, r19 $ out GPIOR0, r20
+    end: rjmp end";
+    let mut uno = Uno::with_image(assembler(source), Fidelity::DataSheet);
+    uno.run_cycles(50);
+    assert_eq!(marks(&uno), [0x18, 0x18, 0x08]);
+}
+
+#[test]
+fn a_shorter_prescaler_does_not_start_the_time_anew() {
+    // "The Watchdog Timer should be reset before any change of the WDP bits, since
+    // a change in the WDP bits can result in a time-out when switching to a shorter
+    // time-out period" (11.8.2).
+    let uno = run(
+        "int main(void) { MCUSR = 0; set(0x0e); _delay_ms(20); GPIOR0 = 1; set(8); for (;;) {} }",
+        21,
+    );
+    let passed = bites(&uno)[0] - uno.marks()[0].cycle;
+    assert!(passed < 20, "{passed}");
+}
+
+#[test]
+fn a_watchdog_that_was_off_starts_with_its_whole_time() {
+    let uno = run(
+        "int main(void) { MCUSR = 0; _delay_ms(40); GPIOR0 = 1; set(8); for (;;) {} }",
+        57,
+    );
+    let passed = bites(&uno)[0] - uno.marks()[0].cycle;
+    assert!((SHORTEST..SHORTEST + 12).contains(&passed), "{passed}");
+}
+
+#[test]
+fn the_interrupt_mode_never_resets_and_stays_on() {
+    // Table 11-1: WDE 0, WDIE 1: "Interrupt Mode", action on time-out "Interrupt".
+    let body = "ISR(WDT_vect) { GPIOR0 = WDTCSR; }
+        int main(void) { SMCR = 1; MCUSR = 0; set(0x40); sei(); for (;;) asm volatile (\"sleep\"); }";
+    let uno = run(body, 100);
+    assert_eq!(marks(&uno), [0x40; 6], "WDIE still set, WDIF cleared");
+    let apart: Vec<u64> = uno
+        .marks()
+        .windows(2)
+        .map(|pair| pair[1].cycle - pair[0].cycle)
+        .collect();
+    assert_eq!(apart, [SHORTEST; 5]);
+    assert!(bites(&uno).is_empty());
+}
+
+#[test]
+fn an_interrupt_that_is_not_served_waits_as_a_flag() {
+    // "This bit is set when a time-out occurs in the Watchdog Timer and the Watchdog
+    // Timer is configured for interrupt... WDIF is cleared by writing a logic one to
+    // the flag" (11.9.2).
+    let body = "int main(void) {
+        MCUSR = 0; set(0x40);
+        _delay_ms(40); GPIOR0 = WDTCSR;
+        WDTCSR = 0x40; GPIOR0 = WDTCSR;
+        WDTCSR = 0xc0; GPIOR0 = WDTCSR;
+        for (;;) {} }";
+    assert_eq!(
+        marks(&run(body, 45)),
+        [0xc0, 0xc0, 0x40],
+        "and never resets"
+    );
+}
+
+#[test]
+fn interrupt_and_reset_mode_warns_first_and_then_resets() {
+    // "The first time-out in the Watchdog Timer will set WDIF. Executing the
+    // corresponding interrupt vector will clear WDIE and WDIF automatically by
+    // hardware (the Watchdog goes to System Reset Mode)" (11.9.2).
+    let body = "ISR(WDT_vect) { GPIOR0 = WDTCSR; }
+        int main(void) {
+            if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
+            set(0x48); sei(); for (;;) {} }";
+    let uno = run(body, 40);
+    assert_eq!(marks(&uno), [0x08]);
+    let after = bites(&uno)[0] - uno.marks()[0].cycle;
+    assert!((SHORTEST - 100..SHORTEST).contains(&after), "{after}");
+}
+
+#[test]
+fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() {
+    // "If the interrupt is not executed before the next time-out, a System Reset
+    // will be applied" (11.9.2).
+    let body = "int main(void) {
+        if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
+        GPIOR0 = 1; set(0x48); for (;;) {} }";
+    let uno = run(body, 40);
+    let after = bites(&uno)[0] - uno.marks()[0].cycle;
+    assert!(
+        (2 * SHORTEST..2 * SHORTEST + 12).contains(&after),
+        "{after}"
+    );
+}
+
+#[test]
+fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
+    // "WDE is overridden by WDRF in MCUSR. This means that WDE is always set when
+    // WDRF is set. To clear WDE, WDRF must be cleared first" (11.9.2).
+    let body = "int main(void) {
+        if (!(MCUSR & 8)) { set(0x0b); for (;;) {} }
+        GPIOR0 = WDTCSR & 0x2f;
+        set(0); GPIOR0 = WDTCSR & 0x2f;
+        for (;;) {} }";
+    let uno = run(body, 128 + 40);
+    assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
+    let bites = bites(&uno);
+    // To the end of the instruction in which the time is over.
+    assert!((bites[1] - bites[0]).abs_diff(SHORTEST) < 3, "{bites:?}");
+    assert!((bites[2] - bites[1]).abs_diff(SHORTEST) < 3, "{bites:?}");
+
+    let cleared = run(
+        "int main(void) {
+            if (!(MCUSR & 8)) { set(8); for (;;) {} }
+            MCUSR = 0; GPIOR0 = WDTCSR & 0x2f; set(0); GPIOR0 = WDTCSR & 0x2f; for (;;) {} }",
+        100,
+    );
+    assert_eq!(marks(&cleared), [8, 0]);
+    assert_eq!(cleared.resets(), 1);
+}
+
+#[test]
+fn the_watchdog_ends_a_sleep_with_interrupts_off() {
+    let image = program(
+        "int main(void) { SMCR = 1; MCUSR = 0; set(8); asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }",
+    );
+    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    assert_eq!(*uno.run_ms(40), State::Alive);
+    assert_eq!(uno.resets(), 2);
+    assert!(uno.marks().is_empty());
+    let mut stock = Uno::with_image(image, Fidelity::Stock);
+    assert_eq!(*stock.run_ms(40), State::Halted);
+}
+
+#[test]
+fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
+    let body = "int main(void) {
+        SMCR = 1; MCUSR = 0; OCR1A = 999; TIMSK1 = 2; TCCR1B = 9; set(8);
+        asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }";
+    let uno = run(body, 40);
+    assert!(uno.marks().is_empty());
+    assert_eq!(uno.resets(), 2);
+}
+
+#[test]
+fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
+    let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
+    let mut whole = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    whole.run_until_cycle(50 * CYCLES_PER_MS);
+    let mut pieces = Uno::with_image(image, Fidelity::DataSheet);
+    while pieces.cycle() < 50 * CYCLES_PER_MS {
+        pieces.run_until_cycle((pieces.cycle() + 997).min(50 * CYCLES_PER_MS));
+    }
+    assert_eq!(pieces.reset_events(), whole.reset_events());
+    assert_eq!(pieces.marks(), whole.marks());
+}
+
+#[test]
+fn stock_simavr_never_resets_while_the_interrupt_is_enabled() {
+    let image = program("int main(void) { set(0x48); for (;;) {} }");
+    let mut uno = Uno::with_image(image, Fidelity::Stock);
+    uno.run_ms(100);
+    assert_eq!(
+        uno.resets(),
+        0,
+        "stock simavr has learnt this: drop the correction"
+    );
+}

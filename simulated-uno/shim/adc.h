@@ -1,0 +1,50 @@
+/* The ADC by the ATmega328P's data sheet, chapter 24: a supply that changes, the
+ * bandgap that needs time to settle, 25 clocks for the first conversion and 13
+ * for each other, and a result that is read in two halves.
+ *
+ * Not modelled: triggers other than free running, the noise reduction sleep,
+ * the settling of a reference that is switched, more than 200 kHz.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef ADC_H
+#define ADC_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <simavr/avr_adc.h>
+#include <simavr/sim_avr.h>
+
+#include "instruction.h"
+#include "interrupts.h"
+#include "supply.h"
+
+#define ADC_PINS 8
+
+struct adc {
+	avr_t *avr;
+	const struct instruction *instruction;
+	struct interrupts *interrupts;
+	const struct supply *supply;
+	avr_adc_t *stock;              /* simavr's, for its interrupt vector */
+	uint16_t pins[ADC_PINS];       /* mV at ADC0 to ADC7 */
+	double bandgap;                /* mV */
+	uint64_t enabled, selected;    /* cycles of ADEN and of the channel's choice */
+	double before;                 /* mV of the channel chosen before */
+	bool converting, first, locked;
+	uint8_t mux, reference;        /* of the conversion under way */
+	double settled;                /* how far the bandgap was at its start, 0 to 1 */
+	uint64_t sample_at, end;
+	uint16_t sampled, result;
+};
+
+/* Values at the pins and the bandgap; all in the stock fidelity. */
+void adc_attach(struct adc *adc, avr_t *avr);
+/* Takes its registers from simavr. */
+void adc_correct(struct adc *adc, const struct instruction *instruction,
+                 struct interrupts *interrupts, const struct supply *supply);
+void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv);
+void adc_reset(struct adc *adc);
+
+#endif

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "watchdog.h"
+
+#include "chip.h"
+#include "hook.h"
+
+enum { /* WDTCSR */
+	WDIF = 1 << 7, WDIE = 1 << 6, WDP3 = 1 << 5, WDCE = 1 << 4, WDE = 1 << 3,
+	WDP = WDP3 | 7,
+};
+
+#define OSCILLATOR 128000u
+#define SHORTEST 2048u /* oscillator cycles, WDP = 0 */
+#define LONGEST_WDP 9  /* those above are reserved */
+#define CHANGE_CYCLES 4
+
+static uint64_t period(uint8_t control)
+{
+	unsigned wdp = (control & WDP3) >> 2 | (control & 7);
+	if (wdp > LONGEST_WDP)
+		wdp = LONGEST_WDP;
+	return ((uint64_t)SHORTEST << wdp) * (CHIP_FREQUENCY / OSCILLATOR);
+}
+
+static bool is_on(uint8_t control)
+{
+	return control & (WDE | WDIE);
+}
+
+static avr_cycle_count_t time_out(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+	struct watchdog *watchdog = param;
+	uint8_t control = avr->data[REG_WDTCSR];
+	/* "If the interrupt is not executed before the next time-out, a System
+	 * Reset will be applied" (11.9.2). */
+	if ((control & WDE) && (!(control & WDIE) || (control & WDIF))) {
+		reset_ask(watchdog->reset, RESET_WATCHDOG);
+		return 0;
+	}
+	avr_raise_interrupt(avr, &watchdog->stock->watchdog);
+	avr->data[REG_WDTCSR] |= WDIF; /* also when it is pending already */
+	watchdog->since = when;
+	return when + period(control);
+}
+
+static void schedule(struct watchdog *watchdog)
+{
+	avr_t *avr = watchdog->avr;
+	uint8_t control = avr->data[REG_WDTCSR];
+	avr_cycle_timer_cancel(avr, time_out, watchdog);
+	if (!is_on(control))
+		return;
+	uint64_t due = watchdog->since + period(control);
+	avr_cycle_timer_register(avr, chip_cycles_until(avr, due), time_out, watchdog);
+}
+
+/* Called by simavr for everything that it asks of its parts. */
+static int on_request(avr_io_t *io, uint32_t request, void *param)
+{
+	(void)param;
+	if (request != AVR_IOCTL_WATCHDOG_RESET)
+		return -1;
+	struct watchdog *watchdog = (struct watchdog *)io;
+	watchdog->since = watchdog->avr->cycle + 1; /* `wdr` ends with this cycle */
+	schedule(watchdog);
+	return 0;
+}
+
+static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+	struct watchdog *watchdog = param;
+	uint64_t cycle = instruction_effect_cycle(watchdog->instruction);
+	uint8_t old = avr->data[address];
+	bool change = cycle <= watchdog->change_until && !(value & WDCE);
+	uint8_t control = (value & WDIE) | (old & WDIF & ~value);
+	control |= (change ? value : old) & WDP;
+	control |= (change ? value : value | old) & WDE;
+	if (watchdog->reset->flags & RESET_WATCHDOG)
+		control |= WDE; /* "WDE is overridden by WDRF in MCUSR" (11.9.2) */
+	if ((value & WDCE) && (value & WDE))
+		watchdog->change_until = cycle + CHANGE_CYCLES;
+	avr->data[address] = control;
+	if (!(control & WDIF))
+		watchdog->stock->watchdog.pending = 0;
+	if (!is_on(old))
+		watchdog->since = cycle;
+	schedule(watchdog);
+	interrupts_changed(watchdog->interrupts);
+}
+
+static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
+{
+	const struct watchdog *watchdog = param;
+	uint8_t value = avr->data[address];
+	return avr->cycle < watchdog->change_until ? value | WDCE : value & ~WDCE;
+}
+
+/* "Executing the corresponding interrupt vector will clear WDIE and WDIF
+ * automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2),
+ * said of WDE and WDIE set. simavr clears WDIE in interrupt mode, too, unless it
+ * finds WDIF cleared. */
+static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
+{
+	(void)irq;
+	struct watchdog *watchdog = param;
+	uint8_t *control = &watchdog->avr->data[REG_WDTCSR];
+	if (running)
+		*control &= *control & WDE ? ~(WDIF | WDIE) : ~WDIF;
+}
+
+void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
+                     struct interrupts *interrupts, struct reset *reset)
+{
+	avr_t *avr = instruction->avr;
+	*watchdog = (struct watchdog){
+		.io = { .kind = "simulated-uno watchdog", .ioctl = on_request },
+		.avr = avr,
+		.instruction = instruction,
+		.interrupts = interrupts,
+		.reset = reset,
+		.stock = (avr_watchdog_t *)chip_part(avr, "watchdog"),
+	};
+	watchdog->stock->io.reset = NULL;
+	watchdog->stock->io.ioctl = NULL;
+	avr_register_io(avr, &watchdog->io);
+	hook_write(avr, REG_WDTCSR, write_control, watchdog);
+	hook_read(avr, REG_WDTCSR, read_control, watchdog);
+	avr_irq_register_notify(watchdog->stock->watchdog.irq + AVR_INT_IRQ_RUNNING, on_vector,
+	                        watchdog);
+}
+
+void watchdog_reset(struct watchdog *watchdog)
+{
+	avr_t *avr = watchdog->avr;
+	watchdog->change_until = 0;
+	watchdog->since = avr->cycle;
+	avr->data[REG_WDTCSR] = watchdog->reset->flags & RESET_WATCHDOG ? WDE : 0;
+	schedule(watchdog);
+}
+
+bool watchdog_may_reset(const struct watchdog *watchdog)
+{
+	return watchdog->avr->data[REG_WDTCSR] & WDE;
+}

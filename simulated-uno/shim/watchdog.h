@@ -1,0 +1,41 @@
+/* The watchdog by the ATmega328P's data sheet, 11.8 and 11.9.2.
+ *
+ * simavr 1.6 never resets while the interrupt is enabled, lets the counter
+ * start anew when its prescaler is changed, and clears WDIE in interrupt mode.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef WATCHDOG_H
+#define WATCHDOG_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <simavr/avr_watchdog.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_io.h>
+
+#include "instruction.h"
+#include "interrupts.h"
+#include "reset.h"
+
+struct watchdog {
+	avr_io_t io;           /* our place in simavr's list: `wdr` comes to it */
+	avr_t *avr;
+	const struct instruction *instruction;
+	struct interrupts *interrupts;
+	struct reset *reset;
+	avr_watchdog_t *stock; /* simavr's, for its interrupt vector */
+	uint64_t since;        /* cycle at which the counter was zero */
+	uint64_t change_until; /* last cycle of the timed sequence's window */
+};
+
+/* Takes the watchdog from simavr. */
+void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
+                     struct interrupts *interrupts, struct reset *reset);
+/* After a reset: on if WDRF says so. */
+void watchdog_reset(struct watchdog *watchdog);
+/* Whether it will end in a reset if nothing is done. */
+bool watchdog_may_reset(const struct watchdog *watchdog);
+
+#endif

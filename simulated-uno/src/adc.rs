@@ -1,0 +1,31 @@
+//! What the ADC measures.
+
+use crate::ffi;
+use crate::{Pin, Uno};
+
+impl Uno {
+    /// The bandgap reference, mV: 1100 unless set. The data sheet allows 1000 to
+    /// 1200, and a chip keeps its own. [`Fidelity::Stock`](crate::Fidelity) always
+    /// has 1100.
+    ///
+    /// # Panics
+    /// Beyond 1000 to 1200.
+    pub fn set_bandgap_mv(&mut self, mv: f64) {
+        assert!(
+            (1000.0..=1200.0).contains(&mv),
+            "a bandgap reference has 1000 to 1200 mV, not {mv}"
+        );
+        unsafe { ffi::uno_set_bandgap(self.raw, mv) }
+    }
+
+    /// The voltage at A0 to A5 from now on, mV; 0 unless set. The digital side of
+    /// the pin does not see it.
+    ///
+    /// # Panics
+    /// If the pin is not one of A0 to A5.
+    pub fn set_analog_mv(&mut self, pin: Pin, mv: u16) {
+        let channel = pin.number().checked_sub(Pin::a(0).number());
+        let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analogue pin"));
+        unsafe { ffi::uno_set_analog(self.raw, channel, mv) }
+    }
+}

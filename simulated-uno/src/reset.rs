@@ -1,0 +1,84 @@
+//! Resets: their causes, and what survives them.
+
+use crate::ffi::{self, RawReset};
+use crate::{State, Uno};
+
+/// What a reset came from; the bits of MCUSR (data sheet 11.9.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResetCause {
+    /// The power came.
+    PowerOn,
+    /// The RESET pin, which opening the serial port pulls.
+    External,
+    /// The supply was below the brown-out level.
+    BrownOut,
+    /// The watchdog ran out.
+    Watchdog,
+}
+
+/// A reset that happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reset {
+    /// Cycle at which the program started anew.
+    pub cycle: u64,
+    /// What it came from.
+    pub cause: ResetCause,
+}
+
+impl Uno {
+    /// Pulls the RESET pin for an instant, as opening the serial port does. SRAM,
+    /// EEPROM and r0 to r31 keep what they hold, an EEPROM operation goes on, the
+    /// I/O registers take their reset values, every pin becomes an input and is
+    /// recorded as low. A halted or crashed firmware lives again. Without power,
+    /// or with too little, nothing happens.
+    ///
+    /// The chip's start-up delay (65 ms on an UNO) is not simulated.
+    pub fn reset(&mut self) {
+        unsafe { ffi::uno_reset(self.raw) }
+        self.revive();
+    }
+
+    /// Takes the power away and gives it back at once, at the supply's voltage of
+    /// the moment. Only the EEPROM survives; an operation under way in it is torn
+    /// (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 hold noise.
+    pub fn power_cycle(&mut self) {
+        unsafe { ffi::uno_power_cycle(self.raw) }
+        self.state = State::Alive;
+    }
+
+    /// Whether a boot loader like the UNO's has run before the firmware at each
+    /// start: it has cleared MCUSR, so that the firmware cannot see what the reset
+    /// came from, and switched the watchdog off. It takes no time here; the real
+    /// one waits a second after an external reset. If no cycle has passed yet, the
+    /// present start counts, too. Off unless set. In
+    /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
+    pub fn set_boot_loader(&mut self, on: bool) {
+        unsafe { ffi::uno_set_boot_loader(self.raw, on) }
+    }
+
+    /// Seeds the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0
+    /// to r31. Each power-on continues the sequence.
+    pub fn set_noise_seed(&mut self, seed: u64) {
+        unsafe { ffi::uno_set_noise(self.raw, seed) }
+    }
+
+    /// Every start of the program so far, the first power-on too.
+    #[must_use]
+    pub fn reset_events(&self) -> Vec<Reset> {
+        self.list(ffi::uno_reset_events, |raw: &RawReset| Reset {
+            cycle: raw.cycle,
+            cause: match raw.cause {
+                cause if cause & 1 != 0 => ResetCause::PowerOn,
+                cause if cause & 4 != 0 => ResetCause::BrownOut,
+                cause if cause & 8 != 0 => ResetCause::Watchdog,
+                _ => ResetCause::External,
+            },
+        })
+    }
+
+    fn revive(&mut self) {
+        if self.state != State::Off {
+            self.state = State::Alive;
+        }
+    }
+}
