@@ -12,13 +12,16 @@ const TCCR1A: u16 = 0x80;
 const TCCR1B: u16 = 0x81;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// The servos' edges in the first half second after registers were left so.
+/// The servos' edges in the first second after registers were left so; the robot is
+/// told to stand.
 fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in left {
         bench.uno.poke(*register, *value);
     }
-    bench.run_ms(500);
+    bench.run_ms(200);
+    bench.send("stand");
+    bench.run_ms(800);
     servo_edges(&bench.uno)
 }
 
