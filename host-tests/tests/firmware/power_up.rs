@@ -12,6 +12,7 @@ const TCCR1A: u16 = 0x80;
 const TCCR1B: u16 = 0x81;
 const TCNT1: u16 = 0x84;
 const OCR1A: u16 = 0x88;
+const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
 /// The servos' edges in the first second after registers were left so; the robot is
@@ -64,6 +65,14 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
         // Clear on compare with OCR1A, every cycle.
         assert_eq!((bench.uno.peek(TCCR1A), bench.uno.peek(TCCR1B)), (0, 0x09));
     });
+}
+
+#[test]
+fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
+    // The simulation knows one sleep only. Idle is 000, data sheet 10.2; the last
+    // bit enables it.
+    let bench = FirmwareBench::boot();
+    assert_eq!(bench.uno.peek(SMCR), 0b0001);
 }
 
 #[test]
