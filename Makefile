@@ -24,7 +24,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash flash-test lint cli bench prove docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .docs
+.PHONY: help sim test firmware flash flash-test lint cli bench prove mutants docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .mutants .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -48,6 +48,8 @@ bench: ## measured budgets, beside the Arduino Servo library's; speed beside num
 	$(call prepared,.bench)
 prove: ## the guard against floating point at every pose there is; about a minute
 	$(call prepared,.prove)
+mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
+	$(call prepared,.mutants)
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
 clean: ## remove everything that was built
@@ -110,6 +112,10 @@ clean: ## remove everything that was built
 
 .prove: .cli
 	@$(LIZARD) prove $(FOR_ROBOT)
+
+# ONLY=serial.rs narrows it down.
+.mutants:
+	@scripts/mutants $(or $(PART),board) $(ONLY)
 
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md

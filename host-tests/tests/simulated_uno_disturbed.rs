@@ -41,9 +41,10 @@ fn widths(uno: &Uno) -> Vec<u64> {
 
 #[test]
 fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
+    let image = assembler(PULSES);
     for fidelity in BOTH {
         for at in 300..600 {
-            let mut uno = Uno::with_image(assembler(PULSES), fidelity);
+            let mut uno = Uno::with_image(image.clone(), fidelity);
             uno.run_until_cycle(at);
             uno.hold(5000);
             uno.run_until_cycle(10_000);

@@ -31,6 +31,10 @@ fn every_budget_is_met() {
     // A measurement that found nothing would meet most budgets.
     assert!(figures.serial_interrupt > 50 && figures.tick_latency > figures.tick_worst);
     assert!(figures.servo_interrupts > 1000.0);
+    // No run gets deeper than the code allows, and the worst is not far away.
+    let unseen = i32::from(figures.stack_spare) - figures.stack_margin;
+    println!("{unseen} bytes of stack that no run has used");
+    assert!((0..150).contains(&unseen), "{unseen}");
     if let (Some(tick), Some(guard), Some(main)) = (figures.tick_mean, figures.guard, figures.main)
     {
         assert!(tick > 1000.0 && figures.tick_worst as f64 > tick);

@@ -125,6 +125,84 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
 }
 
 #[test]
+fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
+    in_both(|fidelity| {
+        let mut walk = Walk::begin(fidelity);
+        for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
+            let start = walk.next_frame();
+            let late = walk.late();
+            walk.run_to(start + servo * SLOT - 600);
+            walk.bench.uno.hold(length);
+            walk.run_to(start + 3 * FRAME - SLOT / 2);
+            for (n, (frame, asked)) in walk.frames_since(start).into_iter().enumerate() {
+                let mut expected = asked.map(Some);
+                if n == 0 {
+                    expected[servo as usize] = None;
+                }
+                assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
+                // Each where it belongs, to the cycle.
+                let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT);
+                let on_grid = |(got, due): (Option<u64>, u64)| got.is_none_or(|got| got == due);
+                assert!(
+                    frame.starts.into_iter().zip(starts).all(on_grid),
+                    "{frame:?}"
+                );
+            }
+            assert_eq!(walk.late(), late + 1);
+        }
+    });
+}
+
+#[test]
+fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
+    in_both(|fidelity| {
+        let mut walk = Walk::stand(fidelity);
+        let pins = walk.bench.pins();
+        let neutral = neutral_widths();
+        // Until so many cycles after the next slot has begun, 220 before its edge.
+        for beyond in (0..600).step_by(20) {
+            for servo in 0..4 {
+                walk.bench.run_for_frames(1);
+                walk.bench.uno.take_edges();
+                let rise = pins[servo];
+                let high = |uno: &simulated_uno::Uno| uno.is_high(rise);
+                assert!(walk.bench.uno.run_until(2 * FRAME, 100, high));
+                walk.bench.uno.run_cycles(neutral[servo] - 500);
+                let began = walk.bench.uno.edges().last().expect("its rise").cycle;
+                let late = walk.late();
+                let until = began + SLOT - 220 + beyond;
+                let length = until - walk.bench.uno.cycle();
+                walk.bench.uno.hold(length);
+                walk.bench.run_ms(40);
+                let what = format!("A{} and {beyond}", servo + 1);
+                assert_eq!(walk.late(), late + 1, "{what}");
+                let widths: Vec<u64> = walk
+                    .bench
+                    .uno
+                    .pulses(rise)
+                    .iter()
+                    .map(|p| p.width)
+                    .collect();
+                assert!(
+                    (SLOT - 300..SLOT + beyond + 100).contains(&widths[0]),
+                    "{what}: {widths:?}"
+                );
+                assert!(
+                    widths[1..].iter().all(|width| *width == neutral[servo]),
+                    "{what}"
+                );
+                // No other servo misses its turn.
+                let edges = servo_edges(&walk.bench.uno);
+                let mut rises = edges.iter().filter(|edge| edge.high).map(|edge| edge.pin);
+                assert!(rises.any(|pin| pin == rise));
+                let next = (1..8).map(|n| pins[(servo + n) % 4]);
+                assert!(rises.take(7).eq(next), "{what}");
+            }
+        }
+    });
+}
+
+#[test]
 fn after_milliseconds_without_interrupts_no_pulse_is_short_and_none_lasts_beyond_its_slot() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);

@@ -2,7 +2,7 @@
 //! those of a cold start.
 
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity};
+use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
 
 use crate::in_both;
 use crate::pulses::servo_edges;
@@ -10,15 +10,21 @@ use crate::pulses::servo_edges;
 /// Registers, by data address: data sheet, 30.
 const TCCR1A: u16 = 0x80;
 const TCCR1B: u16 = 0x81;
+const TCNT1: u16 = 0x84;
+const OCR1A: u16 = 0x88;
+const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// The servos' edges in the first half second after registers were left so.
+/// The servos' edges in the first second after registers were left so; the robot is
+/// told to stand.
 fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in left {
         bench.uno.poke(*register, *value);
     }
-    bench.run_ms(500);
+    bench.run_ms(200);
+    bench.send("stand");
+    bench.run_ms(800);
     servo_edges(&bench.uno)
 }
 
@@ -35,6 +41,38 @@ fn a_timer_that_was_left_running_changes_no_edge() {
         let pwm = edges_after(&[(TCCR1A, 1), (TCCR1B, 0x0a)], fidelity);
         assert_eq!(pwm, cold);
     });
+}
+
+#[test]
+fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
+    // The simulation begins to count anew with every change of the mode, the chip
+    // counts on: so the registers are looked at.
+    in_both(|fidelity| {
+        let mut bench = FirmwareBench::power_on(fidelity);
+        for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
+            bench.uno.poke(register, value);
+        }
+        let word = |uno: &Uno, at| u16::from_le_bytes([uno.peek(at), uno.peek(at + 1)]);
+        let is_set = |uno: &Uno| word(uno, OCR1A) == 63_999;
+        assert!(bench.uno.run_until(100_000, 1, is_set));
+        assert_eq!(
+            bench.uno.peek(TCCR1B) & 7,
+            0,
+            "it counts while it is set up"
+        );
+        assert!(bench.uno.run_until(1_000, 1, |uno| uno.peek(TCCR1B) != 0));
+        assert_eq!(word(&bench.uno, TCNT1), 0);
+        // Clear on compare with OCR1A, every cycle.
+        assert_eq!((bench.uno.peek(TCCR1A), bench.uno.peek(TCCR1B)), (0, 0x09));
+    });
+}
+
+#[test]
+fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
+    // The simulation knows one sleep only. Idle is 000, data sheet 10.2; the last
+    // bit enables it.
+    let bench = FirmwareBench::boot();
+    assert_eq!(bench.uno.peek(SMCR), 0b0001);
 }
 
 #[test]

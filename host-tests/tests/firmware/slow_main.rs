@@ -9,8 +9,9 @@ use crate::walk::{SLOT, Walk};
 use crate::{SECOND, Status, awake, in_both};
 
 /// Cycles from the return of the function that computes a frame in which main
-/// hands it over and sets the LED, and more.
-const HAND_OVER: u64 = 250;
+/// hands it over and sets the LED, and more. Three frames for each are an odd number
+/// of the LED's beats, of 32: a second sweep finds it lit where the first did not.
+const HAND_OVER: u64 = 224;
 
 /// Runs main into its next frame and to the return of the function that computes it.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
@@ -33,18 +34,19 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
     in_both(|fidelity| {
         let mut walk = Walk::begin(fidelity);
         let start = walk.next_frame() + FRAME;
-        for n in (0..3 * HAND_OVER).filter(|n| n % 3 != 2) {
+        let count = 2 * 3 * HAND_OVER;
+        for n in (0..count).filter(|n| n % 3 != 2) {
             let frame = start + n * FRAME;
             walk.run_to(frame - SLOT - 400);
             run_to_hand_over(&mut walk.bench);
-            walk.bench.uno.run_cycles(n / 3);
+            walk.bench.uno.run_cycles(n / 3 % HAND_OVER);
             let stall = frame + 2_000 - walk.bench.uno.cycle();
             walk.bench.uno.stall_main(stall);
             walk.run_to(frame + 2_000);
         }
-        walk.run_to(start + 3 * HAND_OVER * FRAME - SLOT / 2);
+        walk.run_to(start + count * FRAME - SLOT / 2);
         let frames = walk.frames_since(start);
-        assert_eq!(frames.len() as u64, 3 * HAND_OVER);
+        assert_eq!(frames.len() as u64, count);
         let mut in_time = 0;
         for (n, (sent, asked)) in frames.iter().enumerate().skip(3) {
             let is_asked = sent.all() == Some(*asked);

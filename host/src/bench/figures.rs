@@ -4,9 +4,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use lizard_robot::Robot;
-use simulated_uno::{Call, Fidelity};
+use simulated_uno::{Call, Fidelity, Image};
 
 use super::exactness::Exactness;
+use super::stack::StackDepth;
 use crate::Failure;
 use crate::board::{Board, BoardError};
 use crate::sim::frame::{FRAME, servo_pins};
@@ -26,6 +27,9 @@ pub struct Figures {
     pub static_ram: u16,
     /// Fewest bytes ever between the stack and static data.
     pub stack_spare: u16,
+    /// The same for the deepest stack that the code allows, worked out and not
+    /// measured.
+    pub stack_margin: i32,
     /// Mean cycles of the control tick in the gait, interrupts left out.
     pub tick_mean: Option<f64>,
     /// The most cycles of a control tick in any motion, interrupts left out.
@@ -97,6 +101,12 @@ impl Figures {
             board.run_ms(1000)?;
             Ok(board)
         };
+        progress("the stack's depth");
+        let image = Image::read(elf).map_err(|error| BoardError::Load {
+            elf: elf.to_owned(),
+            error,
+        })?;
+        let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
         progress("pulses on an idle line");
         let mut idle = Steady::of(awake()?, gait, 20_000)?;
         let sent = idle.board.uno.received_by_uno().len();
@@ -131,6 +141,7 @@ impl Figures {
             flash: long.board.uno.image().flash_used(),
             static_ram: long.board.uno.image().static_ram(),
             stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
+            stack_margin: stack.margin(),
             tick_mean: of_gait(mean(&tick)),
             tick_worst: every.iter().map(Call::own_cycles).max().unwrap_or(0),
             tick_latency,

@@ -4,6 +4,7 @@
 mod budget;
 mod exactness;
 mod figures;
+mod stack;
 mod table;
 
 use std::io::{self, Write};
@@ -15,6 +16,7 @@ use crate::{Failure, RobotFile, sim};
 
 pub use budget::{Bound, Row, rows};
 pub use figures::Figures;
+pub use stack::{StackDepth, StackError};
 
 /// Measure the firmware on a simulated Arduino UNO against its budgets
 ///

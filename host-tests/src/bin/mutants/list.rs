@@ -1,0 +1,122 @@
+//! The list of mistakes: see the head of `mutants.txt`.
+
+/// A mistake to be made in one file.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Mutant {
+    /// The file, from the root of the tree.
+    pub file: String,
+    /// What is wrong with it then.
+    pub wrong: String,
+    /// The part of a test's name that the tests have that are tried first.
+    pub test: Option<String>,
+    /// A test file that compiles the mistaken file on its own.
+    pub compiled_by: Option<String>,
+    /// Line of the list at which the entry begins.
+    pub line: usize,
+    old: String,
+    new: String,
+}
+
+impl Mutant {
+    /// The file's text with the mistake in it.
+    ///
+    /// # Errors
+    /// The old text is not in the file, or more than once.
+    pub fn make(&self, text: &str) -> Result<String, String> {
+        match text.matches(&self.old).count() {
+            1 => Ok(text.replace(&self.old, &self.new)),
+            0 => Err("the old text is not there any more".into()),
+            n => Err(format!("the old text is there {n} times")),
+        }
+    }
+}
+
+/// Reads the list.
+///
+/// # Errors
+/// A line that is none of an entry's, an entry without a file, a mistake or texts.
+pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
+    let mut mutants = Vec::new();
+    let mut open: Option<Mutant> = None;
+    for (n, line) in list.lines().chain([""]).enumerate() {
+        let line_number = n + 1;
+        if line.starts_with('#') {
+            continue;
+        }
+        if line.is_empty() {
+            if let Some(mutant) = open.take() {
+                if mutant.file.is_empty() || mutant.wrong.is_empty() || mutant.old.is_empty() {
+                    let at = mutant.line;
+                    return Err(format!(
+                        "line {at}: an entry needs a file, what is wrong, old text"
+                    ));
+                }
+                mutants.push(mutant);
+            }
+            continue;
+        }
+        let mutant = open.get_or_insert_with(|| Mutant {
+            line: line_number,
+            ..Mutant::default()
+        });
+        if let Some(old) = line.strip_prefix('-') {
+            append(&mut mutant.old, old);
+        } else if let Some(new) = line.strip_prefix('+') {
+            append(&mut mutant.new, new);
+        } else {
+            let (key, value) = line.split_once(' ').unwrap_or((line, ""));
+            match key {
+                "file" => mutant.file = value.into(),
+                "wrong" => mutant.wrong = value.into(),
+                "test" => mutant.test = Some(value.into()),
+                "compiled-by" => mutant.compiled_by = Some(value.into()),
+                _ => return Err(format!("line {line_number}: what is {key:?}?")),
+            }
+        }
+    }
+    Ok(mutants)
+}
+
+/// Adds a line; lines are apart by line feeds, and the last one has none.
+fn append(text: &mut String, line: &str) {
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    text.push_str(line);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_replaces_its_old_text_once() {
+        let list =
+            "# a list\n\nfile a.rs\nwrong it is two\ntest one\n-let a = 1;\n-\n+let a = 2;\n";
+        let mutants = read(list).expect("it is well formed");
+        assert_eq!(mutants.len(), 1);
+        assert_eq!(
+            (mutants[0].line, mutants[0].test.as_deref()),
+            (3, Some("one"))
+        );
+        let made = mutants[0].make("let b = 0;\nlet a = 1;\n");
+        assert_eq!(made.as_deref(), Ok("let b = 0;\nlet a = 2;"));
+        let gone = mutants[0].make("let a = 3;\n").expect_err("it is gone");
+        assert!(gone.contains("not there"), "{gone}");
+        let twice = mutants[0]
+            .make("let a = 1;\nlet a = 1;\n\n")
+            .expect_err("it is there twice");
+        assert!(twice.contains("2 times"), "{twice}");
+    }
+
+    #[test]
+    fn a_list_that_cannot_be_read_is_refused_with_its_line() {
+        for (list, line) in [
+            ("file a.rs\n-x\n+y\n", "line 1"),
+            ("\nfile a\nwhat b\n", "line 3"),
+        ] {
+            let error = read(list).expect_err("it must be refused");
+            assert!(error.starts_with(line), "{error}");
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The depth of the stack worked out from machine code, against programs whose depth
+//! follows by counting, and against how deep they really get.
+
+use lizard_host::bench::{StackDepth, StackError};
+use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::{Fidelity, Image, Uno};
+
+/// Sets the stack pointer up as avr-libc does, from r28 and r29.
+const BEGIN: &str = "
+        ldi r28, 0xff $ ldi r29, 0x08
+        out SPH, r29 $ out SPL, r28";
+
+fn depth(image: &Image) -> StackDepth {
+    StackDepth::of(image).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refusal(image: &Image) -> StackError {
+    StackDepth::of(image).expect_err("it must be refused")
+}
+
+/// How deep the stack gets in a hundredth of a second.
+fn measured(image: &Image) -> u16 {
+    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    uno.run_ms(10);
+    uno.stack_used()
+}
+
+#[test]
+fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
+    // start calls one (2), which pushes 3 and calls two (2), which pushes 1.
+    let image = assembler(&format!(
+        "{BEGIN}
+        rcall one
+        call two
+    end: rjmp end
+    one: push r16 $ push r16 $ push r16
+        rcall two
+        pop r16 $ pop r16 $ pop r16
+        ret
+    two: push r17
+        sbrc r16, 0
+        rjmp over
+        sbis PINB, 2
+        lds r16, 0x0100
+    over: pop r17
+        ret"
+    ));
+    assert_eq!(depth(&image).worst(), 2 + 3 + 2 + 1);
+    assert_eq!(measured(&image), 8);
+    // Nothing static, so all of SRAM but these is left.
+    assert_eq!(depth(&image).margin(), 2048 - 8);
+}
+
+#[test]
+fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
+    for bytes in [1u16, 20, 63, 64, 300] {
+        let room = match bytes {
+            0..64 => format!("sbiw r28, {bytes}"),
+            _ => format!("subi r28, lo8({bytes}) $ sbci r29, hi8({bytes})"),
+        };
+        let back = match bytes {
+            0..64 => format!("adiw r28, {bytes}"),
+            _ => format!("subi r28, lo8(-{bytes}) $ sbci r29, hi8(-{bytes})"),
+        };
+        let set = "in r0, SREG $ cli $ out SPH, r29 $ out SREG, r0 $ out SPL, r28";
+        let image = assembler(&format!(
+            "{BEGIN}
+            call framed
+        end: rjmp end
+        framed: push r28 $ push r29
+            in r28, SPL $ in r29, SPH $ {room} $ {set}
+            std Y+1, r16
+            call leaf
+            {back} $ {set}
+            pop r29 $ pop r28
+            jmp last
+        last: push r16 $ pop r16
+        leaf: ret"
+        ));
+        assert_eq!(depth(&image).worst(), 2 + 2 + bytes + 2, "{bytes}");
+        assert_eq!(measured(&image), 2 + 2 + bytes + 2, "{bytes}");
+    }
+}
+
+#[test]
+fn the_deepest_interrupt_is_on_top_once() {
+    let image = assembler(&format!(
+        "jmp start
+        .org 0x2c
+        jmp shallow
+        jmp deep
+        .org 0x68
+    start: {BEGIN}
+        push r16
+    end: rjmp end
+    shallow: push r0 $ pop r0 $ reti
+    deep: push r0 $ push r1 $ rcall more $ pop r1 $ pop r0 $ reti
+    more: push r2 $ pop r2 $ ret"
+    ));
+    let depth = depth(&image);
+    assert_eq!((depth.main, depth.handler), (1, 2 + 2 + 2 + 1));
+}
+
+#[test]
+fn what_the_compiler_makes_of_c_is_followed_and_no_run_gets_deeper() {
+    let image = c("#include <avr/io.h>
+        #include <avr/interrupt.h>
+        static volatile unsigned char out;
+        ISR(TIMER1_COMPA_vect) { out += TCNT1L; }
+        __attribute__((noinline)) static unsigned char sum(const volatile unsigned char *all) {
+            unsigned char s = 0;
+            for (unsigned char i = 0; i < 100; i++) s += all[i];
+            return s;
+        }
+        __attribute__((noinline)) static unsigned char fill(unsigned char n) {
+            volatile unsigned char all[100];
+            for (unsigned char i = 0; i < 100; i++) all[i] = n / (i + 1);
+            return sum(all);
+        }
+        int main(void) {
+            OCR1A = 999; TIMSK1 = 2; TCCR1B = 9;
+            sei();
+            for (;;) out = fill(out);
+        }");
+    let (worst, deepest) = (depth(&image).worst(), measured(&image));
+    assert!(deepest > 100 && deepest <= worst, "{deepest} of {worst}");
+    assert!(worst - deepest < 20, "{deepest} of {worst}");
+}
+
+#[test]
+fn a_function_that_calls_itself_is_refused_by_name() {
+    let image = c("#include <avr/io.h>
+        __attribute__((noinline)) void deeper(unsigned char n) {
+            GPIOR0 = n;
+            if (n) deeper(n - 1);
+            GPIOR1 = n;
+        }
+        int main(void) { for (;;) deeper(PINB); }");
+    let error = refusal(&image).to_string();
+    assert!(
+        error.contains("deeper") && error.contains("calls itself"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_call_of_a_computed_address_is_refused_by_name() {
+    let image = c("#include <avr/io.h>
+        static void one(void) { GPIOR0 = 1; }
+        static void two(void) { GPIOR0 = 2; }
+        static void (*volatile which)(void);
+        __attribute__((noinline)) void choose(void) { which(); GPIOR1 = 1; }
+        int main(void) { which = PINB ? one : two; for (;;) choose(); }");
+    let error = refusal(&image).to_string();
+    assert!(
+        error.contains("choose") && error.contains("computes"),
+        "{error}"
+    );
+    for jump in ["ijmp", "icall"] {
+        let image = assembler(&format!("{BEGIN}\n{jump}\nend: rjmp end"));
+        assert!(refusal(&image).to_string().contains("computes"), "{jump}");
+    }
+}
+
+#[test]
+fn what_cannot_be_bounded_is_refused() {
+    let programs = [
+        ("again: push r16 $ rjmp again", "more or less"),
+        (
+            "rcall one\nend: rjmp end\none: push r16 $ ret",
+            "returns with",
+        ),
+        ("out SPL, r16\nend: rjmp end", "stack pointer"),
+        ("sts 0x5d, r16\nend: rjmp end", "stack pointer"),
+        (
+            "movw r28, r16 $ out SPL, r28\nend: rjmp end",
+            "stack pointer",
+        ),
+        ("nop", "runs out"),
+    ];
+    for (program, why) in programs {
+        let error = refusal(&assembler(&format!("{BEGIN}\n{program}"))).to_string();
+        assert!(error.contains(why), "{program}: {error}");
+    }
+    let nests = assembler(
+        "jmp start
+        .org 0x2c
+        jmp handler
+        .org 0x68
+    start: rjmp start
+    handler: sei $ reti",
+    );
+    let error = refusal(&nests).to_string();
+    assert!(error.contains("lets interrupts into"), "{error}");
+}

@@ -1,0 +1,92 @@
+//! The deepest that the stack can get, worked out from the machine code.
+//!
+//! On a chip without memory protection a stack that grows into the static data
+//! changes a servo's width or the guard's mind, and nobody is told. A measurement
+//! shows how deep it got, never how deep it can get: an interrupt may not have come
+//! at the worst moment, a rare refusal not have been said. So every way through the
+//! code is followed, and what it pushes is added up.
+//!
+//! The code is decoded here rather than read from avr-objdump's listing: what
+//! matters to the stack is two dozen instructions, fewer lines than a parser of that
+//! listing, and the program needs no tool beside it.
+//!
+//! What the bound rests on: interrupts do not nest, which is checked; no function
+//! calls itself, nothing jumps to a computed address, and the stack pointer changes
+//! by `push`, `pop`, calls, returns, and frames that r28 and r29 point to. Anything
+//! else is refused, with the name of the function.
+
+mod instruction;
+mod walk;
+
+use simulated_uno::{Image, SRAM_END};
+
+use walk::{Context, Walk};
+
+/// Vectors of an ATmega328P, reset included, each a `jmp` of four bytes.
+const VECTORS: u32 = 26;
+/// An interrupt pushes the address that it returns to.
+const ENTRY: u16 = 2;
+
+/// Why a depth cannot be worked out.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the depth of the stack cannot be worked out: {function}, at {address:#06x}, {what}")]
+pub struct StackError {
+    /// The function that stands in the way.
+    pub function: String,
+    /// Byte address of its instruction in flash.
+    pub address: u32,
+    /// What it does.
+    pub what: &'static str,
+}
+
+/// The worst depths, bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StackDepth {
+    /// Of the program from reset on, without interrupts.
+    pub main: u16,
+    /// Of the deepest interrupt, its return address included; 0 without interrupts.
+    pub handler: u16,
+    /// First address of SRAM that the stack may use.
+    floor: u16,
+}
+
+impl StackDepth {
+    /// Works out an image's depths. A vector table is recognised by the `jmp` at
+    /// address 0; vectors that lead to avr-libc's `__bad_interrupt` are not in use.
+    ///
+    /// # Errors
+    /// See [`StackError`].
+    pub fn of(image: &Image) -> Result<Self, StackError> {
+        let flash = image.flash();
+        let unused = image.symbol("__bad_interrupt");
+        let unused = unused.map(|symbol| symbol.address as u32);
+        let mut handler = 0;
+        let mut walk = Walk::new(image, &flash, Context::Interrupt);
+        for vector in 1..VECTORS {
+            let target = instruction::jump_target(&flash, 0)
+                .and_then(|_| instruction::jump_target(&flash, vector * 4));
+            if let Some(target) = target.filter(|target| Some(*target) != unused) {
+                handler = handler.max(ENTRY + walk.function(target)?.depth);
+            }
+        }
+        let main = Walk::new(image, &flash, Context::Main).function(0)?.depth;
+        let floor = image.data_end();
+        Ok(Self {
+            main,
+            handler,
+            floor,
+        })
+    }
+
+    /// The deepest of all: an interrupt on top of main at its deepest.
+    #[must_use]
+    pub fn worst(&self) -> u16 {
+        self.main + self.handler
+    }
+
+    /// Bytes between static data and the deepest stack; negative if they collide.
+    #[must_use]
+    pub fn margin(&self) -> i32 {
+        i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.worst())
+    }
+}
