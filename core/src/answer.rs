@@ -14,7 +14,6 @@ use crate::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::part::{End, Servo, Side};
 use crate::robot::Robot;
-use crate::settings::Unfit;
 use crate::slider::Slider;
 use crate::supply::Voltage;
 use crate::text::Text;
@@ -34,12 +33,12 @@ pub enum Refusal {
     /// Code 7: the servos have no pulses.
     Resting,
     /// Code 3: with this calibration, a servo could not do what the gaits need.
-    Unfit(Unfit),
+    Unfit(Servo),
     /// Code 3: with this calibration, a servo could not stay where it is, or go
     /// where it goes.
-    Elsewhere(Unfit),
+    Elsewhere(Servo),
     /// Code 8: the supply is too low for this.
-    Supply(Voltage),
+    Supply,
     /// Code 9: the memory does not keep what is written.
     NotKept,
     /// Code 9: the memory holds no settings to load.
@@ -164,7 +163,7 @@ impl Refusal {
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
             Self::TooLong => 6,
             Self::Resting => 7,
-            Self::Supply(_) => 8,
+            Self::Supply => 8,
             Self::NotKept | Self::NothingSaved => 9,
         }
     }
@@ -184,22 +183,17 @@ impl Refusal {
             Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
             Self::TooLong => Text::TooLong.print(out),
             Self::Resting => Text::Resting.print(out),
-            Self::Unfit(unfit) => {
-                let servo = unfit.servo;
-                print_reach(servo, Text::WouldReach, &unfit.reach, motion, out)?;
+            Self::Unfit(servo) => {
+                print_servo(*servo, out)?;
                 Text::Needed.print(out)?;
-                let needed = motion.robot().reach();
-                print_range(servo, &needed[servo.index()], motion, out)
+                let needed = motion.robot().reach(servo.index());
+                print_range(*servo, &needed, motion, out)
             }
-            Self::Elsewhere(unfit) => {
-                print_reach(unfit.servo, Text::WouldReach, &unfit.reach, motion, out)?;
+            Self::Elsewhere(servo) => {
+                print_servo(*servo, out)?;
                 Text::NotHere.print(out)
             }
-            Self::Supply(voltage) => {
-                Text::LowSupply.print(out)?;
-                print_voltage(out, *voltage)?;
-                Text::Volts.print(out)
-            }
+            Self::Supply => Text::LowSupply.print(out),
             Self::NotKept => Text::NotKept.print(out),
             Self::NothingSaved => Text::NothingSaved.print(out),
         }
@@ -237,26 +231,10 @@ where
     R: Robot,
     W: uWrite + ?Sized,
 {
-    let Calibration { min, max, .. } = motion.calibration()[servo.index()];
-    print_reach(servo, Text::Beyond, &Reach { min, max }, motion, out)
-}
-
-/// A servo, a verb, and the chassis angles between which it may turn.
-#[inline(never)]
-fn print_reach<R, W>(
-    servo: Servo,
-    verb: Text,
-    reach: &Reach,
-    motion: &Motion<R>,
-    out: &mut W,
-) -> Result<(), W::Error>
-where
-    R: Robot,
-    W: uWrite + ?Sized,
-{
     print_servo(servo, out)?;
-    verb.print(out)?;
-    print_range(servo, reach, motion, out)
+    Text::Beyond.print(out)?;
+    let Calibration { min, max, .. } = motion.calibration()[servo.index()];
+    print_range(servo, &Reach { min, max }, motion, out)
 }
 
 fn print_range<R, W>(

@@ -128,7 +128,6 @@ pub fn own_word(word: &[u8]) -> Option<Text> {
 ///
 /// # Errors
 /// What keeps the line from being a command.
-#[inline(never)]
 pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut words = Words(line);
     let Some(word) = own_word(words.next()) else {
@@ -199,7 +198,6 @@ impl<'a> Words<'a> {
     }
 }
 
-#[inline(never)]
 fn pose(mut words: Words) -> Result<Command, Misread> {
     let mut angles = [Angle(0); 4];
     let mut beyond = None;
@@ -280,7 +278,6 @@ fn scale(words: &mut Words) -> Result<Change, Misread> {
     }
 }
 
-#[inline(never)]
 fn boot<R: Robot>(words: Words, robot: &R) -> Result<Command, Misread> {
     let rest = words.0.trim_ascii();
     let boot = if Text::Rest.is(rest) {

@@ -7,9 +7,7 @@
 
 use ufmt::uWrite;
 
-use crate::adjustment::Reach;
 use crate::answer::{self, Answer, Refusal};
-use crate::calibration::Calibration;
 use crate::command::{Change, Command, parse};
 use crate::fault::Fault;
 use crate::gait::GaitId;
@@ -17,12 +15,13 @@ use crate::hazard::Hazard;
 use crate::line::{self, Line};
 use crate::memory::{Memory, Progress};
 use crate::motion::{Activity, Motion};
+use crate::part::Servo;
 use crate::pose::{Pose, Pulses};
 use crate::record::{self, Outcome, RESTED};
 use crate::restart::{Cause, Restart};
 use crate::robot::Robot;
 use crate::safety::{Health, Notice, Order, Safety};
-use crate::settings::{Boot, Settings, Unfit};
+use crate::settings::{Boot, Settings};
 use crate::supply::Voltage;
 use crate::text::Text;
 
@@ -131,9 +130,7 @@ impl<R: Robot> Console<R> {
         if found != Outcome::Latest {
             console.safety.notify(Notice::Memory);
         }
-        if let Ok(calibration) = settings.calibration(console.motion.robot()) {
-            console.motion.calibrate(&calibration);
-        }
+        console.calibrate();
         if hung {
             console.safety.fail(Fault::Watchdog);
         }
@@ -401,7 +398,7 @@ impl<R: Robot> Console<R> {
             }
             Command::Save => {
                 if !self.safety.allows_writing() {
-                    return Err(Refusal::Supply(self.voltage()));
+                    return Err(Refusal::Supply);
                 }
                 self.job = Some(Job::Save);
                 return Ok(None);
@@ -417,7 +414,7 @@ impl<R: Robot> Console<R> {
         if !wakes && self.motion.activity() == Activity::Rest {
             Err(Refusal::Resting)
         } else if !self.safety.allows_motion() {
-            Err(Refusal::Supply(self.voltage()))
+            Err(Refusal::Supply)
         } else {
             Ok(())
         }
@@ -448,15 +445,26 @@ impl<R: Robot> Console<R> {
     /// does; if not, they have to be taken back.
     #[inline(never)]
     fn adjust(&mut self) -> Result<(), Refusal> {
-        let calibration = self.settings.calibration(self.motion.robot());
-        let calibration = calibration.map_err(Refusal::Unfit)?;
-        if let Some(servo) = self.motion.beyond(&calibration) {
-            let Calibration { min, max, .. } = calibration[servo.index()];
-            let reach = Reach { min, max };
-            return Err(Refusal::Elsewhere(Unfit { servo, reach }));
+        let robot = self.motion.robot();
+        if let Some(servo) = self.settings.unfit(robot) {
+            return Err(Refusal::Unfit(servo));
         }
-        self.motion.calibrate(&calibration);
+        for place in 0..4 {
+            let calibration = self.settings.calibration(place, robot);
+            if self.motion.goes_beyond(place, &calibration) {
+                return Err(Refusal::Elsewhere(Servo::at(place)));
+            }
+        }
+        self.calibrate();
         Ok(())
+    }
+
+    /// Hands the motion what the settings say of the servos.
+    fn calibrate(&mut self) {
+        for place in 0..4 {
+            let calibration = self.settings.calibration(place, self.motion.robot());
+            self.motion.calibrate(place, calibration);
+        }
     }
 
     /// The supply that is the reason to refuse something.

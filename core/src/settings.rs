@@ -13,7 +13,7 @@
 //! | 38 | `boot`: 0 for `rest`, else the [`key`] of a gait |
 //! | 40 | `deadman`, ms |
 
-use crate::adjustment::{Adjustment, Reach};
+use crate::adjustment::Adjustment;
 use crate::calibration::Calibration;
 use crate::gait::GaitId;
 use crate::memory::Content;
@@ -24,7 +24,8 @@ use crate::units::Sweep;
 /// Raised when the meaning of the bytes changes.
 pub const FORMAT: u8 = 1;
 
-const TURN: usize = 1;
+/// Where the turn is.
+pub const TURN: usize = 1;
 const HASH: usize = 2;
 const SERVOS: usize = 6;
 const BOOT: usize = 38;
@@ -45,22 +46,13 @@ pub struct Settings {
     bytes: Content,
 }
 
-/// A servo that could not do what the gaits ask of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unfit {
-    /// Which one.
-    pub servo: Servo,
-    /// What it would reach.
-    pub reach: Reach,
-}
-
 impl Settings {
     /// Those of robot.toml.
     #[inline(never)]
     pub fn of<R: Robot>(robot: &R) -> Self {
         let mut settings = Self::blank(robot);
-        for (place, servo) in robot.calibration().iter().enumerate() {
-            settings.set_servo(place, Adjustment::of(servo));
+        for place in 0..4 {
+            settings.set_servo(place, Adjustment::of(&robot.servo(place)));
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
         settings
@@ -84,6 +76,11 @@ impl Settings {
     /// What a memory keeps.
     pub const fn bytes(&self) -> &Content {
         &self.bytes
+    }
+
+    /// The same, to be filled.
+    pub const fn bytes_mut(&mut self) -> &mut Content {
+        &mut self.bytes
     }
 
     /// Whether they are of this format and for the servos of this robot.
@@ -154,25 +151,22 @@ impl Settings {
         self.put(DEADMAN, ms);
     }
 
-    /// The servos' calibration.
-    ///
-    /// # Errors
-    /// The first servo whose travel would end short of the neutral angle or of a gait.
+    /// A servo's calibration, by its place.
     #[inline(never)]
-    pub fn calibration<R: Robot>(&self, robot: &R) -> Result<[Calibration; 4], Unfit> {
-        let mut calibration = robot.calibration();
-        let needed = robot.reach();
-        for (place, servo) in calibration.iter_mut().enumerate() {
-            *servo = self.servo(place).apply(servo);
-            let (min, max) = (servo.min, servo.max);
-            if min > needed[place].min || max < needed[place].max {
-                return Err(Unfit {
-                    servo: Servo::at(place),
-                    reach: Reach { min, max },
-                });
-            }
-        }
-        Ok(calibration)
+    pub fn calibration<R: Robot>(&self, place: usize, robot: &R) -> Calibration {
+        self.servo(place).apply(&robot.servo(place))
+    }
+
+    /// The first servo whose travel ends short of the neutral angle or of a gait.
+    #[inline(never)]
+    pub fn unfit<R: Robot>(&self, robot: &R) -> Option<Servo> {
+        (0..4)
+            .find(|place| {
+                let servo = self.calibration(*place, robot);
+                let needed = robot.reach(*place);
+                servo.min > needed.min || servo.max < needed.max
+            })
+            .map(Servo::at)
     }
 
     fn get(&self, at: usize) -> u16 {

@@ -160,10 +160,9 @@ texts! {
     BootWants = "boot wants the name of a gait, or rest";
     DeadmanWants = "deadman wants a whole number of milliseconds, 0..60000";
     DeadmanRange = "deadman must be 0..60000";
-    WouldReach = " would reach ";
-    Needed = ", gaits need ";
-    NotHere = ", too little for where it is or goes, send stand first";
-    LowSupply = "the supply is too low: ";
+    Needed = " would not reach what the gaits need, ";
+    NotHere = " would not reach where it is or goes, send stand first";
+    LowSupply = "the supply is too low";
     Volts = " V";
     NotKept = "the EEPROM does not keep what is written";
     NothingSaved = "nothing is saved that could be loaded";

@@ -744,13 +744,13 @@ fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothi
     ] {
         let refused = dialogue.say(line);
         assert!(refused.starts_with("err 3 A"), "{line}: {refused}");
-        assert!(refused.contains(" would reach ") && refused.contains(", gaits need "));
+        assert!(refused.contains(" would not reach what the gaits need, "));
         assert_eq!(cal(&mut dialogue), before);
     }
     dialogue.say("pose 150 47.91 309.64 226.18");
     dialogue.run(2);
     let refused = dialogue.say("limit 1 61.37 149");
-    assert!(refused.ends_with(", too little for where it is or goes, send stand first"));
+    assert!(refused.ends_with(" would not reach where it is or goes, send stand first"));
     assert_eq!(cal(&mut dialogue), before);
     dialogue.say("stand");
     dialogue.run(150);
