@@ -24,10 +24,10 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash lint cli bench prove mutants docs clean .firmware .gaits .flash .lint .cli .simulator .sim .tests .test .bench .prove .mutants .docs
+.PHONY: help sim test firmware flash flash-test lint cli bench prove mutants docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .mutants .docs
 
 help: ## this list
-	@grep -E '^[a-z]+:.*## ' Makefile | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
 	@echo "firmware, sim, test, bench, prove and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
@@ -38,6 +38,8 @@ firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and
 	$(call prepared,.gaits)
 flash: ## build, write to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
+flash-test: ## what `make flash` does, and says when it cannot, with a simulated board
+	$(call prepared,.flash-test)
 lint: ## rustfmt and clippy, warnings are errors
 	$(call prepared,.lint)
 cli: ## build the host program, host/target/release/lizard
@@ -51,7 +53,7 @@ mutants: ## mistakes on purpose: which does no test notice? PART=board, core or 
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
 clean: ## remove everything that was built
-	rm -rf target host/target out
+	rm -rf target host/target out judge/node_modules
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:
@@ -63,9 +65,18 @@ clean: ## remove everything that was built
 	@echo
 	@cat $(dir $(ELF))gaits.txt
 
-.flash: .firmware
+# The port is looked at first, so that nobody waits for a build without a board.
+.flash:
+	@scripts/flash --check
+	@$(MAKE) .firmware
 	@scripts/setup-flash
-	@RUSTC_BOOTSTRAP=1 cargo run --release
+	@scripts/flash
+
+# The README's `make flash`, played on a simulated board behind a pseudo terminal.
+.flash-test: .firmware
+	@scripts/setup-flash
+	@scripts/setup-flash-test
+	@cd host && cargo test -p lizard-host-tests --test flash --test flash_troubles --quiet -- --include-ignored
 
 # The second line puts the program where the documentation says it is.
 .cli:
@@ -87,7 +98,9 @@ clean: ## remove everything that was built
 	@cd host && cargo test --workspace --no-run --quiet
 
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
+# Where the judge cannot be set up, its tests fail and say so; the others run.
 .test:
+	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
 	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test --workspace --no-fail-fast --quiet
 

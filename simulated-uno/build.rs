@@ -3,6 +3,7 @@
 fn main() {
     let parts = [
         "adc",
+        "boot",
         "call_timer",
         "chip",
         "chip_access",

@@ -5,6 +5,7 @@
 //! hold or a gait that breaks a margin, so nothing is checked again here.
 
 use lizard_avr::Flash;
+use lizard_core::adjustment::Reach;
 use lizard_core::calibration::Calibration;
 use lizard_core::couplers::{self, Couplers};
 use lizard_core::curve::Table;
@@ -15,9 +16,15 @@ use lizard_core::part::{End, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
+use lizard_core::supply::{Supplies, Thresholds};
 use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
 
 include!(concat!(env!("OUT_DIR"), "/robot.rs"));
+
+lizard_avr::flash! {
+    const SERVOS: [Calibration; 4] = CALIBRATION;
+    const REACHES: [Reach; 4] = REACH;
+}
 
 /// The robot of robot.toml.
 pub struct Lizard;
@@ -55,9 +62,10 @@ impl Robot for Lizard {
         NEUTRAL
     }
 
-    #[inline(always)]
+    // Out of line: constants of this size cost less as a table.
+    #[inline(never)]
     fn calibration(&self) -> [Calibration; 4] {
-        CALIBRATION
+        SERVOS.load()
     }
 
     #[inline(always)]
@@ -75,8 +83,23 @@ impl Robot for Lizard {
         WAVES.as_slice()
     }
 
+    #[inline(never)]
+    fn reach(&self) -> [Reach; 4] {
+        REACHES.load()
+    }
+
+    #[inline(always)]
+    fn supplies(&self) -> Supplies {
+        SUPPLIES
+    }
+
     #[inline(always)]
     fn hash(&self) -> u32 {
         HASH
+    }
+
+    #[inline(always)]
+    fn servo_hash(&self) -> u32 {
+        SERVO_HASH
     }
 }

@@ -6,13 +6,17 @@
 use lizard_avr::flash;
 use ufmt::uWrite;
 
+use crate::adjustment::Reach;
+use crate::calibration::Calibration;
 use crate::command::Misread;
 use crate::gait::GaitId;
 use crate::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::part::{End, Servo, Side};
 use crate::robot::Robot;
+use crate::settings::Unfit;
 use crate::slider::Slider;
+use crate::supply::Voltage;
 use crate::text::Text;
 use crate::units::{Angle, Sine};
 
@@ -29,6 +33,17 @@ pub enum Refusal {
     TooLong,
     /// Code 7: the servos have no pulses.
     Resting,
+    /// Code 3: with this calibration, a servo could not do what the gaits need.
+    Unfit(Unfit),
+    /// Code 3: with this calibration, a servo could not stay where it is, or go
+    /// where it goes.
+    Elsewhere(Unfit),
+    /// Code 8: the supply is too low for this.
+    Supply(Voltage),
+    /// Code 9: the memory does not keep what is written.
+    NotKept,
+    /// Code 9: the memory holds no settings to load.
+    NothingSaved,
 }
 
 /// The next line of an answer.
@@ -42,6 +57,8 @@ pub enum Answer {
     Help(u8),
     /// `ok` and the state.
     Status,
+    /// A line of what is set, by its number; after the last one `ok cal`.
+    Settings(u8),
     /// `err`; nothing was changed.
     Refused(Refusal),
 }
@@ -138,13 +155,17 @@ impl Refusal {
     pub const fn code(&self) -> u8 {
         match self {
             Self::Misread(Misread::Unknown) => 1,
-            Self::Misread(Misread::SpeedRange | Misread::WatchRange | Misread::PoseRange(_))
-            | Self::Travel(_) => 3,
+            Self::Misread(Misread::Range(_) | Misread::PoseRange(_))
+            | Self::Travel(_)
+            | Self::Unfit(_)
+            | Self::Elsewhere(_) => 3,
             Self::Misread(_) => 2,
             Self::Unsafe(Hazard::Margin { .. }) => 4,
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
             Self::TooLong => 6,
             Self::Resting => 7,
+            Self::Supply(_) => 8,
+            Self::NotKept | Self::NothingSaved => 9,
         }
     }
 
@@ -163,10 +184,38 @@ impl Refusal {
             Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
             Self::TooLong => Text::TooLong.print(out),
             Self::Resting => Text::Resting.print(out),
+            Self::Unfit(unfit) => {
+                let servo = unfit.servo;
+                print_reach(servo, Text::WouldReach, &unfit.reach, motion, out)?;
+                Text::Needed.print(out)?;
+                let needed = motion.robot().reach();
+                print_range(servo, &needed[servo.index()], motion, out)
+            }
+            Self::Elsewhere(unfit) => {
+                print_reach(unfit.servo, Text::WouldReach, &unfit.reach, motion, out)?;
+                Text::NotHere.print(out)
+            }
+            Self::Supply(voltage) => {
+                Text::LowSupply.print(out)?;
+                print_voltage(out, *voltage)?;
+                Text::Volts.print(out)
+            }
+            Self::NotKept => Text::NotKept.print(out),
+            Self::NothingSaved => Text::NothingSaved.print(out),
         }
     }
 }
 
+/// Prints a voltage with two decimals.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn print_voltage<W: uWrite + ?Sized>(out: &mut W, voltage: Voltage) -> Result<(), W::Error> {
+    number(out, voltage.hundredths().into(), 2)
+}
+
+#[inline(never)]
 fn print_misread<R, W>(misread: Misread, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
 where
     R: Robot,
@@ -176,11 +225,7 @@ where
         Misread::Unknown => Text::Unknown,
         Misread::Surplus => Text::Surplus,
         Misread::Incomplete => Text::Incomplete,
-        Misread::SpeedWants => Text::SpeedWants,
-        Misread::SpeedRange => Text::SpeedRange,
-        Misread::WatchWants => Text::WatchWants,
-        Misread::WatchRange => Text::WatchRange,
-        Misread::PoseWants => Text::PoseWants,
+        Misread::Wants(text) | Misread::Range(text) => text,
         Misread::PoseRange(servo) => return print_travel(servo, motion, out),
     };
     text.print(out)
@@ -192,20 +237,49 @@ where
     R: Robot,
     W: uWrite + ?Sized,
 {
+    let Calibration { min, max, .. } = motion.calibration()[servo.index()];
+    print_reach(servo, Text::Beyond, &Reach { min, max }, motion, out)
+}
+
+/// A servo, a verb, and the chassis angles between which it may turn.
+#[inline(never)]
+fn print_reach<R, W>(
+    servo: Servo,
+    verb: Text,
+    reach: &Reach,
+    motion: &Motion<R>,
+    out: &mut W,
+) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
     print_servo(servo, out)?;
-    Text::Beyond.print(out)?;
-    let index = servo.index();
-    let calibration = &motion.calibration()[index];
-    let neutral = motion.robot().neutral()[index];
-    number(out, neutral.swept(calibration.min).centideg().into(), 2)?;
+    verb.print(out)?;
+    print_range(servo, reach, motion, out)
+}
+
+fn print_range<R, W>(
+    servo: Servo,
+    reach: &Reach,
+    motion: &Motion<R>,
+    out: &mut W,
+) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
+    let neutral = motion.robot().neutral()[servo.index()];
+    number(out, neutral.swept(reach.min).centideg().into(), 2)?;
     Text::Dots.print(out)?;
-    number(out, neutral.swept(calibration.max).centideg().into(), 2)
+    number(out, neutral.swept(reach.max).centideg().into(), 2)
 }
 
 /// Prints what is wrong with a pose: the margin or the travel, and its limit.
 ///
 /// # Errors
 /// Those of `out`.
+#[inline(never)]
 pub fn print_hazard<R, W>(hazard: Hazard, robot: &R, out: &mut W) -> Result<(), W::Error>
 where
     R: Robot,
@@ -367,23 +441,23 @@ mod tests {
                 "2 this command wants one more word",
             ),
             (
-                Refusal::Misread(Misread::SpeedWants),
+                Refusal::Misread(Misread::Wants(Text::SpeedWants)),
                 "2 speed wants a whole number, 10..100",
             ),
             (
-                Refusal::Misread(Misread::SpeedRange),
+                Refusal::Misread(Misread::Range(Text::SpeedRange)),
                 "3 speed must be 10..100",
             ),
             (
-                Refusal::Misread(Misread::WatchWants),
+                Refusal::Misread(Misread::Wants(Text::WatchWants)),
                 "2 watch wants a whole number, 0..10000",
             ),
             (
-                Refusal::Misread(Misread::WatchRange),
+                Refusal::Misread(Misread::Range(Text::WatchRange)),
                 "3 watch must be 0..10000",
             ),
             (
-                Refusal::Misread(Misread::PoseWants),
+                Refusal::Misread(Misread::Wants(Text::PoseWants)),
                 "2 pose wants four angles in degrees, at most two decimals",
             ),
             (

@@ -2,9 +2,10 @@
 //!
 //! Servos of one type differ, and a horn goes on its spline only every 14
 //! degrees. So this is no constant of the robot but a value that the motion
-//! holds, and that may be changed while the robot runs.
+//! holds, made of robot.toml's and of what a person has set
+//! ([`crate::adjustment`]).
 
-use lizard_avr::mul;
+use lizard_avr::{mul, mul_unsigned};
 
 use crate::units::{Sweep, Width};
 
@@ -25,8 +26,23 @@ pub struct Calibration {
 impl Calibration {
     /// The pulse width that turns the servo to `sweep`.
     pub fn width(&self, sweep: Sweep) -> Width {
-        let turned = (mul(sweep.0, self.gain) + (1 << 13)) >> 14;
-        Width(self.neutral.0.wrapping_add(turned as u16))
+        Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
+    }
+
+    /// The same without an end, for sweeps beyond the travel.
+    pub fn pulse(&self, sweep: Sweep) -> i32 {
+        i32::from(self.neutral.0) + self.turned(sweep)
+    }
+
+    fn turned(&self, sweep: Sweep) -> i32 {
+        (mul(sweep.0, self.gain) + (1 << 13)) >> 14
+    }
+
+    /// How far the pulse may change in a frame, for a turn of `per_frame`, 1/65536
+    /// turn; at least one cycle.
+    pub fn slew(&self, per_frame: u16) -> u16 {
+        let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
+        cycles.max(1)
     }
 
     /// True where the travel of the servo reaches `sweep`.

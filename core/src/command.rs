@@ -4,11 +4,15 @@
 //! `robot.toml`. Nothing here acts; a line that is not wholly understood is an
 //! error and changes nothing.
 
+use lizard_avr::flash;
+
+use crate::adjustment::LARGEST_TRIM_DEG;
 use crate::gait::{GaitId, Name};
 use crate::part::Servo;
 use crate::robot::Robot;
+use crate::settings::Boot;
 use crate::text::Text;
-use crate::units::{Angle, TURN_CENTIDEG};
+use crate::units::{Angle, Sweep, TURN_CENTIDEG};
 
 /// A command, with its arguments checked as far as syntax and range go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +33,35 @@ pub enum Command {
     Status,
     /// Report the pose every so many frames; 0 ends it.
     Watch(u16),
+    /// Set something of a servo.
+    Adjust(Servo, Change),
+    /// Print all that is set.
+    Cal,
+    /// Go to where every servo has its neutral pulse, trims left out.
+    Center,
+    /// Keep what is set in the EEPROM.
+    Save,
+    /// Take what the EEPROM keeps.
+    Load,
+    /// Take what robot.toml says.
+    Factory,
+    /// What to do after power-on.
+    Boot(Boot),
+    /// Milliseconds without a line after which a gait ends; 0 for never.
+    Deadman(u16),
+}
+
+/// What is set of a servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// How far its horn is to turn from where it sits.
+    Trim(Sweep),
+    /// The chassis angles at which its travel ends, clockwise and counter-clockwise.
+    Limit([Angle; 2]),
+    /// Whether a longer pulse turns it counter-clockwise.
+    Dir(bool),
+    /// Hundredths of a microsecond per degree, 500..=2000.
+    Scale(u16),
 }
 
 /// Why a line is no command.
@@ -40,16 +73,11 @@ pub enum Misread {
     Surplus,
     /// The first words of a gait's name, without the others.
     Incomplete,
-    /// `speed` wants one whole number.
-    SpeedWants,
-    /// `speed` must be 10..=100.
-    SpeedRange,
-    /// `watch` wants one whole number.
-    WatchWants,
-    /// `watch` must be at most 10000.
-    WatchRange,
-    /// `pose` wants four angles of at most two decimals.
-    PoseWants,
+    /// An argument is missing, malformed or too much: the sentence says what is
+    /// wanted.
+    Wants(Text),
+    /// An argument is out of the range that the sentence tells.
+    Range(Text),
     /// The angle of this servo is more than a turn.
     PoseRange(Servo),
 }
@@ -57,52 +85,90 @@ pub enum Misread {
 /// The rarest report: every 200 s.
 pub const WATCH_MOST: u16 = 10_000;
 
+/// The longest silence that `deadman` bears, a minute.
+pub const DEADMAN_MOST: u16 = 60_000;
+
 /// Larger angles are taken for mistakes; a turn either way is enough.
 const LARGEST_ANGLE: i32 = TURN_CENTIDEG;
 
-/// The words that the console takes for its own; no gait's name may begin with
-/// one.
-pub const WORDS: [Text; 8] = [
-    Text::Help,
-    Text::QuestionMark,
-    Text::Stop,
-    Text::Rest,
-    Text::Status,
-    Text::Pose,
-    Text::Speed,
-    Text::Watch,
-];
+flash! {
+    /// The words that the console takes for its own; no gait's name may begin with
+    /// one.
+    pub const WORDS: [Text; 19] = [
+        Text::Help,
+        Text::QuestionMark,
+        Text::Stop,
+        Text::Rest,
+        Text::Status,
+        Text::Pose,
+        Text::Speed,
+        Text::Watch,
+        Text::Trim,
+        Text::Limit,
+        Text::Dir,
+        Text::Scale,
+        Text::Cal,
+        Text::Center,
+        Text::Save,
+        Text::Load,
+        Text::Factory,
+        Text::Boot,
+        Text::Deadman,
+    ];
+}
+
+/// One of [`WORDS`].
+pub fn own_word(word: &[u8]) -> Option<Text> {
+    (0..WORDS.as_slice().len())
+        .map(|place| WORDS.at(place).load())
+        .find(|text| text.is(word))
+}
 
 /// Reads a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
 /// What keeps the line from being a command.
+#[inline(never)]
 pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut words = Words(line);
-    let first = words.next();
-    let is = |text: Text| text.is(first);
-    let alone = if is(Text::Help) || is(Text::QuestionMark) {
-        Command::Help
-    } else if is(Text::Stop) {
-        Command::Stop
-    } else if is(Text::Rest) {
-        Command::Rest
-    } else if is(Text::Status) {
-        Command::Status
-    } else if is(Text::Pose) {
-        return pose(words);
-    } else if is(Text::Speed) {
-        return match whole(words).ok_or(Misread::SpeedWants)? {
-            percent @ 10..=100 => Ok(Command::Speed(percent as u8)),
-            _ => Err(Misread::SpeedRange),
-        };
-    } else if is(Text::Watch) {
-        return match whole(words).ok_or(Misread::WatchWants)? {
-            frames @ 0..=WATCH_MOST => Ok(Command::Watch(frames)),
-            _ => Err(Misread::WatchRange),
-        };
-    } else {
+    let Some(word) = own_word(words.next()) else {
         return gait(line, robot);
+    };
+    let alone = match word {
+        Text::Stop => Command::Stop,
+        Text::Rest => Command::Rest,
+        Text::Status => Command::Status,
+        Text::Cal => Command::Cal,
+        Text::Center => Command::Center,
+        Text::Save => Command::Save,
+        Text::Load => Command::Load,
+        Text::Factory => Command::Factory,
+        Text::Pose => return pose(words),
+        Text::Trim => return adjust(words, trim, Text::TrimWants),
+        Text::Limit => return adjust(words, limit, Text::LimitWants),
+        Text::Dir => return adjust(words, dir, Text::DirWants),
+        Text::Scale => return adjust(words, scale, Text::ScaleWants),
+        Text::Boot => return boot(words, robot),
+        Text::Speed => {
+            return match whole(words).ok_or(Misread::Wants(Text::SpeedWants))? {
+                percent @ 10..=100 => Ok(Command::Speed(percent as u8)),
+                _ => Err(Misread::Range(Text::SpeedRange)),
+            };
+        }
+        Text::Watch => {
+            return match whole(words).ok_or(Misread::Wants(Text::WatchWants))? {
+                frames @ 0..=WATCH_MOST => Ok(Command::Watch(frames)),
+                _ => Err(Misread::Range(Text::WatchRange)),
+            };
+        }
+        Text::Deadman => {
+            return match whole(words).ok_or(Misread::Wants(Text::DeadmanWants))? {
+                ms @ 0..=DEADMAN_MOST => Ok(Command::Deadman(ms)),
+                _ => Err(Misread::Range(Text::DeadmanRange)),
+            };
+        }
+        // Help and the question mark.
+        _ => Command::Help,
     };
     if words.is_done() {
         Ok(alone)
@@ -133,11 +199,12 @@ impl<'a> Words<'a> {
     }
 }
 
+#[inline(never)]
 fn pose(mut words: Words) -> Result<Command, Misread> {
     let mut angles = [Angle(0); 4];
     let mut beyond = None;
     for (place, angle) in angles.iter_mut().enumerate() {
-        let centideg = centideg(words.next()).ok_or(Misread::PoseWants)?;
+        let centideg = centideg(words.next()).ok_or(Misread::Wants(Text::PoseWants))?;
         if centideg.abs() > LARGEST_ANGLE {
             beyond = beyond.or(Some(Servo::at(place)));
         } else {
@@ -145,10 +212,86 @@ fn pose(mut words: Words) -> Result<Command, Misread> {
         }
     }
     match beyond {
-        _ if !words.is_done() => Err(Misread::PoseWants),
+        _ if !words.is_done() => Err(Misread::Wants(Text::PoseWants)),
         Some(servo) => Err(Misread::PoseRange(servo)),
         None => Ok(Command::Pose(angles)),
     }
+}
+
+/// A servo's number, then what is to be set of it; anything else is what `wants`
+/// says.
+fn adjust(
+    mut words: Words,
+    change: fn(&mut Words) -> Result<Change, Misread>,
+    wants: Text,
+) -> Result<Command, Misread> {
+    let servo = match words.next() {
+        [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
+        _ => return Err(Misread::Wants(wants)),
+    };
+    let change = change(&mut words);
+    if words.is_done() {
+        Ok(Command::Adjust(servo, change?))
+    } else {
+        Err(Misread::Wants(wants))
+    }
+}
+
+#[inline(never)]
+fn trim(words: &mut Words) -> Result<Change, Misread> {
+    let angle = centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))?;
+    // Before it wraps with the turn.
+    if angle.abs() > 100 * LARGEST_TRIM_DEG {
+        return Err(Misread::Range(Text::TrimRange));
+    }
+    let trim = Angle(0).sweep_to(Angle::from_centideg(angle));
+    Ok(Change::Trim(trim))
+}
+
+fn limit(words: &mut Words) -> Result<Change, Misread> {
+    let mut ends = [Angle(0); 2];
+    let mut within = true;
+    for end in &mut ends {
+        let angle = centideg(words.next()).ok_or(Misread::Wants(Text::LimitWants))?;
+        within &= angle.abs() <= LARGEST_ANGLE;
+        *end = Angle::from_centideg(angle);
+    }
+    if within {
+        Ok(Change::Limit(ends))
+    } else {
+        Err(Misread::Range(Text::LimitRange))
+    }
+}
+
+#[inline(never)]
+fn dir(words: &mut Words) -> Result<Change, Misread> {
+    match words.next() {
+        b"+" => Ok(Change::Dir(true)),
+        b"-" => Ok(Change::Dir(false)),
+        _ => Err(Misread::Wants(Text::DirWants)),
+    }
+}
+
+#[inline(never)]
+fn scale(words: &mut Words) -> Result<Change, Misread> {
+    match centideg(words.next()).ok_or(Misread::Wants(Text::ScaleWants))? {
+        scale @ 500..=2000 => Ok(Change::Scale(scale as u16)),
+        _ => Err(Misread::Range(Text::ScaleRange)),
+    }
+}
+
+#[inline(never)]
+fn boot<R: Robot>(words: Words, robot: &R) -> Result<Command, Misread> {
+    let rest = words.0.trim_ascii();
+    let boot = if Text::Rest.is(rest) {
+        Boot::Rest
+    } else {
+        match gait(rest, robot) {
+            Ok(Command::Gait(id)) => Boot::Gait(id),
+            _ => return Err(Misread::Wants(Text::BootWants)),
+        }
+    };
+    Ok(Command::Boot(boot))
 }
 
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
@@ -198,7 +341,9 @@ fn whole(mut words: Words) -> Option<u16> {
     }
 }
 
-/// An angle with at most two decimals, in hundredths.
+/// An angle with at most two decimals, in hundredths; a larger one than sixteen bits
+/// hold stays at that.
+#[inline(never)]
 fn centideg(word: &[u8]) -> Option<i32> {
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),
@@ -206,13 +351,17 @@ fn centideg(word: &[u8]) -> Option<i32> {
         digits => (false, digits),
     };
     let (degrees, rest) = number(digits);
-    let (tenths, hundredths) = match rest {
-        [] | [b'.'] => (0, 0),
-        [b'.', tenths] => (digit(*tenths)?, 0),
-        [b'.', tenths, hundredths] => (digit(*tenths)?, digit(*hundredths)?),
+    let decimals = match rest {
+        [] | [b'.'] => 0,
+        [b'.', tenths] => digit(*tenths)? * 10,
+        [b'.', tenths, hundredths] => digit(*tenths)? * 10 + digit(*hundredths)?,
         _ => return None,
     };
-    let size = i32::from(degrees?) * 100 + i32::from(tenths * 10 + hundredths);
+    let size = match degrees? {
+        degrees @ 0..=654 => degrees * 100 + decimals,
+        _ => u16::MAX,
+    };
+    let size = i32::from(size);
     Some(if negative { -size } else { size })
 }
 

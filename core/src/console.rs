@@ -7,21 +7,33 @@
 
 use ufmt::uWrite;
 
+use crate::adjustment::Reach;
 use crate::answer::{self, Answer, Refusal};
-use crate::command::{Command, parse};
+use crate::calibration::Calibration;
+use crate::command::{Change, Command, parse};
+use crate::fault::Fault;
 use crate::gait::GaitId;
-use crate::guard::Clearance;
 use crate::hazard::Hazard;
-use crate::line::{Ended, Line};
+use crate::line::{self, Line};
+use crate::memory::{Memory, Progress};
 use crate::motion::{Activity, Motion};
 use crate::pose::{Pose, Pulses};
+use crate::record::{self, Outcome, RESTED};
+use crate::restart::{Cause, Restart};
 use crate::robot::Robot;
+use crate::safety::{Health, Notice, Order, Safety};
+use crate::settings::{Boot, Settings, Unfit};
+use crate::supply::Voltage;
 use crate::text::Text;
-use crate::units::thousandths_from_phase;
+
+use job::Job;
+
+mod job;
+mod print;
 
 /// The longest line that [`Console::write_line`] writes, with its line end: a
 /// `status` whose every number has all its digits.
-pub const LONGEST_LINE: u8 = 192;
+pub const LONGEST_LINE: u8 = 250;
 
 /// What the board counts for `status`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,13 +45,22 @@ pub struct Counters {
 }
 
 /// The list of commands, a line each, after the gaits.
-const HELP: [Text; 6] = [
+const HELP: [Text; 15] = [
     Text::HelpStop,
     Text::HelpRest,
     Text::HelpSpeed,
     Text::HelpPose,
     Text::HelpStatus,
     Text::HelpWatch,
+    Text::HelpCal,
+    Text::HelpTrim,
+    Text::HelpLimit,
+    Text::HelpDir,
+    Text::HelpScale,
+    Text::HelpCenter,
+    Text::HelpSave,
+    Text::HelpBoot,
+    Text::HelpDeadman,
 ];
 
 /// A line that waits to be written.
@@ -49,6 +70,8 @@ enum Output {
     Banner,
     /// The answer to the last line received, or a part of it.
     Answer(Answer),
+    /// Something that nobody asked for.
+    Notice(Notice),
     /// Why the guard holds the robot.
     Held(Hazard),
     /// The pose, as `watch` asked for it.
@@ -71,6 +94,12 @@ struct Watch {
 pub struct Console<R> {
     line: Line,
     motion: Motion<R>,
+    settings: Settings,
+    /// What was found of them at power-on.
+    found: Outcome,
+    safety: Safety,
+    restart: Restart,
+    job: Option<Job>,
     banner: bool,
     answer: Option<Answer>,
     held: Option<Hazard>,
@@ -78,16 +107,40 @@ pub struct Console<R> {
 }
 
 impl<R: Robot> Console<R> {
-    /// A robot at power-on, its banner not yet written.
-    pub fn new(robot: R) -> Self {
-        Self {
+    /// A robot that begins, its banner not yet written. Its settings come from the
+    /// memory, and so does the pose in which it rested.
+    #[inline(never)]
+    pub fn new<M: Memory>(robot: R, memory: &M, restart: Restart) -> Self {
+        let mut settings = Settings::of(&robot);
+        let found = record::load(&robot, memory, &mut settings);
+        let rested = record::rested(&robot, memory);
+        let hung = restart.cause == Cause::Watchdog;
+        let mut console = Self {
             line: Line::new(),
             motion: Motion::new(robot),
+            settings,
+            found,
+            safety: Safety::new(!hung),
+            restart,
+            job: Some(Job::Pose(RESTED.forget())),
             banner: true,
             answer: None,
             held: None,
             watch: Watch::default(),
+        };
+        if found != Outcome::Latest {
+            console.safety.notify(Notice::Memory);
         }
+        if let Ok(calibration) = settings.calibration(console.motion.robot()) {
+            console.motion.calibrate(&calibration);
+        }
+        if hung {
+            console.safety.fail(Fault::Watchdog);
+        }
+        if let Some(pose) = restart.pose.or(rested) {
+            console.motion.begin_at(&pose, !hung);
+        }
+        console
     }
 
     /// The robot's motion.
@@ -98,14 +151,74 @@ impl<R: Robot> Console<R> {
     /// One frame on: the pulses to send in it. To be called 50 times a second.
     // Out of line, so that a simulator can time it by its name.
     #[inline(never)]
-    pub fn frame(&mut self) -> Pulses {
+    pub fn frame(&mut self, health: &Health) -> Pulses {
+        self.look_after(health);
         let was_held = self.motion.hazard().is_some();
         let pulses = self.motion.tick();
-        if !was_held && let Some(hazard) = self.motion.hazard() {
+        let hazard = self.motion.hazard();
+        if !was_held && let Some(hazard) = hazard {
             self.held = Some(hazard);
         }
+        self.safety.beat(hazard.is_some());
         self.watch.frame();
         pulses
+    }
+
+    /// Whether the LED is lit in this frame.
+    pub const fn is_lit(&self) -> bool {
+        self.safety.is_lit()
+    }
+
+    /// True while there is something to do with the memory. No byte is to be
+    /// passed on meanwhile.
+    pub const fn is_writing(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Does a part of what there is to do with the memory: one byte at most.
+    #[inline(never)]
+    pub fn write_memory<M: Memory>(&mut self, memory: &mut M) {
+        if !memory.is_ready() {
+            return;
+        }
+        let robot = self.motion.robot();
+        let ended = match &mut self.job {
+            None => return,
+            Some(Job::Load) => {
+                let before = self.settings;
+                match record::load(robot, memory, &mut self.settings) {
+                    Outcome::Latest | Outcome::Other => {
+                        let adjusted = self.adjust();
+                        if adjusted.is_err() {
+                            self.settings = before;
+                        }
+                        adjusted
+                    }
+                    _ => Err(Refusal::NothingSaved),
+                }
+            }
+            Some(Job::Save) => match record::save(&mut self.settings, memory) {
+                None => Ok(()),
+                Some(writing) => {
+                    self.job = Some(Job::Saving(writing));
+                    return;
+                }
+            },
+            Some(Job::Saving(writing)) => match writing.step(self.settings.bytes(), memory) {
+                Progress::Going => return,
+                Progress::Done => Ok(()),
+                Progress::Failed => Err(Refusal::NotKept),
+            },
+            Some(Job::Pose(writing)) => {
+                let pose = record::pose(self.motion.pose(), robot);
+                if writing.step(pose.bytes(), memory) != Progress::Going {
+                    self.job = None;
+                }
+                return;
+            }
+        };
+        self.job = None;
+        self.answer = Some(ended.map_or_else(Answer::Refused, |()| Answer::Done));
     }
 
     /// True while a line waits to be written. No byte is to be passed on
@@ -118,13 +231,20 @@ impl<R: Robot> Console<R> {
     // Out of line, as the next: half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8) {
-        self.answer = match self.line.push(byte) {
-            None => return,
-            Some(Ended::TooLong) => Some(Answer::Refused(Refusal::TooLong)),
-            Some(Ended::Line) => Some(match parse(self.line.text(), self.motion.robot()) {
-                Err(misread) => Answer::Refused(Refusal::Misread(misread)),
-                Ok(command) => self.execute(command).unwrap_or_else(Answer::Refused),
-            }),
+        self.safety.byte_came();
+        let Some(ended) = self.line.push(byte) else {
+            return;
+        };
+        self.safety.line_came();
+        self.answer = match ended {
+            line::Ended::TooLong => Some(Answer::Refused(Refusal::TooLong)),
+            line::Ended::Line => match parse(self.line.text(), self.motion.robot()) {
+                Err(misread) => Some(Answer::Refused(Refusal::Misread(misread))),
+                Ok(command) => {
+                    let executed = self.execute(command);
+                    executed.unwrap_or_else(|refusal| Some(Answer::Refused(refusal)))
+                }
+            },
         };
     }
 
@@ -141,10 +261,14 @@ impl<R: Robot> Console<R> {
             None => return Ok(()),
             Some(Output::Banner) => {
                 self.banner = false;
-                print_banner(out, self.motion.robot().hash())?;
+                print::print_banner(out, self.motion.robot().hash())?;
             }
             Some(Output::Answer(answer)) => {
                 self.answer = self.print_answer(out, answer, counters)?;
+            }
+            Some(Output::Notice(notice)) => {
+                self.safety.written(notice);
+                self.print_notice(out, notice)?;
             }
             Some(Output::Held(hazard)) => {
                 self.held = None;
@@ -168,6 +292,8 @@ impl<R: Robot> Console<R> {
             Some(Output::Banner)
         } else if let Some(answer) = self.answer {
             Some(Output::Answer(answer))
+        } else if let Some(notice) = self.safety.notice() {
+            Some(Output::Notice(notice))
         } else if let Some(hazard) = self.held {
             Some(Output::Held(hazard))
         } else if self.watch.due {
@@ -177,148 +303,166 @@ impl<R: Robot> Console<R> {
         }
     }
 
-    fn execute(&mut self, command: Command) -> Result<Answer, Refusal> {
-        let resting = self.motion.activity() == Activity::Rest;
+    /// Watches what may go wrong, and does what that asks for.
+    #[inline(never)]
+    fn look_after(&mut self, health: &Health) {
+        let motion = &self.motion;
+        let walks = matches!(motion.activity(), Activity::Gait(id) if id != GaitId::STAND);
+        let supplies = motion.robot().supplies();
+        match self
+            .safety
+            .frame(health, &supplies, walks, self.settings.deadman())
+        {
+            Order::None => {}
+            Order::Stop => self.motion.stop(),
+            Order::Rest => self.motion.rest(),
+            Order::Boot => match self.settings.boot(motion.robot()) {
+                // It stands already.
+                Boot::Gait(GaitId::STAND) => {}
+                Boot::Gait(gait) => {
+                    self.safety.notify(Notice::Boot);
+                    self.motion.start_gait(gait);
+                }
+                Boot::Rest => {
+                    self.safety.notify(Notice::Boot);
+                    self.rest();
+                }
+            },
+        }
+        self.motion.set_slow(!self.safety.allows_writing());
+    }
+
+    /// Executes a command. None: the answer comes when the memory has been dealt with.
+    #[inline(never)]
+    fn execute(&mut self, command: Command) -> Result<Option<Answer>, Refusal> {
         match command {
-            Command::Help => return Ok(Answer::Gaits(GaitId::STAND)),
-            Command::Status => return Ok(Answer::Status),
+            Command::Help => return Ok(Some(Answer::Gaits(GaitId::STAND))),
+            Command::Status => return Ok(Some(Answer::Status)),
+            Command::Cal => return Ok(Some(Answer::Settings(0))),
             Command::Speed(percent) => self.motion.set_speed(percent),
             Command::Watch(frames) => self.watch = Watch::every(frames),
-            Command::Rest => self.motion.rest(),
+            Command::Rest => self.rest(),
             Command::Gait(gait) => {
-                if resting && gait != GaitId::STAND {
-                    return Err(Refusal::Resting);
-                }
+                self.may_move(gait == GaitId::STAND)?;
                 self.motion.start_gait(gait);
+                self.moves();
             }
             Command::Pose(angles) => {
                 let motion = &self.motion;
                 let pose = Pose::at(&angles, &motion.robot().neutral(), motion.calibration())
                     .map_err(Refusal::Travel)?;
-                if resting {
-                    return Err(Refusal::Resting);
+                self.go_to(&pose)?;
+            }
+            Command::Center => {
+                let mut pose = Pose::NEUTRAL;
+                for (place, sweep) in pose.0.iter_mut().enumerate() {
+                    sweep.0 = -self.settings.servo(place).trim.0;
                 }
-                self.motion.go_to(&pose).map_err(Refusal::Unsafe)?;
+                if let Some(servo) = pose.beyond(self.motion.calibration()) {
+                    return Err(Refusal::Travel(servo));
+                }
+                self.go_to(&pose)?;
             }
             Command::Stop => {
-                if resting {
+                if self.motion.activity() == Activity::Rest {
                     return Err(Refusal::Resting);
                 }
                 self.motion.stop();
             }
-        }
-        Ok(Answer::Done)
-    }
-
-    /// Prints a line of an answer; returns what is left of it.
-    fn print_answer<W>(
-        &self,
-        out: &mut W,
-        answer: Answer,
-        counters: Counters,
-    ) -> Result<Option<Answer>, W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
-        match answer {
-            Answer::Refused(refusal) => {
-                Text::Err.print(out)?;
-                out.write_char(char::from(b'0' + refusal.code()))?;
-                out.write_char(' ')?;
-                refusal.print(&self.motion, out)?;
-            }
-            Answer::Gaits(first) => {
-                let rest = self.print_gaits(out, first)?;
-                return Ok(Some(rest.map_or(Answer::Help(0), Answer::Gaits)));
-            }
-            Answer::Help(line) => match HELP.get(usize::from(line)) {
-                Some(text) => {
-                    text.print(out)?;
-                    return Ok(Some(Answer::Help(line + 1)));
+            Command::Adjust(servo, change) => {
+                let place = servo.index();
+                let neutral = self.motion.robot().neutral()[place];
+                let before = self.settings.servo(place);
+                let mut set = before;
+                match change {
+                    Change::Trim(trim) => set.trim = trim,
+                    Change::Dir(direct) => set.set_direct(direct),
+                    Change::Scale(scale) => set.set_scale(scale),
+                    Change::Limit([min, max]) => {
+                        set.min = neutral.sweep_to(min);
+                        set.max = neutral.sweep_to(max);
+                    }
                 }
-                None => Text::OkHelp.print(out)?,
-            },
-            Answer::Done => {
-                Text::Ok.print(out)?;
-                answer::ascii(out, self.line.text().iter().copied())?;
+                self.settings.set_servo(place, set);
+                if let Err(refusal) = self.adjust() {
+                    self.settings.set_servo(place, before);
+                    return Err(refusal);
+                }
             }
-            Answer::Status => self.print_status(out, counters)?,
-        }
-        Ok(None)
-    }
-
-    /// `# gaits: stand|walk|...`, as many as a line takes; returns the first that
-    /// it has no room for.
-    fn print_gaits<W>(&self, out: &mut W, first: GaitId) -> Result<Option<GaitId>, W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
-        /// Without the line end.
-        const ROOM: u8 = LONGEST_LINE - 2;
-        let robot = self.motion.robot();
-        Text::HelpGaits.print(out)?;
-        let mut length = Text::HelpGaits.length();
-        let mut gait = first;
-        loop {
-            let name = robot.name(gait);
-            length += 1 + name.length();
-            if length > ROOM {
-                return Ok(Some(gait));
+            Command::Factory => {
+                self.settings = Settings::of(self.motion.robot());
+                self.adjust()?;
             }
-            out.write_char(if gait == first { ' ' } else { '|' })?;
-            answer::ascii(out, name)?;
-            match gait.next(robot.gaits().len()) {
-                Some(next) => gait = next,
-                None => return Ok(None),
+            Command::Boot(boot) => self.settings.set_boot(boot, self.motion.robot()),
+            Command::Deadman(ms) => self.settings.set_deadman(ms),
+            Command::Load => {
+                self.job = Some(Job::Load);
+                return Ok(None);
+            }
+            Command::Save => {
+                if !self.safety.allows_writing() {
+                    return Err(Refusal::Supply(self.voltage()));
+                }
+                self.job = Some(Job::Save);
+                return Ok(None);
             }
         }
+        Ok(Some(Answer::Done))
     }
 
-    fn print_status<W>(&self, out: &mut W, counters: Counters) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
-        let motion = &self.motion;
-        Text::OkGait.print(out)?;
-        match motion.activity() {
-            Activity::Gait(gait) => self.print_key(out, gait)?,
-            Activity::Pose => Text::Pose.print(out)?,
-            Activity::Stop => Text::Stop.print(out)?,
-            Activity::Rest => Text::Rest.print(out)?,
+    /// Refuses a motion for want of a supply, or because the servos rest and this
+    /// command does not `wake` them.
+    #[inline(never)]
+    fn may_move(&self, wakes: bool) -> Result<(), Refusal> {
+        if !wakes && self.motion.activity() == Activity::Rest {
+            Err(Refusal::Resting)
+        } else if !self.safety.allows_motion() {
+            Err(Refusal::Supply(self.voltage()))
+        } else {
+            Ok(())
         }
-        Text::StatusPhase.print(out)?;
-        answer::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
-        self.print_pose(out)?;
-        Text::StatusMargin.print(out)?;
-        answer::sine(out, Clearance::of(motion.robot(), motion.pose()).smallest())?;
-        let counts = [
-            (Text::StatusSpeed, motion.speed().into()),
-            (Text::StatusFrames, motion.frames()),
-            (Text::StatusLate, counters.late.into()),
-            (Text::StatusRxLost, counters.rx_lost.into()),
-        ];
-        for (key, count) in &counts {
-            key.print(out)?;
-            answer::number(out, *count, 0)?;
-        }
-        Text::StatusGuard.print(out)?;
-        match motion.hazard() {
-            None => Text::GuardClear,
-            Some(_) => Text::GuardHeld,
-        }
-        .print(out)
     }
 
-    fn print_pose<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
-        Text::WatchPose.print(out)?;
-        let motion = &self.motion;
-        answer::angles(out, &motion.pose().angles(&motion.robot().neutral()))
+    fn go_to(&mut self, pose: &Pose) -> Result<(), Refusal> {
+        self.may_move(false)?;
+        self.motion.go_to(pose).map_err(Refusal::Unsafe)?;
+        self.moves();
+        Ok(())
     }
 
-    /// A gait's name as a value without a blank: `arc-left`.
-    fn print_key<W: uWrite + ?Sized>(&self, out: &mut W, gait: GaitId) -> Result<(), W::Error> {
-        let name = self.motion.robot().name(gait);
-        answer::ascii(out, name.map(|byte| if byte == b' ' { b'-' } else { byte }))
+    /// A motion begins: faults are over, and the pose of the last rest is, too.
+    fn moves(&mut self) {
+        self.safety.clear();
+        self.job = Some(Job::Pose(RESTED.forget()));
+    }
+
+    /// Ends the pulses; the pose is kept for the next power-on.
+    fn rest(&mut self) {
+        self.motion.rest();
+        if self.safety.allows_writing() {
+            self.job = Some(Job::Pose(RESTED.write()));
+        }
+    }
+
+    /// Puts the settings into effect at once, if the robot can do with them what it
+    /// does; if not, they have to be taken back.
+    #[inline(never)]
+    fn adjust(&mut self) -> Result<(), Refusal> {
+        let calibration = self.settings.calibration(self.motion.robot());
+        let calibration = calibration.map_err(Refusal::Unfit)?;
+        if let Some(servo) = self.motion.beyond(&calibration) {
+            let Calibration { min, max, .. } = calibration[servo.index()];
+            let reach = Reach { min, max };
+            return Err(Refusal::Elsewhere(Unfit { servo, reach }));
+        }
+        self.motion.calibrate(&calibration);
+        Ok(())
+    }
+
+    /// The supply that is the reason to refuse something.
+    #[inline(never)]
+    fn voltage(&self) -> Voltage {
+        self.safety.supply().worst(&self.motion.robot().supplies())
     }
 }
 
@@ -341,23 +485,6 @@ impl Watch {
             }
         }
     }
-}
-
-/// `# lizard 0.1.0 tables 1a2b3c4d, send help for the commands`.
-fn print_banner<W: uWrite + ?Sized>(out: &mut W, hash: u32) -> Result<(), W::Error> {
-    Text::Banner.print(out)?;
-    Text::Version.print(out)?;
-    Text::BannerTables.print(out)?;
-    for digit in 0..8 {
-        let nibble = (hash >> (28 - 4 * digit)) as u8 & 0xf;
-        let digit = if nibble < 10 {
-            b'0' + nibble
-        } else {
-            b'a' - 10 + nibble
-        };
-        out.write_char(char::from(digit))?;
-    }
-    Text::BannerEnd.print(out)
 }
 
 #[cfg(test)]

@@ -26,28 +26,36 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod adjustment;
 pub mod answer;
 pub mod calibration;
 pub mod command;
 pub mod console;
 pub mod couplers;
 pub mod curve;
+pub mod fault;
 pub mod five_bar;
 pub mod gait;
 pub mod guard;
 pub mod hazard;
 pub mod limits;
 pub mod line;
+pub mod memory;
 pub mod motion;
 pub mod part;
 pub mod point_to_point;
 pub mod pose;
+pub mod record;
+pub mod restart;
 pub mod robot;
 pub mod root;
+pub mod safety;
 #[cfg(test)]
 mod sample;
+pub mod settings;
 pub mod slider;
 pub mod step;
+pub mod supply;
 pub mod text;
 pub mod trig;
 pub mod units;

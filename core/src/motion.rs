@@ -24,6 +24,10 @@
 //! | `Cycling` through a gait | another gait or a pose: that next; the same gait: - | brakes if there is a next, and once it stands still is `Moving` towards that |
 //! | any but `Resting` | `stop`: `Holding`; `rest`: `Resting`; nothing next | an unsafe pose: `Holding` the last one, nothing next, with the reason |
 //!
+//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in
+//! whatever state, until the pulses have come, at the slew limit, to those that the
+//! pose has now; after that a motion gathers pace anew.
+//!
 //! Invariants: every pose that leaves [`Motion::tick`] has passed the guard;
 //! a pose that has not is never sent, the last safe one is held instead, and
 //! the reason is kept for the console. Time is a call: the 50 Hz tick is the
@@ -35,6 +39,7 @@ use crate::calibration::Calibration;
 use crate::gait::{Gait, GaitId};
 use crate::guard::Clearance;
 use crate::hazard::Hazard;
+use crate::part::Servo;
 use crate::point_to_point::PointToPoint;
 use crate::pose::{Pose, Pulses};
 use crate::robot::Robot;
@@ -51,6 +56,9 @@ const PACE_STEP: u16 = FULL.div_ceil(7);
 
 /// Servos wake one after the other, 0.1 s apart, to spare the supply.
 const WAKE_APART: u8 = 5;
+
+/// The most that a weak supply allows, percent of the gaits' own pace.
+const SLOW: u8 = 50;
 
 /// All four are awake, and motion may begin.
 const AWAKE: u8 = 4 * WAKE_APART;
@@ -114,6 +122,12 @@ pub struct Motion<R> {
     next: Option<Target>,
     /// Percent of the gaits' own pace.
     speed: u8,
+    /// Whether the supply allows no more than [`SLOW`].
+    slow: bool,
+    /// The pulses of the last frame, awake or not.
+    sent: Pulses,
+    /// Whether they are on their way to those of another calibration.
+    settling: bool,
     /// Frames since pulses began, up to [`AWAKE`].
     awake: u8,
     pose: Pose,
@@ -123,6 +137,7 @@ pub struct Motion<R> {
 
 impl<R: Robot> Motion<R> {
     /// The robot at power-on: waking, then standing.
+    #[inline(never)]
     pub fn new(robot: R) -> Self {
         Self {
             calibration: robot.calibration(),
@@ -130,6 +145,9 @@ impl<R: Robot> Motion<R> {
             robot,
             next: None,
             speed: 100,
+            slow: false,
+            sent: Pulses::default(),
+            settling: false,
             awake: 0,
             pose: Pose::NEUTRAL,
             hazard: None,
@@ -147,8 +165,57 @@ impl<R: Robot> Motion<R> {
         &self.calibration
     }
 
+    /// Takes another calibration. The pulses go over to it at the slew limit, and
+    /// nothing else moves meanwhile.
+    #[inline(never)]
+    pub fn calibrate(&mut self, calibration: &[Calibration; 4]) {
+        self.calibration = *calibration;
+        if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
+            *pace = 0;
+        }
+        // Before the first pulse there is nothing to go over from.
+        self.settling = self.awake > 0;
+    }
+
+    /// The first servo that would have to leave the travel of another calibration,
+    /// where the robot is or where it goes.
+    #[inline(never)]
+    pub fn beyond(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
+        let mut poses = [self.pose; 3];
+        if let State::Moving { path, .. } = &self.state {
+            poses[1] = path.target();
+        }
+        if let Some(Target::Pose(pose)) = self.next {
+            poses[2] = pose;
+        }
+        poses.iter().find_map(|pose| pose.beyond(calibration))
+    }
+
+    /// Takes a pose for the one that the servos have at power-on, and says whether it
+    /// may: within the travel and safe. The servos wake in it, and then the robot
+    /// stands; or, where they have never slept, it is held.
+    #[inline(never)]
+    pub fn begin_at(&mut self, pose: &Pose, asleep: bool) -> bool {
+        if pose.beyond(&self.calibration).is_some()
+            || Clearance::of(&self.robot, pose)
+                .hazard(&self.robot)
+                .is_some()
+        {
+            return false;
+        }
+        self.pose = *pose;
+        self.state = State::Holding { asked: false };
+        if asleep {
+            self.next = Some(Target::Gait(GaitId::STAND));
+        } else {
+            self.awake = AWAKE;
+        }
+        true
+    }
+
     /// Begins a gait, by way of its first pose. The gait that is already under
     /// way just goes on.
+    #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId) {
         if self.activity() != Activity::Gait(id) {
             self.head_for(Target::Gait(id));
@@ -186,7 +253,13 @@ impl<R: Robot> Motion<R> {
         self.speed = percent;
     }
 
+    /// Keeps gaits at half their pace, or no longer.
+    pub fn set_slow(&mut self, slow: bool) {
+        self.slow = slow;
+    }
+
     /// One frame on: the pulses to send in it.
+    #[inline(never)]
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
         if matches!(self.state, State::Resting) {
@@ -194,10 +267,14 @@ impl<R: Robot> Motion<R> {
         }
         if self.awake < AWAKE {
             self.awake += 1;
-        } else {
+        } else if !self.settling {
             self.proceed();
         }
         let mut pulses = self.pose.pulses(&self.calibration);
+        if self.settling {
+            self.settling = self.settle(&mut pulses);
+        }
+        self.sent = pulses;
         let mut wakes_at = WAKE_APART;
         for width in &mut pulses.0 {
             if self.awake < wakes_at {
@@ -236,6 +313,19 @@ impl<R: Robot> Motion<R> {
         &self.pose
     }
 
+    /// The pose that the servos are held in; none while they rest.
+    pub const fn held_pose(&self) -> Option<&Pose> {
+        match self.state {
+            State::Resting => None,
+            _ => Some(&self.pose),
+        }
+    }
+
+    /// The pulses of the last frame, of servos that sleep, too.
+    pub const fn sent(&self) -> &Pulses {
+        &self.sent
+    }
+
     /// Speed of gaits in percent.
     pub const fn speed(&self) -> u8 {
         self.speed
@@ -251,10 +341,29 @@ impl<R: Robot> Motion<R> {
         self.hazard
     }
 
+    /// Keeps the pulses within a frame's way of the last ones; true while they are
+    /// not yet those that are wanted.
+    #[inline(never)]
+    fn settle(&self, pulses: &mut Pulses) -> bool {
+        let mut under_way = false;
+        let per_frame = self.robot.slew().per_frame;
+        for (place, width) in pulses.0.iter_mut().enumerate() {
+            let wanted = width.0;
+            let (sent, way) = (
+                self.sent.0[place].0,
+                self.calibration[place].slew(per_frame),
+            );
+            width.0 = wanted.clamp(sent.saturating_sub(way), sent.saturating_add(way));
+            under_way |= width.0 != wanted;
+        }
+        under_way
+    }
+
     fn head_for(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
             self.state = State::Holding { asked: false };
             self.awake = 0;
+            self.settling = false;
         }
         self.next = Some(target);
     }
@@ -279,7 +388,12 @@ impl<R: Robot> Motion<R> {
             State::Cycling {
                 gait, phase, pace, ..
             } => {
-                *pace = toward(*pace, if braking { 0 } else { pace_of(self.speed) });
+                let percent = if self.slow {
+                    self.speed.min(SLOW)
+                } else {
+                    self.speed
+                };
+                *pace = toward(*pace, if braking { 0 } else { pace_of(percent) });
                 *phase = gait.advance(*phase, *pace);
                 gait.pose(self.robot.waves(), *phase)
             }
@@ -301,6 +415,7 @@ impl<R: Robot> Motion<R> {
     }
 
     /// Begins the move towards what comes next, once the old motion has no pace.
+    #[inline(never)]
     fn turn_to_next(&mut self) {
         if let State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. } = self.state {
             return;

@@ -68,6 +68,11 @@ impl PointToPoint {
         }
     }
 
+    /// Where it leads.
+    pub const fn target(&self) -> Pose {
+        self.to
+    }
+
     /// One frame on, at `pace` (1024 is full).
     pub fn advance(&mut self, pace: u16) {
         let step = (mul_unsigned(self.step, pace) >> 10) as u16;

@@ -50,6 +50,16 @@ impl Pose {
         angles
     }
 
+    /// The first servo whose travel does not reach its sweep.
+    pub fn beyond(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
+        for (place, servo) in calibration.iter().enumerate() {
+            if !servo.reaches(self.0[place]) {
+                return Some(Servo::at(place));
+            }
+        }
+        None
+    }
+
     /// The pulses that hold this pose.
     pub fn pulses(&self, calibration: &[Calibration; 4]) -> Pulses {
         let mut pulses = Pulses::default();

@@ -7,6 +7,7 @@
 
 use lizard_avr::Flash;
 
+use crate::adjustment::Reach;
 use crate::calibration::Calibration;
 use crate::five_bar::FiveBar;
 use crate::gait::{Gait, GaitId, Name, Wave};
@@ -14,6 +15,7 @@ use crate::limits::Limits;
 use crate::part::{End, Side};
 use crate::point_to_point::Slew;
 use crate::slider::Slider;
+use crate::supply::Supplies;
 use crate::units::Angle;
 
 /// A four-servo lizard: its geometry, limits and gaits. Whoever makes one has
@@ -46,8 +48,17 @@ pub trait Robot {
     /// The waveforms that gaits share.
     fn waves(&self) -> Flash<'_, [Wave]>;
 
+    /// The sweeps that the gaits and the neutral pose need, A1 to A4.
+    fn reach(&self) -> [Reach; 4];
+
+    /// The supplies that are measured, and what their voltages mean.
+    fn supplies(&self) -> Supplies;
+
     /// A number by which two sets of numbers are told apart.
     fn hash(&self) -> u32;
+
+    /// The same of the servos alone: their pins, pulses and neutral angles.
+    fn servo_hash(&self) -> u32;
 
     /// A gait, fetched from flash.
     fn gait(&self, id: GaitId) -> Gait {
@@ -98,8 +109,20 @@ impl<R: Robot + ?Sized> Robot for &R {
         (**self).waves()
     }
 
+    fn reach(&self) -> [Reach; 4] {
+        (**self).reach()
+    }
+
+    fn supplies(&self) -> Supplies {
+        (**self).supplies()
+    }
+
     fn hash(&self) -> u32 {
         (**self).hash()
+    }
+
+    fn servo_hash(&self) -> u32 {
+        (**self).servo_hash()
     }
 }
 
@@ -129,7 +152,10 @@ mod tests {
         assert_eq!((&reference).slew(), robot.slew);
         assert_eq!((&reference).neutral(), robot.neutral);
         assert_eq!((&reference).calibration(), robot.calibration);
+        assert_eq!((&reference).reach(), robot.reach);
+        assert_eq!((&reference).supplies(), robot.supplies);
         assert_eq!((&reference).hash(), robot.hash);
+        assert_eq!((&reference).servo_hash(), robot.servo_hash);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 //! width and a travel of its own. What one part is measured by instead of another
 //! shows.
 
+mod chip;
 mod measures;
 
 use std::vec::Vec;
@@ -14,6 +15,7 @@ use lizard_avr::Flash;
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
 
+use crate::adjustment::Reach;
 use crate::calibration::Calibration;
 use crate::couplers::{self, Couplers};
 use crate::curve::Table;
@@ -24,9 +26,12 @@ use crate::part::{End, Side};
 use crate::point_to_point::Slew;
 use crate::pose::Pose;
 use crate::robot::Robot;
+use crate::safety::Health;
 use crate::slider::{self, Slider};
+use crate::supply::{Rail, Reading, Supplies, Thresholds};
 use crate::units::{Angle, Scale, Sine, Sweep};
 
+pub use chip::Chip;
 pub use measures::Measures;
 
 /// Steps of an angle in a degree.
@@ -34,6 +39,44 @@ pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 
 /// The gaits of every sample; the last one leaves safe ground halfway.
 pub const GAITS: [&str; 6] = ["stand", "sway", "sway left", "swing", "back", "stray"];
+
+/// What the gaits need of the servos; no more than the travel, see [`waves`].
+const REACH: [Reach; 4] = [
+    Reach {
+        min: Sweep(-2000),
+        max: Sweep(2100),
+    },
+    Reach {
+        min: Sweep(-1100),
+        max: Sweep(1000),
+    },
+    Reach {
+        min: Sweep(-1500),
+        max: Sweep(1600),
+    },
+    Reach {
+        min: Sweep(-900),
+        max: Sweep(800),
+    },
+];
+
+/// A reference of 1.08 V; the servos' rail through 10 and 4.7 kiloohms.
+const SUPPLIES: Supplies = Supplies {
+    reference: 1080,
+    board: Thresholds {
+        slow: 4500,
+        stop: 4300,
+        rest: 4100,
+    },
+    rail: Some(Rail {
+        reference: 3378,
+        thresholds: Thresholds {
+            slow: 4700,
+            stop: 4400,
+            rest: 3900,
+        },
+    }),
+};
 
 /// A robot in integers, and what it was made from.
 #[derive(Clone, Debug)]
@@ -48,7 +91,10 @@ pub struct Sample {
     pub gaits: Vec<Gait>,
     pub names: Vec<u8>,
     pub waves: Vec<Wave>,
+    pub reach: [Reach; 4],
+    pub supplies: Supplies,
     pub hash: u32,
+    pub servo_hash: u32,
 }
 
 /// The bars of one end, with every table that they need.
@@ -152,7 +198,16 @@ impl Sample {
             gaits,
             names,
             waves: waves(),
+            reach: core::array::from_fn(|servo| {
+                let travel = servos[servo].calibration();
+                Reach {
+                    min: REACH[servo].min.max(travel.min),
+                    max: REACH[servo].max.min(travel.max),
+                }
+            }),
+            supplies: SUPPLIES,
             hash: 0x1f0a_9c3e,
+            servo_hash: 0x7b5d_2e81,
         }
     }
 
@@ -251,8 +306,20 @@ impl Robot for Sample {
         Flash::from(self.waves.as_slice())
     }
 
+    fn reach(&self) -> [Reach; 4] {
+        self.reach
+    }
+
+    fn supplies(&self) -> Supplies {
+        self.supplies
+    }
+
     fn hash(&self) -> u32 {
         self.hash
+    }
+
+    fn servo_hash(&self) -> u32 {
+        self.servo_hash
     }
 }
 
@@ -297,6 +364,16 @@ pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> S
         max: ((side.nominal + stroke_max) * per_mm(scale)).floor() as u16,
     }
 }
+
+/// A board on which all is well: 5.0 V on the chip and 6.0 V on the rail.
+pub const WELL: Health = Health {
+    supply: Reading {
+        reference: 221,
+        rail: 393,
+    },
+    late: 0,
+    stack_is_intact: true,
+};
 
 /// A sine, a slow rise with a quick fall, and a hump, as large as a gain asks.
 fn waves() -> Vec<Wave> {

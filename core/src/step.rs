@@ -1,8 +1,9 @@
 //! The one step that a firmware's main loop repeats.
 //!
 //! Woken by the tick of the pulses or by a byte, main does one thing at a time
-//! and looks for a tick first: a frame waits for one byte or one line at most. It
-//! takes input only while the serial line has room for the longest answer, so it
+//! and looks for a tick first: a frame waits for one byte or one line at most. While
+//! it writes its memory, which takes 3.4 ms a byte, it takes no input. It takes
+//! input only while the serial line has room for the longest answer, so it
 //! never waits for a listener; and it computes a frame for every tick, also for one
 //! that it was late for, so the pace is the timer's and not the processor's.
 
@@ -11,20 +12,42 @@ use core::convert::Infallible;
 use ufmt::uWrite;
 
 use crate::console::{Console, Counters, LONGEST_LINE};
-use crate::motion::Motion;
-use crate::pose::Pulses;
+use crate::memory::Memory;
+use crate::pose::{Pose, Pulses};
+use crate::restart::Restart;
 use crate::robot::Robot;
+use crate::safety::Health;
+use crate::supply::Reading;
 
 /// What main needs of a board.
 pub trait Board {
     /// The serial line's other direction.
     type Writer: uWrite<Error = Infallible>;
 
+    /// What outlasts power.
+    type Memory: Memory;
+
     /// Ticks since power-on, modulo 256; one every 20 ms.
     fn ticks(&self) -> u8;
 
     /// Hands over the pulses of the next frame.
     fn submit(&mut self, pulses: Pulses);
+
+    /// Keeps the pose that the servos are held in, if they are, where a reset of the
+    /// processor cannot take it away.
+    fn keep(&mut self, pose: Option<&Pose>);
+
+    /// Why the program began, and what was kept until then.
+    fn restart(&self) -> Restart;
+
+    /// The supplies as measured last; begins the next measurement.
+    fn supply(&mut self) -> Reading;
+
+    /// Whether the stack has kept off the data.
+    fn stack_is_intact(&self) -> bool;
+
+    /// What outlasts power.
+    fn memory(&mut self) -> &mut Self::Memory;
 
     /// Switches the LED on or off.
     fn set_led(&mut self, on: bool);
@@ -59,11 +82,12 @@ pub enum Step {
 }
 
 impl<R: Robot> Main<R> {
-    /// A robot at power-on; `ticks` is what [`Board::ticks`] says now.
-    pub fn new(robot: R, ticks: u8) -> Self {
+    /// A robot that begins on a board.
+    pub fn new<B: Board>(robot: R, board: &mut B) -> Self {
+        let restart = board.restart();
         Self {
-            console: Console::new(robot),
-            ticks,
+            console: Console::new(robot, board.memory(), restart),
+            ticks: board.ticks(),
         }
     }
 
@@ -77,8 +101,16 @@ impl<R: Robot> Main<R> {
     pub fn step<B: Board>(&mut self, board: &mut B) -> Step {
         if board.ticks() != self.ticks {
             self.ticks = self.ticks.wrapping_add(1);
-            board.submit(self.console.frame());
-            board.set_led(beat(self.console.motion()));
+            let health = Health {
+                supply: board.supply(),
+                late: board.counters().late,
+                stack_is_intact: board.stack_is_intact(),
+            };
+            board.submit(self.console.frame(&health));
+            board.keep(self.console.motion().held_pose());
+            board.set_led(self.console.is_lit());
+        } else if self.console.is_writing() && !self.console.has_output() {
+            self.console.write_memory(board.memory());
         } else if board.room() < LONGEST_LINE {
             return Step::Idle(self.ticks);
         } else if self.console.has_output() {
@@ -93,14 +125,6 @@ impl<R: Robot> Main<R> {
     }
 }
 
-/// The LED: a slow heartbeat, on and off for 0.64 s each, and eight times as
-/// fast while the guard holds the robot.
-fn beat<R: Robot>(motion: &Motion<R>) -> bool {
-    let frames = motion.frames() as u8;
-    let half = if motion.hazard().is_some() { 4 } else { 32 };
-    frames & half == 0
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::VecDeque;
@@ -109,10 +133,14 @@ mod tests {
 
     use super::*;
     use crate::motion::Activity;
-    use crate::sample::Sample;
+    use crate::motion::Motion;
+    use crate::sample::{Chip, Sample, WELL};
 
     /// A board that does as it is told and keeps what it was given.
     struct Fake {
+        late: u16,
+        chip: Chip,
+        kept: Vec<Option<Pose>>,
         ticks: u8,
         room: u8,
         input: VecDeque<u8>,
@@ -124,6 +152,9 @@ mod tests {
     impl Fake {
         fn new(ticks: u8, input: &str) -> Self {
             Self {
+                late: 0,
+                chip: Chip::blank(),
+                kept: Vec::new(),
                 ticks,
                 room: u8::MAX,
                 input: input.bytes().collect(),
@@ -136,6 +167,27 @@ mod tests {
 
     impl Board for Fake {
         type Writer = String;
+        type Memory = Chip;
+
+        fn keep(&mut self, pose: Option<&Pose>) {
+            self.kept.push(pose.copied());
+        }
+
+        fn restart(&self) -> Restart {
+            Restart::default()
+        }
+
+        fn supply(&mut self) -> Reading {
+            WELL.supply
+        }
+
+        fn stack_is_intact(&self) -> bool {
+            true
+        }
+
+        fn memory(&mut self) -> &mut Chip {
+            &mut self.chip
+        }
 
         fn ticks(&self) -> u8 {
             self.ticks
@@ -163,14 +215,14 @@ mod tests {
 
         fn counters(&self) -> Counters {
             Counters {
-                late: 12,
+                late: self.late,
                 rx_lost: 34,
             }
         }
     }
 
     fn main_at(ticks: u8) -> Main<Sample> {
-        Main::new(Sample::odd(), ticks)
+        Main::new(Sample::odd(), &mut Fake::new(ticks, ""))
     }
 
     /// Steps until there is nothing to do.
@@ -194,6 +246,10 @@ mod tests {
         );
         assert_eq!(main.step(&mut board), Step::Worked);
         assert!(board.output.starts_with("# lizard "));
+        assert_eq!(board.output.lines().count(), 1, "one line at a time");
+        while board.output.lines().count() < 2 || main.console().is_writing() {
+            assert_eq!(main.step(&mut board), Step::Worked);
+        }
         assert_eq!(board.input.len(), 9);
         board.ticks = 9;
         assert_eq!(main.step(&mut board), Step::Worked);
@@ -245,7 +301,7 @@ mod tests {
         let expected: Vec<Pulses> = (0..30).map(|_| twin.tick()).collect();
         assert_eq!(board.pulses, expected);
         assert!(
-            board.output.contains(" frames=30 late=12 rx_lost=34 "),
+            board.output.contains(" frames=30 late=0 rx_lost=34 "),
             "{}",
             board.output
         );
@@ -260,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn the_led_beats_slowly_and_eight_times_as_fast_while_the_guard_holds_the_robot() {
+    fn the_led_beats_slowly_and_flashes_once_a_while_when_the_guard_holds_the_robot() {
         let mut main = main_at(0);
         let mut board = Fake::new(0, "stray\r");
         settle(&mut main, &mut board);
@@ -274,14 +330,69 @@ mod tests {
         }
         assert_eq!(main.console().motion().activity(), Activity::Stop);
         assert!(held_since > 40);
-        let (slow, fast) = board.leds.split_at(held_since);
+        let (slow, fast) = board.leds.split_at(held_since - 1);
         // Lit from power-on for the first 31 frames; then 32 dark, and so on.
         assert!(slow[..31].iter().all(|led| *led) && !slow[31]);
         assert!(beats(slow).iter().all(|frames| *frames == 32));
         let fast = beats(fast);
         assert!(
-            fast.len() > 20 && fast.iter().all(|frames| *frames == 4),
+            fast.len() > 6 && fast.iter().all(|frames| matches!(frames, 8 | 56)),
             "{fast:?}"
+        );
+    }
+
+    #[test]
+    fn the_pose_is_kept_with_every_frame_but_not_while_the_servos_rest() {
+        let mut main = main_at(0);
+        let mut board = Fake::new(0, "sway\r");
+        for _ in 0..100 {
+            settle(&mut main, &mut board);
+            board.ticks = board.ticks.wrapping_add(1);
+            assert_eq!(main.step(&mut board), Step::Worked);
+            let held = main.console().motion().pose();
+            assert_eq!(board.kept.last(), Some(&Some(*held)));
+        }
+        board.input.extend(b"rest\r");
+        settle(&mut main, &mut board);
+        board.ticks = board.ticks.wrapping_add(1);
+        settle(&mut main, &mut board);
+        assert_eq!(board.kept.last(), Some(&None));
+    }
+
+    #[test]
+    fn a_slow_memory_holds_up_the_input_and_no_frame() {
+        let mut main = main_at(0);
+        let mut board = Fake::new(0, "save\rstand\r");
+        board.chip.slowness = 50;
+        let mut steps = 0;
+        while !board.output.contains("ok save") {
+            assert!(!board.output.contains("ok stand"));
+            // A tick in every seventh step.
+            steps += 1;
+            if steps % 7 == 0 {
+                board.ticks = board.ticks.wrapping_add(1);
+            }
+            assert_eq!(main.step(&mut board), Step::Worked);
+            assert!(steps < 20_000);
+        }
+        assert!(board.chip.log.len() > 40 && steps > 40 * 50);
+        assert!(board.pulses.len() >= steps / 7 - 1);
+        settle(&mut main, &mut board);
+        assert!(board.output.ends_with("ok stand\r\n"));
+    }
+
+    #[test]
+    fn a_late_edge_and_a_stack_in_the_data_reach_the_robot() {
+        let mut main = main_at(0);
+        let mut board = Fake::new(0, "");
+        settle(&mut main, &mut board);
+        board.late = 1;
+        board.ticks = 1;
+        settle(&mut main, &mut board);
+        assert!(
+            board.output.contains("# fault: a pulse came late"),
+            "{}",
+            board.output
         );
     }
 }

@@ -30,6 +30,33 @@ texts! {
     WatchTime = "# t=";
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
+    Servo = "# A";
+    CalTrim = " trim ";
+    CalLimit = " limit ";
+    CalDir = " dir ";
+    CalScale = " scale ";
+    CalBoot = "# boot ";
+    CalDeadman = "# deadman ";
+
+    // Notices: what is said without being asked for.
+    MemoryBlank = "# calibration: none is saved, robot.toml's is in use";
+    MemoryOther = "# calibration: one of two copies is damaged, the other is in use";
+    MemoryDamaged = "# calibration: damaged, robot.toml's is in use";
+    MemoryForeign = "# calibration: for other servos, robot.toml's is in use";
+    MemoryUnfit = "# calibration: does not suit the gaits, robot.toml's is in use";
+    NoticeFault = "# fault: ";
+    NoticeSupply = "# supply: ";
+    NoticeBoot = "# boot: ";
+    WhyGuard = "the next pose is not safe, held";
+    WhySupply = "the supply is too low to move";
+    WhyLink = "no line for as long as deadman says, stopped";
+    WhyWatchdog = "the program hung and began anew";
+    WhyLate = "a pulse came late and was dropped, stopped";
+    WhyStack = "the stack has grown into the data, stopped";
+    LevelGood = ", good";
+    LevelSlow = ", low: half speed, no saving";
+    LevelStop = ", too low to move: stopped";
+    LevelRest = ", too low to hold: pulses ended";
 
     // Help, a line each.
     HelpGaits = "# gaits:";
@@ -39,6 +66,15 @@ texts! {
     HelpPose = "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame";
     HelpStatus = "# status: gait, phase, pose, smallest margin, counters";
     HelpWatch = "# watch <n>: report the pose every n frames, 0 ends it";
+    HelpCal = "# cal: what is set of the servos, boot and deadman";
+    HelpTrim = "# trim <1..4> <deg>: turn a servo's horn, within 20";
+    HelpLimit = "# limit <1..4> <min> <max>: a servo's travel, chassis frame";
+    HelpDir = "# dir <1..4> <+|->: + if a longer pulse turns counter-clockwise";
+    HelpScale = "# scale <1..4> <us per deg>: 5..20";
+    HelpCenter = "# center: neutral pulses without trims, to fit horns";
+    HelpSave = "# save, load, factory: keep what is set, take it back, or robot.toml's";
+    HelpBoot = "# boot <gait|rest>: done 3 s after power-on";
+    HelpDeadman = "# deadman <ms>: end a gait after so long without a line, 0 never";
 
     // Answers, and the words of commands.
     Ok = "ok ";
@@ -52,6 +88,17 @@ texts! {
     Watch = "watch";
     Status = "status";
     QuestionMark = "?";
+    Trim = "trim";
+    Limit = "limit";
+    Dir = "dir";
+    Scale = "scale";
+    Cal = "cal";
+    Center = "center";
+    Save = "save";
+    Load = "load";
+    Factory = "factory";
+    Boot = "boot";
+    Deadman = "deadman";
     StatusPhase = " phase=";
     StatusMargin = " margin=";
     StatusSpeed = " speed=";
@@ -61,6 +108,23 @@ texts! {
     StatusGuard = " guard=";
     GuardClear = "clear";
     GuardHeld = "held";
+    StatusFault = " fault=";
+    StatusReset = " reset=";
+    StatusResets = " resets=";
+    StatusVcc = " vcc=";
+    StatusRail = " rail=";
+    Unmeasured = "-";
+    FaultNone = "none";
+    FaultGuard = "guard";
+    FaultSupply = "supply";
+    FaultLink = "link";
+    FaultWatchdog = "watchdog";
+    FaultLate = "late";
+    FaultStack = "stack";
+    CausePower = "power";
+    CauseExternal = "external";
+    CauseBrownOut = "brownout";
+    CauseWatchdog = "watchdog";
     Err = "err ";
 
     // Reasons.
@@ -86,6 +150,23 @@ texts! {
     Dots = "..";
     TooLong = "a line has at most 63 characters";
     Resting = "servos are resting, send stand first";
+    TrimWants = "trim wants a servo 1..4 and degrees, at most two decimals";
+    TrimRange = "trim must be -20..20";
+    LimitWants = "limit wants a servo 1..4 and two angles in degrees, at most two decimals";
+    LimitRange = "limit wants angles of at most one turn";
+    DirWants = "dir wants a servo 1..4 and + or -";
+    ScaleWants = "scale wants a servo 1..4 and us per degree, at most two decimals";
+    ScaleRange = "scale must be 5..20";
+    BootWants = "boot wants the name of a gait, or rest";
+    DeadmanWants = "deadman wants a whole number of milliseconds, 0..60000";
+    DeadmanRange = "deadman must be 0..60000";
+    WouldReach = " would reach ";
+    Needed = ", gaits need ";
+    NotHere = ", too little for where it is or goes, send stand first";
+    LowSupply = "the supply is too low: ";
+    Volts = " V";
+    NotKept = "the EEPROM does not keep what is written";
+    NothingSaved = "nothing is saved that could be loaded";
 }
 
 const COUNT: usize = SENTENCES.len();

@@ -74,20 +74,22 @@ pub struct Scale {
 }
 
 impl Angle {
-    /// The angle at `centideg`, less than two turns either way, within 0.004 deg.
+    /// The angle at `centideg`, at most one turn either way, within 0.004 deg.
     pub fn from_centideg(centideg: i32) -> Self {
-        // No remainder, no quotient and no loop that the compiler takes for one:
-        // each of them is a kilobyte of library.
-        let mut within = centideg;
-        if within < 0 {
-            within += 2 * TURN_CENTIDEG;
-        }
-        if within >= TURN_CENTIDEG {
-            within -= TURN_CENTIDEG;
-        }
-        // 65536/36000 is 1 + 53769/65536 to within a fifth of a step over the turn.
-        let within = within as u16;
-        Self(within.wrapping_add(((mul_unsigned(within, 53_769) + 0x8000) >> 16) as u16))
+        let size = centideg.unsigned_abs() as u16;
+        // A whole turn is none. 65536/36000 is 1 + 53769/65536 to within a fifth of a
+        // step over the turn.
+        let size = if size == TURN_CENTIDEG as u16 {
+            0
+        } else {
+            size
+        };
+        let angle = size.wrapping_add(((mul_unsigned(size, 53_769) + 0x8000) >> 16) as u16);
+        Self(if centideg < 0 {
+            angle.wrapping_neg()
+        } else {
+            angle
+        })
     }
 
     /// In hundredths of a degree, 0..36000. Exact inverse of
@@ -155,7 +157,7 @@ mod tests {
 
     #[test]
     fn an_angle_of_the_console_is_within_seven_tenths_of_a_step() {
-        for centideg in -71_999..72_000 {
+        for centideg in -36_000..=36_000 {
             let angle = Angle::from_centideg(centideg);
             let off = apart(degrees(angle), f64::from(centideg) / 100.0);
             // Half a step is 0.0027 deg.

@@ -27,6 +27,17 @@ pub fn assembler(source: &str) -> Image {
     build(&source, "S", &["-nostartfiles", "-nostdlib"])
 }
 
+/// [`assembler`] with its first instruction at a byte address in flash.
+///
+/// # Panics
+/// See [`c`].
+#[must_use]
+pub fn assembler_at(address: u16, source: &str) -> Image {
+    let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}\n");
+    let place = format!("-Wl,--section-start=.text={address:#x}");
+    build(&source, "S", &["-nostartfiles", "-nostdlib", &place])
+}
+
 fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let input = folder.path().join(format!("program.{extension}"));

@@ -3,10 +3,11 @@
 
 pub mod avr_gcc;
 mod bench;
+pub mod judge;
 pub mod random_robot;
 mod robots;
 
 pub use bench::{FirmwareBench, bench_of};
 pub use lizard_host::sim::frame::{FRAME, Frame};
 pub use lizard_host::sim::lines::Line;
-pub use robots::{Named, paper, rng, robot, robots, seed};
+pub use robots::{Named, paper, rng, robot, robots, root, seed};

@@ -95,8 +95,8 @@ fn sram_and_registers_survive_every_reset_but_power_on() {
         assert_eq!(marks(&uno)[2..], [0x5a, 0x5a]);
         uno.power_cycle();
         uno.run_ms(1);
-        let after = &marks(&uno)[4..];
-        assert_ne!(after, [0x5a, 0x5a], "noise");
+        let noise = &marks(&uno)[4..];
+        assert!(!noise.contains(&0x5a), "{noise:?}");
     }
 }
 

@@ -162,6 +162,22 @@ fn the_prescaler_divides_by_table_24_5() {
 }
 
 #[test]
+fn the_lowest_prescalers_both_divide_by_two() {
+    // Table 24-5: 13 clocks are 26 cycles.
+    for select in [0, 1] {
+        let mut uno = with(&format!(
+            "int main(void) {{
+            ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
+            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
+            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;
+            for (;;) {{}} }}"
+        ));
+        uno.run_ms(1);
+        assert_eq!(marks(&uno), [0x40, 0], "{select}");
+    }
+}
+
+#[test]
 fn adsc_reads_one_as_long_as_a_conversion_is_in_progress() {
     // "ADSC will read as one as long as a conversion is in progress. When the
     // conversion is complete, it returns to zero. Writing zero to this bit has no
@@ -347,6 +363,25 @@ fn the_bandgap_needs_70_us_after_the_channel_is_chosen() {
 }
 
 #[test]
+fn the_bandgap_has_settled_after_70_us_and_not_before() {
+    // ADC clock of 1 MHz, so that the start is known to a microsecond.
+    let first = |wait: u32| {
+        let body = format!(
+            "int main(void) {{
+            ADMUX = 0x40; ADCSRA = 0xc4; wait();
+            ADMUX = 0x4e; _delay_us({wait}); ADCSRA = 0xc4; wait(); show();
+            for (;;) {{}} }}"
+        );
+        let mut uno = with(&body);
+        uno.set_analog_mv(Pin::a(0), 5000);
+        uno.run_ms(1);
+        results(&uno)[0]
+    };
+    assert!((226..250).contains(&first(68)));
+    assert_eq!(first(71), 225);
+}
+
+#[test]
 fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
     // "after ... enabling the ADC, the user must always allow the reference to start
     // up before the output ... is used" (11.7.1).
@@ -466,7 +501,24 @@ fn the_sram_survives_a_brown_out_and_not_a_loss_of_power() {
         uno.set_supply_mv(5000.0);
         uno.run_ms(1);
         assert_eq!(marks(&uno)[2..], [kept, flags]);
+        uno.set_supply_mv(2000.0);
+        uno.run_ms(1);
+        uno.set_supply_mv(5000.0);
+        uno.run_ms(1);
+        assert_eq!(marks(&uno)[4..], [1, flags | 0x04], "and each time anew");
     }
+}
+
+#[test]
+fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
+    let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
+    uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
+    uno.run_ms(11);
+    uno.set_supply_mv(2000.0);
+    uno.run_ms(1);
+    uno.ramp_supply_mv(5000.0, 10 * CYCLES_PER_MS);
+    uno.run_ms(11);
+    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
 }
 
 #[test]
@@ -525,6 +577,16 @@ fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
     assert_eq!(marks(&uno), [1, 8, 4]);
     uno.run_ms(10);
     assert_eq!(marks(&uno), [1, 8, 4, 8]);
+
+    // Nor when WDRF, left set, switches it on at each reset.
+    let mut uno = with(
+        "#include <avr/wdt.h>
+        int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",
+    );
+    uno.run_ms(20);
+    uno.set_supply_mv(2000.0);
+    uno.run_ms(100);
+    assert_eq!(uno.resets(), 1);
 }
 
 #[test]
@@ -541,6 +603,7 @@ fn power_on_into_a_supply_that_is_too_low_waits_for_it() {
     uno.ramp_supply_mv(5000.0, CYCLES_PER_MS);
     uno.run_ms(2);
     assert_eq!(marks(&uno)[0], 1);
+    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
 }
 
 #[test]
@@ -564,5 +627,6 @@ fn stock_simavr_measures_the_supply_too_but_is_never_reset() {
     assert!(!uno.held_in_reset());
     uno.set_supply_mv(1000.0);
     uno.run_ms(1);
+    assert!(!uno.held_in_reset());
     assert_eq!(causes(&uno), [ResetCause::PowerOn]);
 }

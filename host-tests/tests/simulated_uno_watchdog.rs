@@ -271,15 +271,37 @@ fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
 }
 
 #[test]
+fn an_interrupt_in_the_very_cycle_of_a_sleep_does_not_end_it_either() {
+    for nops in 0..30 {
+        let source = format!(
+            "ldi r16, 0 $ out MCUSR, r16 $ ldi r16, 8 $ sts WDTCSR, r16
+             ldi r16, 1 $ out SMCR, r16 $ ldi r16, 2 $ sts TIMSK1, r16
+             ldi r16, 20 $ sts OCR1AL, r16 $ ldi r16, 9 $ sts TCCR1B, r16
+             {}
+             sleep
+             out GPIOR0, r16
+        end: rjmp end",
+            "nop\n".repeat(nops)
+        );
+        let mut uno = Uno::with_image(assembler(&source), Fidelity::DataSheet);
+        uno.run_ms(10);
+        assert!(uno.marks().is_empty(), "{nops} nops");
+    }
+}
+
+#[test]
 fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
     let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
     let mut whole = Uno::with_image(image.clone(), Fidelity::DataSheet);
     whole.run_until_cycle(50 * CYCLES_PER_MS);
-    let mut pieces = Uno::with_image(image, Fidelity::DataSheet);
+    let mut pieces = Uno::with_image(image.clone(), Fidelity::DataSheet);
     while pieces.cycle() < 50 * CYCLES_PER_MS {
         pieces.run_until_cycle((pieces.cycle() + 997).min(50 * CYCLES_PER_MS));
     }
     assert_eq!(pieces.reset_events(), whole.reset_events());
+    let mut exact = Uno::with_image(image, Fidelity::DataSheet);
+    exact.run_until_cycle(bites(&whole)[0]);
+    assert_eq!(exact.resets(), 1, "by the last cycle of a run");
     assert_eq!(pieces.marks(), whole.marks());
 }
 

@@ -163,6 +163,9 @@ pub enum Problem {
         "is \"{0}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
     )]
     Pin(String),
+    /// A pin that measures no voltage.
+    #[error("is \"{0}\"; it must be one of A0 to A5")]
+    NotAnalogue(String),
     /// One pin for two servos.
     #[error("is \"{pin}\", which servo.{other} has already")]
     PinTwice {

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use lizard_avr::Flash;
+use lizard_core::adjustment::Reach;
 use lizard_core::calibration::Calibration;
 use lizard_core::five_bar::FiveBar;
 use lizard_core::gait::{Gait, Wave};
@@ -15,6 +16,7 @@ use lizard_core::part::{End, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
+use lizard_core::supply::Supplies;
 use lizard_core::units::{Angle, Scale};
 
 use crate::generate;
@@ -26,18 +28,27 @@ use crate::table::Tables;
 pub struct Firmware {
     numbers: Numbers,
     hash: u32,
+    servo_hash: u32,
 }
 
 impl Firmware {
     /// A firmware with these numbers.
     pub(crate) fn new(numbers: Numbers) -> Self {
-        let hash = generate::hash(&numbers);
-        Self { numbers, hash }
+        Self {
+            hash: generate::hash(&numbers),
+            servo_hash: generate::servo_hash(&numbers),
+            numbers,
+        }
     }
 
     /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub fn pins(&self) -> [u8; 4] {
         self.numbers.pins
+    }
+
+    /// Arduino number of the pin where the servos' rail is measured, 14 to 19.
+    pub fn rail_pin(&self) -> Option<u8> {
+        self.numbers.rail_pin
     }
 
     /// The step of the lengths of an end's five-bar.
@@ -98,7 +109,19 @@ impl Robot for Firmware {
         Flash::from(self.numbers.tables.waves.as_slice())
     }
 
+    fn reach(&self) -> [Reach; 4] {
+        self.numbers.reach
+    }
+
+    fn supplies(&self) -> Supplies {
+        self.numbers.supplies
+    }
+
     fn hash(&self) -> u32 {
         self.hash
+    }
+
+    fn servo_hash(&self) -> u32 {
+        self.servo_hash
     }
 }

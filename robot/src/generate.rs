@@ -21,6 +21,18 @@ pub(crate) fn hash(numbers: &Numbers) -> u32 {
     crc32fast::hash(Body(numbers).to_string().as_bytes())
 }
 
+/// The hash of the servos alone, by which a saved calibration is known to be theirs.
+/// Gaits, bars and limits may change without it.
+pub(crate) fn servo_hash(numbers: &Numbers) -> u32 {
+    let Numbers {
+        pins,
+        neutral,
+        calibration,
+        ..
+    } = numbers;
+    crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
+}
+
 struct Body<'a>(&'a Numbers);
 
 impl Display for Body<'_> {
@@ -100,6 +112,26 @@ impl Body<'_> {
                 "Fastest turn in a point-to-point move, 1/65536 turn in a frame, rounded down.",
                 "SLEW: Slew",
                 format!("Slew::new({})", robot.slew.per_frame),
+            ),
+            (
+                "What the gaits need of the servos.",
+                "REACH: [Reach; 4]",
+                format!("{:?}", robot.reach),
+            ),
+            (
+                "The supplies, mV.",
+                "SUPPLIES: Supplies",
+                format!("{:?}", robot.supplies),
+            ),
+            (
+                "Arduino number of the pin of the servos' rail, where that is measured.",
+                "RAIL_PIN: Option<u8>",
+                format!("{:?}", robot.rail_pin),
+            ),
+            (
+                "CRC-32 of the servos' pins, angles and pulses.",
+                "SERVO_HASH: u32",
+                format!("{:#010x}", servo_hash(robot)),
             ),
         ];
         for (doc, name, value) in constants {
@@ -246,6 +278,19 @@ mod tests {
                 ]
             });
             assert_eq!(of("CALIBRATION"), calibration.concat());
+            let reach = firmware.reach().map(|r| [r.min.0, r.max.0].map(i64::from));
+            assert_eq!(of("REACH"), reach.concat());
+            let supplies = firmware.supplies();
+            let board = supplies.board;
+            assert_eq!(
+                of("SUPPLIES"),
+                [supplies.reference, board.slow, board.stop, board.rest].map(i64::from)
+            );
+            assert_eq!(value(&source, "RAIL_PIN").trim(), "None");
+            assert_eq!(
+                value(&source, "SERVO_HASH").trim(),
+                format!("{:#010x}", firmware.servo_hash())
+            );
             let limits = firmware.limits();
             assert_eq!(
                 of("LIMITS"),
@@ -375,5 +420,29 @@ mod tests {
             "the floor is no part of it"
         );
         assert_eq!(hash(&[("hip_side = 35.0", "hip_side = 36.0")]), paper);
+    }
+
+    #[test]
+    fn the_servos_hash_changes_with_the_servos_alone() {
+        let hash = |changes: &[(&str, &str)]| {
+            let robot = with("paper", changes).expect("valid");
+            robot.firmware().servo_hash()
+        };
+        let paper = hash(&[]);
+        for change in [
+            ("pin = \"D9\"", "pin = \"D6\""),
+            ("neutral_us = 1500.0", "neutral_us = 1501.0"),
+            ("us_per_degree = 10.0", "us_per_degree = 10.1"),
+            ("min_us = 600.0", "min_us = 610.0"),
+        ] {
+            assert_ne!(hash(&[change]), paper, "{change:?}");
+        }
+        for change in [
+            ("\nslew = 300.0", "\nslew = 250.0"),
+            ("amplitude = 15.0", "amplitude = 14.9"),
+            ("stroke_max = 45.0", "stroke_max = 44.0"),
+        ] {
+            assert_eq!(hash(&[change]), paper, "{change:?}");
+        }
     }
 }

@@ -32,6 +32,7 @@ mod robot;
 mod scale;
 mod sensitivity;
 pub mod servo;
+mod supply;
 mod table;
 mod tabled_gait;
 #[cfg(test)]
@@ -54,5 +55,6 @@ pub use report::{Report, Row, UNDECIDED};
 pub use robot::Robot;
 pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
 pub use servo::{Pace, Servo};
+pub use supply::{Rail, Supplies};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 pub use waveform::Waveform;

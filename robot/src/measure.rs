@@ -8,6 +8,7 @@ use crate::ground::{Feet, Ground};
 use crate::reader::Section;
 use crate::scale::{self, LONGEST_BAR};
 use crate::servo::{NAMES, Pace, Servo};
+use crate::supply::Supplies;
 
 /// Lengths of a robot that hobby servos move, mm.
 const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
@@ -33,6 +34,7 @@ pub(crate) struct Measures {
     pub limits: Limits,
     pub pace: Pace,
     pub ground: Ground,
+    pub supplies: Supplies,
 }
 
 impl Measures {
@@ -49,6 +51,7 @@ impl Measures {
             limits,
             pace,
             ground: ground(root, feet)?,
+            supplies: Supplies::read(root, &servos)?,
         };
         measures.fits()?;
         measures.stands()?;
@@ -244,7 +247,7 @@ fn servo(section: &Section) -> Checked<Servo> {
 
 /// The Arduino number of a pin by its name on the board: D2 to D12, A0 to A5
 /// (14 to 19).
-fn pin(name: &str) -> Option<u8> {
+pub(crate) fn pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
     // "+5" and "05" parse, but are no names.
     let number: u8 = number
@@ -325,7 +328,7 @@ fn equal(
     }
 }
 
-fn less(
+pub(crate) fn less(
     section: &Section,
     name: &str,
     value: f64,

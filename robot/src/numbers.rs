@@ -9,13 +9,16 @@
 use std::sync::Arc;
 
 use lizard_avr::Flash;
+use lizard_core::adjustment::Reach;
 use lizard_core::calibration::Calibration;
 use lizard_core::couplers::{self, Couplers};
 use lizard_core::curve::Table;
 use lizard_core::five_bar::FiveBar;
+use lizard_core::gait::SAMPLES;
 use lizard_core::limits::Limits;
 use lizard_core::point_to_point::Slew;
 use lizard_core::slider::Slider;
+use lizard_core::supply::Supplies;
 use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
 use lizard_kinematics as kinematics;
 
@@ -39,6 +42,11 @@ pub(crate) struct Numbers {
     pub slew: Slew,
     pub neutral: [Angle; 4],
     pub calibration: [Calibration; 4],
+    /// What the gaits and the neutral pose need of the servos.
+    pub reach: [Reach; 4],
+    pub supplies: Supplies,
+    /// Arduino number of the pin of the servos' rail, where that is measured.
+    pub rail_pin: Option<u8>,
     pub tables: Arc<Tables>,
 }
 
@@ -73,6 +81,7 @@ impl Numbers {
             servos,
             limits,
             pace,
+            supplies,
             ..
         } = measures;
         Self {
@@ -88,6 +97,9 @@ impl Numbers {
             neutral: servos
                 .map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16)),
             calibration: servos.map(|servo| calibration(&servo)),
+            reach: reach(&tables),
+            supplies: supplies.numbers(),
+            rail_pin: supplies.rail.map(|rail| rail.pin),
             tables: Arc::new(tables),
         }
     }
@@ -151,6 +163,25 @@ fn calibration(servo: &Servo) -> Calibration {
     }
 }
 
+/// The farthest that any gait turns each servo, neutral included. Between two
+/// samples a gait is on the straight line, so no phase goes beyond its samples.
+fn reach(tables: &Tables) -> [Reach; 4] {
+    let mut reach = [Reach::default(); 4];
+    for gait in &tables.gaits {
+        for (reach, channel) in reach.iter_mut().zip(&gait.channels) {
+            let wave = Flash::from(&tables.waves[usize::from(channel.wave)]);
+            for sample in 0..SAMPLES as u16 {
+                // The phase at which the channel reads this very sample.
+                let phase = (sample << 9).wrapping_sub(channel.offset);
+                let sweep = channel.sweep(wave, phase);
+                reach.min = reach.min.min(sweep);
+                reach.max = reach.max.max(sweep);
+            }
+        }
+    }
+    reach
+}
+
 /// A side, its stroke rounded inwards.
 fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
     let scale = scale::of_side(slider, limits.stroke_max);
@@ -189,6 +220,7 @@ fn floor(value: f64) -> i64 {
 mod tests {
     use super::*;
     use crate::testing::{all, robot, with};
+    use lizard_core::gait::GaitId;
     use lizard_core::part::{End, Side};
     use lizard_core::robot::Robot as _;
 
@@ -206,6 +238,7 @@ mod tests {
                 limits: *robot.limits(),
                 pace: *robot.pace(),
                 ground: *robot.ground(),
+                supplies: *robot.supplies(),
             },
             Tables::new(&[]).expect("no gait"),
         );
@@ -348,6 +381,25 @@ mod tests {
                 let neutral = f64::from(firmware.neutral()[i].0) * 360.0 / 65536.0;
                 assert!((neutral - servo.neutral).abs() <= 0.5 * 360.0 / 65536.0);
             }
+        }
+    }
+
+    #[test]
+    fn the_reach_holds_every_phase_of_every_gait_and_is_reached() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            let mut widest = [(0, 0); 4];
+            for gait in GaitId::all(firmware.gaits().len()) {
+                let gait = firmware.gait(gait);
+                for phase in (0..1 << 24).step_by(1 << 8) {
+                    let pose = gait.pose(firmware.waves(), phase);
+                    for (widest, sweep) in widest.iter_mut().zip(pose.0) {
+                        *widest = (widest.0.min(sweep.0), widest.1.max(sweep.0));
+                    }
+                }
+            }
+            let reach = firmware.reach().map(|reach| (reach.min.0, reach.max.0));
+            assert_eq!(reach, widest, "{name}");
         }
     }
 

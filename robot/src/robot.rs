@@ -17,6 +17,7 @@ use crate::measure::Measures;
 use crate::numbers::Numbers;
 use crate::reader::{self, Section};
 use crate::servo::{self, FORWARD, Pace, Servo};
+use crate::supply::Supplies;
 use crate::table::{Tables, Unfit};
 use crate::tabled_gait::TabledGait;
 
@@ -76,7 +77,9 @@ impl Robot {
     fn read(table: &DeTable) -> Checked<Self> {
         let root = Section::root(
             table,
-            &["links", "leg", "servo", "limits", "ground", "gait"],
+            &[
+                "links", "leg", "servo", "limits", "supply", "ground", "gait",
+            ],
         )?;
         let measures = Measures::read(&root)?;
         let gaits = define::gaits(&root, &measures)?;
@@ -123,6 +126,11 @@ impl Robot {
     /// How fast its servos may turn.
     pub fn pace(&self) -> &Pace {
         &self.measures.pace
+    }
+
+    /// What is measured of its supplies.
+    pub fn supplies(&self) -> &Supplies {
+        &self.measures.supplies
     }
 
     /// Its feet on the floor.

@@ -67,7 +67,6 @@ static avr_cycle_count_t finish(avr_t *avr, avr_cycle_count_t when, void *param)
 		adc->result = adc->sampled;
 	*control &= ~ADSC;
 	avr_raise_interrupt(avr, &adc->stock->adc);
-	*control |= ADIF; /* also when it is pending already */
 	if (*control & ADATE)
 		begin(adc, when); /* free running */
 	return 0;
@@ -129,7 +128,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	}
 	avr->data[address] = control;
 	if (!(control & ADIF))
-		adc->stock->adc.pending = 0;
+		adc->stock->adc.pending = 0; /* a conversion that ends in this cycle counts */
 	if ((control & ADEN) && (value & ADSC) && !adc->converting)
 		begin(adc, next_edge(adc, cycle));
 	interrupts_changed(adc->interrupts);

@@ -100,11 +100,6 @@ void interrupts_changed(struct interrupts *interrupts)
 	instruction_end_slice(interrupts->instruction);
 }
 
-void interrupts_reset(struct interrupts *interrupts)
-{
-	interrupts->slept = interrupts->recheck = false;
-}
-
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction)
 {
 	avr_t *avr = instruction->avr;

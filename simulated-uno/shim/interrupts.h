@@ -29,7 +29,6 @@ struct interrupts {
 };
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction);
-void interrupts_reset(struct interrupts *interrupts);
 /* A flag or an enable bit has changed: looks at all again after the
  * instruction being executed. */
 void interrupts_changed(struct interrupts *interrupts);

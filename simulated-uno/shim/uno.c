@@ -44,7 +44,6 @@ static void on_reset(struct avr_io_t *io)
 	handlers_reset(&uno->handlers);
 	call_timer_reset(&uno->call_timer);
 	if (uno->data_sheet) {
-		interrupts_reset(&uno->interrupts);
 		timer1_reset(&uno->timer1);
 		usart_reset(&uno->usart);
 		eeprom_reset(&uno->eeprom);
@@ -229,20 +228,20 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		return restart_wait(uno, until);
 	if (avr->state == cpu_Sleeping)
 		disturbance_serve(&uno->disturbance);
-	bool running = avr->state == cpu_Running;
-	if (running && disturbance_stalls(&uno->disturbance)) {
+	if (avr->state == cpu_Running && disturbance_stalls(&uno->disturbance)) {
 		disturbance_wait(&uno->disturbance, until);
-	} else if (running) {
+	} else if (avr->state == cpu_Running) {
 		uno->interrupts.slept = false;
 		/* One more turn of simavr's order: instruction, timers, interrupts. */
 		run_instructions(uno, until);
 	}
+	bool asleep = avr->state == cpu_Sleeping;
 	uint64_t sleep = avr_cycle_timer_process(avr);
 	if (avr->run != normal) { /* stock simavr's watchdog asks for a reset this way */
 		restart_by_stock_watchdog(uno, normal);
 		return true;
 	}
-	if (!running)
+	if (asleep)
 		stay_asleep(avr);
 	if (avr->state == cpu_Sleeping) {
 		if (is_halted(uno)) {

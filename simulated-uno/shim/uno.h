@@ -84,4 +84,9 @@ void uno_set_brown_out(struct uno *uno, double mv);
 void uno_set_bandgap(struct uno *uno, double mv);
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
 
+/* Boot loader and flash: boot.c. */
+/* From now on a reset starts the program at this byte address (BOOTRST). */
+void uno_boot_at(struct uno *uno, uint32_t address);
+uint8_t *uno_flash(struct uno *uno);                 /* 32768 bytes */
+
 #endif

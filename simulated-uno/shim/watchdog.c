@@ -38,7 +38,6 @@ static avr_cycle_count_t time_out(avr_t *avr, avr_cycle_count_t when, void *para
 		return 0;
 	}
 	avr_raise_interrupt(avr, &watchdog->stock->watchdog);
-	avr->data[REG_WDTCSR] |= WDIF; /* also when it is pending already */
 	watchdog->since = when;
 	return when + period(control);
 }
@@ -81,7 +80,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 		watchdog->change_until = cycle + CHANGE_CYCLES;
 	avr->data[address] = control;
 	if (!(control & WDIF))
-		watchdog->stock->watchdog.pending = 0;
+		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle counts */
 	if (!is_on(old))
 		watchdog->since = cycle;
 	schedule(watchdog);
@@ -120,9 +119,7 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 		.reset = reset,
 		.stock = (avr_watchdog_t *)chip_part(avr, "watchdog"),
 	};
-	watchdog->stock->io.reset = NULL;
-	watchdog->stock->io.ioctl = NULL;
-	avr_register_io(avr, &watchdog->io);
+	avr_register_io(avr, &watchdog->io); /* before simavr's own */
 	hook_write(avr, REG_WDTCSR, write_control, watchdog);
 	hook_read(avr, REG_WDTCSR, read_control, watchdog);
 	avr_irq_register_notify(watchdog->stock->watchdog.irq + AVR_INT_IRQ_RUNNING, on_vector,

@@ -93,6 +93,8 @@ unsafe extern "C" {
     pub fn uno_free(uno: *mut RawUno);
     pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
     pub fn uno_power_on(uno: *mut RawUno, code_end: u32, data_end: u16);
+    pub fn uno_boot_at(uno: *mut RawUno, address: u32);
+    pub fn uno_flash(uno: *mut RawUno) -> *mut u8;
     pub fn uno_run(uno: *mut RawUno, until: u64) -> Stop;
     pub fn uno_stop_at_line(uno: *mut RawUno, on: bool);
     pub fn uno_time_calls(uno: *mut RawUno, on: bool, entry: u32);

@@ -264,6 +264,12 @@ impl Image {
         flash
     }
 
+    /// Address of the first byte of flash used.
+    pub(crate) fn code_start(&self) -> u32 {
+        let starts = self.segments.iter().map(|(at, _)| *at);
+        starts.min().unwrap_or(0)
+    }
+
     /// Address after the last byte of flash used.
     pub(crate) fn code_end(&self) -> u32 {
         let ends = self

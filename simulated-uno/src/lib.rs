@@ -4,8 +4,9 @@
 //! A firmware cannot be tested on the machine that compiles it, and a board on
 //! the desk has no cycle counter, no way to see its stack, and takes ten
 //! minutes for ten minutes. Here time is a number of CPU cycles that passes as
-//! fast as the host can go, never in real time, and the same firmware with the
-//! same input gives the same edges to the cycle.
+//! fast as the host can go, and the same firmware with the same input gives the
+//! same edges to the cycle. Only [`Port`] keeps real time, for programs that
+//! expect a board on USB.
 //!
 //! ```no_run
 //! use simulated_uno::{Fidelity, Pin, Uno};
@@ -23,11 +24,16 @@
 //! state outside an instance but the logger, which is set once.
 
 mod adc;
-mod eeprom;
+mod boot;
 mod disturb;
+mod eeprom;
 mod ffi;
 mod image;
 mod pin;
+#[cfg(target_os = "linux")]
+mod port;
+#[cfg(target_os = "linux")]
+mod pty;
 mod record;
 mod reset;
 mod supply;
@@ -36,6 +42,8 @@ mod uno;
 pub use eeprom::{EEPROM_SIZE, EepromMode, EepromOperation, PowerCut};
 pub use image::{FLASH_SIZE, Image, LoadError, SRAM_END, SRAM_START, Symbol};
 pub use pin::{Edge, Pin, Pulse, most_pins_high, pulses};
+#[cfg(target_os = "linux")]
+pub use port::{Background, Port};
 pub use record::{Call, Mark, SerialByte, VectorUse, vector_name};
 pub use reset::{Reset, ResetCause};
 pub use uno::{Fidelity, State, Uno};

@@ -8,28 +8,41 @@
 //!   a tick every 20 ms.
 //! - [`serial`] owns the USART and its two rings.
 //! - [`led`] owns D13.
+//! - [`eeprom`] owns the EEPROM, [`supply`] the analogue converter.
+//! - [`watchdog`] begins the program anew when it hangs; [`kept`] is what it knows
+//!   then of the program before, [`stack`] a guard of the data against the stack.
 //! - [`sleep`] stops the processor until a tick or a byte.
 //!
 //! Main never switches interrupts off for more than the few cycles that `sleep`
 //! and a 16-bit load take: what it shares with an interrupt is a byte at a time,
 //! with one writer. Interrupts do not nest. Of the interrupts in use Timer1's
-//! come first in the vector table; INT0, INT1, PCINT, WDT, TIMER2 and
-//! TIMER1_CAPT would come before them and are not to be used.
+//! come first in the vector table; INT0, INT1, PCINT, TIMER2 and TIMER1_CAPT would
+//! come before them and are not to be used, and WDT only comes to a program that hangs.
 
+pub mod eeprom;
+mod kept;
 pub mod led;
 pub mod pulses;
 pub mod serial;
 mod shared;
 pub mod sleep;
+mod stack;
+pub mod supply;
+mod watchdog;
 
 use avr_device::atmega328p::Peripherals;
 use lizard_core::console::Counters;
-use lizard_core::pose::Pulses;
+use lizard_core::pose::{Pose, Pulses};
+use lizard_core::restart::Restart;
 use lizard_core::step::Board;
+use lizard_core::supply::Reading;
 
 /// The board, started.
 pub struct Uno {
     writer: serial::Writer,
+    eeprom: eeprom::Eeprom,
+    converter: supply::Converter,
+    restart: Restart,
 }
 
 impl Uno {
@@ -42,21 +55,28 @@ impl Uno {
         // SAFETY: nothing has run before this but the boot loader; each peripheral
         // goes to the one module that owns it.
         let board = unsafe { Peripherals::steal() };
+        let restart = kept::restart(&board.CPU);
+        stack::start();
         led::start();
         sleep::start(board.CPU);
         serial::start(board.USART0);
         pulses::start(board.TC1);
+        watchdog::start();
         // SAFETY: every interrupt that is enabled above has its handler, and there
         // is no critical section around this call to be broken.
         unsafe { avr_device::interrupt::enable() };
         Self {
             writer: serial::Writer,
+            eeprom: eeprom::Eeprom::new(board.EEPROM),
+            converter: supply::Converter::new(board.ADC),
+            restart,
         }
     }
 }
 
 impl Board for Uno {
     type Writer = serial::Writer;
+    type Memory = eeprom::Eeprom;
 
     #[inline(always)]
     fn ticks(&self) -> u8 {
@@ -65,7 +85,34 @@ impl Board for Uno {
 
     #[inline(always)]
     fn submit(&mut self, pulses: Pulses) {
-        pulses::submit(pulses);
+        if pulses::submit(pulses) {
+            watchdog::feed();
+        }
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, pose: Option<&Pose>) {
+        kept::keep(pose);
+    }
+
+    #[inline(always)]
+    fn restart(&self) -> Restart {
+        self.restart
+    }
+
+    #[inline(always)]
+    fn supply(&mut self) -> Reading {
+        self.converter.next()
+    }
+
+    #[inline(always)]
+    fn stack_is_intact(&self) -> bool {
+        stack::is_intact()
+    }
+
+    #[inline(always)]
+    fn memory(&mut self) -> &mut eeprom::Eeprom {
+        &mut self.eeprom
     }
 
     #[inline(always)]

@@ -31,12 +31,178 @@ fn every_word_is_its_command() {
 
 #[test]
 fn the_words_of_the_console_are_those_that_it_reads() {
-    for word in WORDS {
+    let words = WORDS.as_slice();
+    for place in 0..words.len() {
+        let word = WORDS.at(place).load();
         let mut line = String::new();
         let Ok(()) = word.print(&mut line);
         assert_ne!(read(&line), Err(Misread::Unknown), "{line}");
+        assert_eq!(own_word(line.as_bytes()), Some(word));
     }
-    assert_eq!(WORDS.len(), 8);
+    assert_eq!(words.len(), 19);
+    assert_eq!(own_word(b"sway"), None);
+}
+
+/// An angle as the console takes it.
+fn angle(degrees: f64) -> Angle {
+    Angle::from_centideg((degrees * 100.0).round() as i32)
+}
+
+#[test]
+fn every_setting_is_read_with_its_servo() {
+    let robot = Sample::odd();
+    let sweep = |degrees: f64| Sweep(angle(degrees).0 as i16);
+    let adjust = |servo, change| Ok(Command::Adjust(servo, change));
+    for (line, command) in [
+        ("trim 1 0", adjust(Servo::A1, Change::Trim(Sweep(0)))),
+        ("trim 2 -3.5", adjust(Servo::A2, Change::Trim(sweep(-3.5)))),
+        ("trim 3 +20", adjust(Servo::A3, Change::Trim(sweep(20.0)))),
+        (
+            "trim 4 -20.00",
+            adjust(Servo::A4, Change::Trim(sweep(-20.0))),
+        ),
+        (
+            "limit 2 311.41 131.41",
+            adjust(Servo::A2, Change::Limit([angle(311.41), angle(131.41)])),
+        ),
+        (
+            "limit 1 -48.6 360",
+            adjust(Servo::A1, Change::Limit([angle(-48.6), Angle(0)])),
+        ),
+        ("dir 3 +", adjust(Servo::A3, Change::Dir(true))),
+        ("dir 3 -", adjust(Servo::A3, Change::Dir(false))),
+        ("scale 4 5", adjust(Servo::A4, Change::Scale(500))),
+        ("scale 4 20.00", adjust(Servo::A4, Change::Scale(2000))),
+        ("scale 1 10.2", adjust(Servo::A1, Change::Scale(1020))),
+        ("cal", Ok(Command::Cal)),
+        ("center", Ok(Command::Center)),
+        ("save", Ok(Command::Save)),
+        ("load", Ok(Command::Load)),
+        ("factory", Ok(Command::Factory)),
+        ("boot rest", Ok(Command::Boot(Boot::Rest))),
+        ("boot stand", Ok(Command::Boot(Boot::Gait(GaitId::STAND)))),
+        (
+            "boot sway  left",
+            Ok(Command::Boot(Boot::Gait(robot.id("sway left")))),
+        ),
+        ("deadman 0", Ok(Command::Deadman(0))),
+        ("deadman 60000", Ok(Command::Deadman(60_000))),
+    ] {
+        assert_eq!(read(line), command, "{line}");
+    }
+}
+
+#[test]
+fn a_setting_that_is_not_wholly_there_or_too_much_is_told_what_it_wants() {
+    for (wants, lines) in [
+        (
+            Text::TrimWants,
+            &[
+                "trim",
+                "trim 1",
+                "trim 0 1",
+                "trim 5 1",
+                "trim 11 1",
+                "trim a 1",
+                "trim 1 x",
+                "trim 1 1.234",
+                "trim 1 2 3",
+            ][..],
+        ),
+        (
+            Text::LimitWants,
+            &[
+                "limit",
+                "limit 1",
+                "limit 1 2",
+                "limit 1 2 3 4",
+                "limit 9 2 3",
+                "limit 1 a 3",
+            ],
+        ),
+        (
+            Text::DirWants,
+            &[
+                "dir",
+                "dir 1",
+                "dir 1 1",
+                "dir 1 ++",
+                "dir + 1",
+                "dir 1 + +",
+            ],
+        ),
+        (
+            Text::ScaleWants,
+            &[
+                "scale",
+                "scale 1",
+                "scale 1 ten",
+                "scale 1 10 10",
+                "scale 0 10",
+                "scale 1 10.001",
+            ],
+        ),
+        (
+            Text::BootWants,
+            &[
+                "boot",
+                "boot 3",
+                "boot dance",
+                "boot sway lef",
+                "boot rest now",
+                "boot stop",
+            ],
+        ),
+        (
+            Text::DeadmanWants,
+            &["deadman", "deadman -1", "deadman 1.5", "deadman 1 2"],
+        ),
+    ] {
+        for line in lines {
+            assert_eq!(read(line), Err(Misread::Wants(wants)), "{line}");
+        }
+    }
+    for line in ["cal 1", "center 1", "save it", "load 1", "factory reset"] {
+        assert_eq!(read(line), Err(Misread::Surplus), "{line}");
+    }
+}
+
+#[test]
+fn a_setting_out_of_its_range_is_told_the_range() {
+    for (range, lines) in [
+        (
+            Text::TrimRange,
+            &[
+                "trim 1 20.01",
+                "trim 2 -20.01",
+                "trim 3 360",
+                "trim 4 655.36",
+                "trim 1 99999",
+            ][..],
+        ),
+        (
+            Text::LimitRange,
+            &["limit 1 -360.01 0", "limit 1 0 361", "limit 1 0 99999"],
+        ),
+        (
+            Text::ScaleRange,
+            &[
+                "scale 1 4.99",
+                "scale 1 20.01",
+                "scale 1 0",
+                "scale 1 -10",
+                "scale 1 999999",
+            ],
+        ),
+        (
+            Text::DeadmanRange,
+            &["deadman 60001", "deadman 65535", "deadman 999999"],
+        ),
+    ] {
+        for line in lines {
+            assert_eq!(read(line), Err(Misread::Range(range)), "{line}");
+        }
+    }
 }
 
 #[test]
@@ -108,8 +274,14 @@ fn speed_and_watch_want_one_whole_number() {
     for argument in [
         "", " fast", " 5o", " 50%", " 50.5", " -50", " +50", " 50 60", " 0x20", " 5 0",
     ] {
-        assert_eq!(read(&format!("speed{argument}")), Err(Misread::SpeedWants));
-        assert_eq!(read(&format!("watch{argument}")), Err(Misread::WatchWants));
+        assert_eq!(
+            read(&format!("speed{argument}")),
+            Err(Misread::Wants(Text::SpeedWants))
+        );
+        assert_eq!(
+            read(&format!("watch{argument}")),
+            Err(Misread::Wants(Text::WatchWants))
+        );
     }
 }
 
@@ -118,16 +290,19 @@ fn every_speed_and_every_watch_is_read_and_no_other() {
     for number in (0..=70_000).chain([655_350, 99_999_999]) {
         let speed = match number {
             10..=100 => Ok(Command::Speed(number as u8)),
-            _ => Err(Misread::SpeedRange),
+            _ => Err(Misread::Range(Text::SpeedRange)),
         };
         assert_eq!(read_number("speed", number), speed);
         let watch = match number {
             0..=10_000 => Ok(Command::Watch(number as u16)),
-            _ => Err(Misread::WatchRange),
+            _ => Err(Misread::Range(Text::WatchRange)),
         };
         assert_eq!(read_number("watch", number), watch);
     }
-    assert_eq!(read("speed 99999999999999999999"), Err(Misread::SpeedRange));
+    assert_eq!(
+        read("speed 99999999999999999999"),
+        Err(Misread::Range(Text::SpeedRange))
+    );
 }
 
 fn read_number(word: &str, number: u32) -> Result<Command, Misread> {
@@ -209,7 +384,11 @@ fn what_is_no_angle_is_not_taken_for_one() {
         "", "a", ".5", "-", "+", "--1", "+-1", "1e2", "138.5x", "138.591", "138,59", "1.x", "1.5.",
         "1.-5", ".", "0x10",
     ] {
-        assert_eq!(angle_read(2, word), Err(Misread::PoseWants), "{word}");
+        assert_eq!(
+            angle_read(2, word),
+            Err(Misread::Wants(Text::PoseWants)),
+            "{word}"
+        );
     }
     for line in [
         "pose",
@@ -219,7 +398,7 @@ fn what_is_no_angle_is_not_taken_for_one() {
         "pose 1 2 3 4 x",
         "pose 1 999 3 4 5",
     ] {
-        assert_eq!(read(line), Err(Misread::PoseWants), "{line}");
+        assert_eq!(read(line), Err(Misread::Wants(Text::PoseWants)), "{line}");
     }
 }
 

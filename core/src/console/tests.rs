@@ -8,7 +8,8 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::sample::{GAITS, Sample};
+use crate::guard::Clearance;
+use crate::sample::{Chip, GAITS, Sample, WELL};
 use crate::units::Width;
 
 /// Frames until the robot stands and may begin to move.
@@ -18,14 +19,22 @@ const WAKING: u32 = 21;
 struct Dialogue {
     console: Console<Sample>,
     counters: Counters,
+    chip: Chip,
+    health: Health,
 }
 
 impl Dialogue {
     /// At power-on, the banner not yet read.
     fn new(robot: Sample) -> Self {
+        Self::begun(robot, Chip::blank(), Restart::default())
+    }
+
+    fn begun(robot: Sample, chip: Chip, restart: Restart) -> Self {
         Self {
-            console: Console::new(robot),
+            console: Console::new(robot, &chip, restart),
             counters: Counters::default(),
+            chip,
+            health: WELL,
         }
     }
 
@@ -36,7 +45,12 @@ impl Dialogue {
 
     fn awake(robot: Sample) -> Self {
         let mut dialogue = Self::new(robot);
-        assert_eq!(dialogue.read().len(), 1, "the banner");
+        let said = dialogue.read();
+        assert_eq!(
+            said.len(),
+            2,
+            "the banner, and that nothing is saved: {said:?}"
+        );
         dialogue.run(WAKING);
         dialogue
     }
@@ -44,7 +58,11 @@ impl Dialogue {
     /// Every line that waits, each checked for its form.
     fn read(&mut self) -> Vec<String> {
         let mut lines = Vec::new();
-        while self.console.has_output() {
+        while self.console.has_output() || self.console.is_writing() {
+            if !self.console.has_output() {
+                self.console.write_memory(&mut self.chip);
+                continue;
+            }
             let mut text = String::new();
             let Ok(()) = self.console.write_line(&mut text, self.counters);
             assert!(text.len() <= usize::from(LONGEST_LINE), "{text}");
@@ -78,7 +96,7 @@ impl Dialogue {
     }
 
     fn frame(&mut self) -> (Pulses, Vec<String>) {
-        let pulses = self.console.frame();
+        let pulses = self.console.frame(&self.health);
         (pulses, self.read())
     }
 
@@ -100,7 +118,8 @@ fn is_final(line: &str) -> bool {
         .and_then(|rest| rest.split_once(' '));
     line.starts_with("ok ")
         || code.is_some_and(|(code, reason)| {
-            matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7") && !reason.is_empty()
+            matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9")
+                && !reason.is_empty()
         })
 }
 
@@ -127,7 +146,8 @@ fn the_banner_names_version_and_tables_once() {
         });
         let version = env!("CARGO_PKG_VERSION");
         let banner = format!("# lizard {version} tables {hash:08x}, send help for the commands");
-        assert_eq!(dialogue.read(), [banner]);
+        let blank = "# calibration: none is saved, robot.toml's is in use".to_string();
+        assert_eq!(dialogue.read(), [banner, blank]);
         assert!(dialogue.run(50).is_empty());
     }
 }
@@ -163,6 +183,15 @@ fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
         "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame",
         "# status: gait, phase, pose, smallest margin, counters",
         "# watch <n>: report the pose every n frames, 0 ends it",
+        "# cal: what is set of the servos, boot and deadman",
+        "# trim <1..4> <deg>: turn a servo's horn, within 20",
+        "# limit <1..4> <min> <max>: a servo's travel, chassis frame",
+        "# dir <1..4> <+|->: + if a longer pulse turns counter-clockwise",
+        "# scale <1..4> <us per deg>: 5..20",
+        "# center: neutral pulses without trims, to fit horns",
+        "# save, load, factory: keep what is set, take it back, or robot.toml's",
+        "# boot <gait|rest>: done 3 s after power-on",
+        "# deadman <ms>: end a gait after so long without a line, 0 never",
         "ok help",
     ];
     assert_eq!(said, expected);
@@ -231,7 +260,7 @@ fn status_tells_everything_as_key_and_value() {
         .thousandths();
     let expected = format!(
         "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
-         late=7 rx_lost=65535 guard=clear",
+         late=7 rx_lost=65535 guard=clear fault=none reset=power resets=0 vcc=5.00 rail=6.00",
         angles.join(","),
         motion.frames(),
     );
@@ -326,11 +355,11 @@ fn a_report_that_nobody_read_is_written_once_and_a_new_watch_forgets_it() {
     let mut dialogue = Dialogue::standing();
     dialogue.say("watch 2");
     for _ in 0..20 {
-        dialogue.console.frame();
+        dialogue.console.frame(&WELL);
     }
     assert_eq!(dialogue.read().len(), 1);
-    dialogue.console.frame();
-    dialogue.console.frame();
+    dialogue.console.frame(&WELL);
+    dialogue.console.frame(&WELL);
     assert!(dialogue.console.has_output());
     for byte in b"watch 0\r" {
         dialogue.console.receive(*byte);
@@ -343,7 +372,7 @@ fn guarded() -> Dialogue {
     let mut dialogue = Dialogue::standing();
     dialogue.say("stray");
     for _ in 0..200 {
-        dialogue.console.frame();
+        dialogue.console.frame(&WELL);
         if dialogue.console.motion().hazard().is_some() {
             return dialogue;
         }
@@ -382,7 +411,7 @@ fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
         dialogue.console.receive(*byte);
     }
     for _ in 0..3 {
-        dialogue.console.frame();
+        dialogue.console.frame(&WELL);
     }
     let said = dialogue.read();
     assert_eq!(said.len(), 2);
@@ -402,9 +431,15 @@ fn what_waits_is_written_in_one_order_banner_answer_reason_report() {
         side: crate::part::Side::Left,
         length: 1,
     });
-    console.console.frame();
+    console.console.frame(&WELL);
     let said = console.read();
-    let starts = ["# lizard ", "ok watch 1", "# held ", "# t=1 pose="];
+    let starts = [
+        "# lizard ",
+        "ok watch 1",
+        "# calibration: ",
+        "# held ",
+        "# t=1 pose=",
+    ];
     assert_eq!(said.len(), starts.len());
     for (line, start) in said.iter().zip(starts) {
         assert!(line.starts_with(start), "{line}");
@@ -564,4 +599,379 @@ proptest! {
         }
         prop_assert_eq!(asked.say("status"), spared.say("status"));
     }
+}
+
+/// The lines of `cal`.
+fn cal(dialogue: &mut Dialogue) -> Vec<String> {
+    dialogue.send(b"cal\r")
+}
+
+#[test]
+fn cal_prints_all_that_is_set_and_nothing_that_varies() {
+    let mut dialogue = Dialogue::standing();
+    let untouched = cal(&mut dialogue);
+    assert_eq!(untouched.len(), 7);
+    assert!(untouched[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
+    assert_eq!(untouched[4..], ["# boot stand", "# deadman 0", "ok cal"]);
+    for line in [
+        "trim 1 -3.25",
+        "limit 2 350 130.5",
+        "dir 3 -",
+        "scale 4 9.87",
+        "boot sway left",
+        "deadman 1500",
+    ] {
+        assert_eq!(dialogue.say(line), format!("ok {line}"));
+    }
+    let set = cal(&mut dialogue);
+    assert!(
+        set[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir "),
+        "{set:?}"
+    );
+    assert!(
+        set[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir "),
+        "{set:?}"
+    );
+    assert!(set[2].contains(" dir - scale "), "{set:?}");
+    assert!(set[3].ends_with(" scale 9.87"), "{set:?}");
+    assert_eq!(set[4..], ["# boot sway left", "# deadman 1500", "ok cal"]);
+    dialogue.say("sway");
+    dialogue.run(77);
+    assert_eq!(cal(&mut dialogue), set);
+    assert_eq!(dialogue.say("factory"), "ok factory");
+    assert_eq!(cal(&mut dialogue), untouched);
+}
+
+#[test]
+fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("trim 2 4");
+    assert_eq!(dialogue.say("save"), "ok save");
+    let saved = cal(&mut dialogue);
+    dialogue.say("trim 2 5");
+    assert_ne!(cal(&mut dialogue), saved);
+    let mut again = Dialogue::begun(Sample::odd(), dialogue.chip.clone(), Restart::default());
+    assert_eq!(again.read().len(), 1, "the banner alone");
+    assert_eq!(cal(&mut again), saved);
+    // And without power going off.
+    assert_eq!(dialogue.say("load"), "ok load");
+    assert_eq!(cal(&mut dialogue), saved);
+}
+
+#[test]
+fn there_is_nothing_to_load_before_the_first_save_and_a_worn_memory_is_told() {
+    let mut dialogue = Dialogue::standing();
+    assert_eq!(
+        dialogue.say("load"),
+        "err 9 nothing is saved that could be loaded"
+    );
+    dialogue.chip.worn = true;
+    assert_eq!(
+        dialogue.say("save"),
+        "err 9 the EEPROM does not keep what is written"
+    );
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+/// The pulses of a frame.
+fn widths(dialogue: &mut Dialogue) -> [u16; 4] {
+    dialogue.frame().0.0.map(|width| width.0)
+}
+
+#[test]
+fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_the_rest() {
+    for change in [
+        "trim 1 20",
+        "trim 1 -12.5",
+        "scale 1 8",
+        "dir 1 -",
+        "dir 1 +",
+    ] {
+        let mut dialogue = Dialogue::standing();
+        dialogue.say("pose 145 50 311 224.5");
+        dialogue.run(150);
+        let before = widths(&mut dialogue);
+        assert_eq!(dialogue.say(change), format!("ok {change}"));
+        let motion = dialogue.console.motion();
+        let wanted = motion
+            .pose()
+            .pulses(motion.calibration())
+            .0
+            .map(|width| width.0);
+        let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
+        let most = f64::from(motion.robot().slew.per_frame) * gain;
+        let mut last = before;
+        for _ in 0..200 {
+            let now = widths(&mut dialogue);
+            assert!(
+                f64::from(now[0].abs_diff(last[0])) <= most.max(1.0),
+                "{change}"
+            );
+            assert_eq!(now[1..], before[1..], "{change}");
+            last = now;
+        }
+        assert_eq!(last, wanted, "{change}");
+        assert_eq!(dialogue.status("pose"), "145.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn a_calibration_in_a_gait_halts_it_until_the_pulses_have_settled_and_it_goes_on() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("sway");
+    dialogue.run(120);
+    let before = dialogue.console.motion().phase();
+    dialogue.say("trim 2 15");
+    dialogue.run(1);
+    assert_eq!(dialogue.console.motion().phase(), before);
+    dialogue.run(200);
+    assert_eq!(dialogue.status("gait"), "sway");
+    assert_ne!(dialogue.console.motion().phase(), before);
+    let motion = dialogue.console.motion();
+    let wanted = motion.pose().pulses(motion.calibration());
+    assert_eq!(motion.sent(), &wanted);
+}
+
+#[test]
+fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothing() {
+    let mut dialogue = Dialogue::standing();
+    let before = cal(&mut dialogue);
+    for line in [
+        "limit 1 140 215",
+        "limit 1 61.37 132",
+        "limit 2 131 350",
+        "limit 3 309 310",
+    ] {
+        let refused = dialogue.say(line);
+        assert!(refused.starts_with("err 3 A"), "{line}: {refused}");
+        assert!(refused.contains(" would reach ") && refused.contains(", gaits need "));
+        assert_eq!(cal(&mut dialogue), before);
+    }
+    dialogue.say("pose 150 47.91 309.64 226.18");
+    dialogue.run(2);
+    let refused = dialogue.say("limit 1 61.37 149");
+    assert!(refused.ends_with(", too little for where it is or goes, send stand first"));
+    assert_eq!(cal(&mut dialogue), before);
+    dialogue.say("stand");
+    dialogue.run(150);
+    assert_eq!(dialogue.say("limit 1 61.37 149"), "ok limit 1 61.37 149");
+    assert_eq!(
+        dialogue.say("pose 150 47.91 309.64 226.18"),
+        "err 3 A1 reaches 61.37..149.00"
+    );
+}
+
+#[test]
+fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
+    let mut dialogue = Dialogue::standing();
+    for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
+        dialogue.say(line);
+    }
+    dialogue.run(100);
+    assert_eq!(dialogue.say("center"), "ok center");
+    dialogue.run(200);
+    let neutral = Sample::odd().calibration.map(|servo| servo.neutral.0);
+    for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
+        assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
+    }
+    dialogue.say("stand");
+    dialogue.run(200);
+    let motion = dialogue.console.motion();
+    assert_eq!(motion.sent(), &Pose::NEUTRAL.pulses(motion.calibration()));
+}
+
+#[test]
+fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
+    let mut dialogue = Dialogue::standing();
+    for boot in ["sway left", "rest"] {
+        dialogue.say(&format!("boot {boot}"));
+        assert_eq!(dialogue.say("save"), "ok save");
+        let chip = dialogue.chip.clone();
+        let mut alone = Dialogue::begun(Sample::odd(), chip.clone(), Restart::default());
+        let said = alone.run(149);
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert_eq!(
+            alone.console.motion().activity(),
+            Activity::Gait(GaitId::STAND)
+        );
+        assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
+        assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
+        let mut watched = Dialogue::begun(Sample::odd(), chip, Restart::default());
+        watched.run(100);
+        watched.console.receive(b' ');
+        watched.run(400);
+        assert_eq!(watched.status("gait"), "stand");
+    }
+}
+
+#[test]
+fn a_gait_ends_when_the_link_is_lost_and_says_why() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("deadman 400");
+    dialogue.say("sway");
+    for _ in 0..30 {
+        assert!(dialogue.run(15).is_empty());
+        dialogue.say("status");
+    }
+    let said = dialogue.run(21);
+    assert_eq!(
+        said,
+        ["# fault: no line for as long as deadman says, stopped"]
+    );
+    assert_eq!(
+        (dialogue.status("gait"), dialogue.status("fault")),
+        ("stop".into(), "link".into())
+    );
+    dialogue.say("sway");
+    assert_eq!(dialogue.status("fault"), "none");
+}
+
+/// A board at so many volts, its rail at 6 V.
+fn at(volts: f64) -> Health {
+    let reading = |mv: f64| (mv / volts * 1024.0) as u16;
+    Health {
+        supply: crate::supply::Reading {
+            reference: reading(1.08),
+            rail: reading(6.0 / 3.378 * 1.08),
+        },
+        ..WELL
+    }
+}
+
+#[test]
+fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothing_restarts() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("sway");
+    dialogue.run(150);
+    let pace = |dialogue: &mut Dialogue| {
+        let before = dialogue.console.motion().phase();
+        dialogue.run(10);
+        dialogue.console.motion().phase().wrapping_sub(before) & 0xff_ffff
+    };
+    let full = pace(&mut dialogue);
+    dialogue.health = at(4.4);
+    let said = dialogue.run(40);
+    assert!(
+        said[0].starts_with("# supply: 4.") && said[0].ends_with("V, low: half speed, no saving"),
+        "{said:?}"
+    );
+    let half = f64::from(pace(&mut dialogue)) / f64::from(full);
+    assert!((half - 0.5).abs() < 0.02, "{half}");
+    assert!(
+        dialogue
+            .say("save")
+            .starts_with("err 8 the supply is too low: 4.")
+    );
+    dialogue.health = at(4.2);
+    let said = dialogue.run(40);
+    assert_eq!(said.len(), 2);
+    assert_eq!(dialogue.status("gait"), "stop");
+    assert_eq!(dialogue.status("fault"), "supply");
+    assert!(dialogue.say("sway").starts_with("err 8 "));
+    assert!(dialogue.say(NEUTRAL).starts_with("err 8 "));
+    dialogue.health = at(4.0);
+    dialogue.run(40);
+    assert_eq!(dialogue.status("gait"), "rest");
+    assert_eq!(dialogue.frame().0, Pulses::default());
+    dialogue.health = at(5.0);
+    let said = dialogue.run(100);
+    assert!(
+        said.last().is_some_and(|line| line.ends_with(" V, good")),
+        "{said:?}"
+    );
+    assert_eq!(dialogue.status("gait"), "rest");
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+#[test]
+fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
+    let sweeps = [400, -300, 200, -100].map(crate::units::Sweep);
+    let restart = Restart {
+        cause: Cause::Watchdog,
+        count: 3,
+        pose: Some(Pose(sweeps)),
+    };
+    let mut dialogue = Dialogue::begun(Sample::odd(), Chip::blank(), restart);
+    let said = dialogue.run(1);
+    assert!(
+        said.contains(&"# fault: the program hung and began anew".to_string()),
+        "{said:?}"
+    );
+    let motion = dialogue.console.motion();
+    let held = Pose(sweeps).pulses(motion.calibration());
+    for _ in 0..400 {
+        assert_eq!(dialogue.frame().0, held, "at once, and for good");
+    }
+    assert_eq!(dialogue.status("reset"), "watchdog");
+    assert_eq!(dialogue.status("resets"), "3");
+    assert_eq!(dialogue.status("fault"), "watchdog");
+    dialogue.say("stand");
+    dialogue.run(100);
+    assert_eq!(dialogue.status("fault"), "none");
+    assert_eq!(dialogue.status("pose"), dialogue_neutral());
+}
+
+fn dialogue_neutral() -> String {
+    NEUTRAL.replacen("pose ", "", 1).replace(' ', ",")
+}
+
+#[test]
+fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over() {
+    for sweeps in [[30_000, 0, 0, 0], [-6803, 7663, 0, 0]] {
+        let restart = Restart {
+            cause: Cause::Watchdog,
+            count: 1,
+            pose: Some(Pose(sweeps.map(crate::units::Sweep))),
+        };
+        let mut dialogue = Dialogue::begun(Sample::odd(), Chip::blank(), restart);
+        dialogue.run(30);
+        assert_eq!(dialogue.status("pose"), dialogue_neutral());
+    }
+}
+
+#[test]
+fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("pose 140 50 311 224.5");
+    dialogue.run(150);
+    dialogue.say("rest");
+    let chip = dialogue.chip.clone();
+    let mut again = Dialogue::begun(Sample::odd(), chip.clone(), Restart::default());
+    again.read();
+    assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
+    let there = again
+        .console
+        .motion()
+        .pose()
+        .pulses(again.console.motion().calibration());
+    for servo in 0..4 {
+        for _ in 0..5 {
+            let widths = widths(&mut again);
+            for (other, width) in widths.into_iter().enumerate() {
+                let expected = if other < servo { there.0[other].0 } else { 0 };
+                // The fifth frame wakes the next one.
+                assert!(width == expected || other == servo, "{servo} {other}");
+            }
+        }
+    }
+    again.run(200);
+    assert_eq!(again.status("pose"), dialogue_neutral());
+    // Having moved, it has forgotten where it rested.
+    let after = Dialogue::begun(Sample::odd(), again.chip.clone(), Restart::default());
+    assert_eq!(after.console.motion().pose(), &Pose::NEUTRAL);
+}
+
+#[test]
+fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("rest");
+    assert_eq!(dialogue.chip.bytes[128], 0xa5);
+    for byte in b"stand\r" {
+        dialogue.console.receive(*byte);
+    }
+    // The answer goes first; then main deals with the memory, long before the first
+    // servo wakes.
+    dialogue.read();
+    assert_eq!(dialogue.chip.bytes[128], 0xff);
+    assert_eq!(dialogue.frame().0, Pulses::default());
 }

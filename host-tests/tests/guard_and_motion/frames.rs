@@ -4,9 +4,12 @@
 use fastrand::Rng;
 use lizard_core::console::{Console, Counters};
 use lizard_core::gait::GaitId;
+use lizard_core::memory::Bytes;
 use lizard_core::motion::{Activity, Motion};
 use lizard_core::pose::{Pose, Pulses};
+use lizard_core::restart::Restart;
 use lizard_core::robot::Robot as _;
+use lizard_core::safety::Health;
 use lizard_core::units::CYCLE;
 use lizard_host_tests::Named;
 use lizard_robot::{CheckedGait, Firmware, Robot};
@@ -78,6 +81,7 @@ pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
     console: Console<&'a Firmware>,
+    memory: Bytes,
     /// Degrees a second of each servo in the last frame.
     speeds: [f64; 4],
     /// True if the next frame may stop dead.
@@ -90,10 +94,12 @@ pub struct Walker<'a> {
 impl<'a> Walker<'a> {
     /// A robot at power-on, its banner read.
     pub fn new(Named { name, robot }: &'a Named) -> Self {
+        let memory = Bytes::default();
         let mut walker = Self {
             name,
             robot,
-            console: Console::new(robot.firmware()),
+            console: Console::new(robot.firmware(), &memory, Restart::default()),
+            memory,
             speeds: [0.0; 4],
             may_stop: false,
             most_jerk: jerk(robot),
@@ -121,7 +127,11 @@ impl<'a> Walker<'a> {
     /// Everything that the console has to write.
     pub fn read(&mut self) -> Vec<String> {
         let mut lines = Vec::new();
-        while self.console.has_output() {
+        while self.console.has_output() || self.console.is_writing() {
+            if !self.console.has_output() {
+                self.console.write_memory(&mut self.memory);
+                continue;
+            }
             let mut text = String::new();
             let Ok(()) = self.console.write_line(&mut text, Counters::default());
             lines.push(text.trim_end().to_owned());
@@ -172,7 +182,7 @@ impl<'a> Walker<'a> {
         let (name, robot) = (self.name, self.robot);
         let before = self.pose();
         let held_before = self.motion().hazard().is_some();
-        let pulses = self.console.frame();
+        let pulses = self.console.frame(&Health::default());
         let (pose, motion) = (self.pose(), self.console.motion());
 
         let guard_stopped = !held_before && motion.hazard().is_some();

@@ -9,6 +9,8 @@ pub mod frame_log;
 pub mod lines;
 mod report;
 pub mod script;
+#[cfg(target_os = "linux")]
+mod served;
 pub mod session;
 pub mod spans;
 mod timeline;
@@ -65,6 +67,17 @@ pub struct Args {
     /// Take as long as the robot would
     #[arg(long)]
     realtime: bool,
+    /// Be a board on USB instead: in real time at a pseudo terminal, for other
+    /// programs to open, until Ctrl-C. LINK becomes a link to it
+    #[cfg(target_os = "linux")]
+    #[arg(long, value_name = "LINK", num_args = 0..=1,
+          conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg", "realtime"])]
+    pty: Option<Option<PathBuf>>,
+    /// With --pty: a board as sold, with this boot loader in flash (ELF) and no
+    /// firmware, for `make flash` to write it
+    #[cfg(target_os = "linux")]
+    #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
+    boot_loader: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotFile,
 }
@@ -95,15 +108,22 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// No firmware, a wrong script, a firmware that dies, a file that cannot be
 /// written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
-    let script = script(&args, &robot)?;
-    let elf = elf(args.elf.as_deref())?;
     let fidelity = match args.fidelity {
         FidelityArg::DataSheet => Fidelity::DataSheet,
         FidelityArg::Stock => Fidelity::Stock,
     };
-    let mut uno = Uno::load(&elf, fidelity)
-        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    #[cfg(target_os = "linux")]
+    if let Some(link) = &args.pty {
+        let uno = match &args.boot_loader {
+            Some(loader) => served::as_sold(loader, fidelity)?,
+            None => load(&elf(args.elf.as_deref())?, fidelity)?,
+        };
+        return served::until_interrupted(uno, link.as_deref());
+    }
+    let robot = args.robot.load()?;
+    let script = script(&args, &robot)?;
+    let elf = elf(args.elf.as_deref())?;
+    let mut uno = load(&elf, fidelity)?;
     let mut kept = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
 
@@ -131,7 +151,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         stack_spare: uno.stack_spare(),
         overruns: uno.overruns(),
         resets: uno.resets(),
-        ended: ended(&recording),
+        ended: ended(&recording.state),
         svg: Some(args.svg.display().to_string()),
         dialogue: kept,
         frames,
@@ -192,8 +212,12 @@ fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
     same.then_some(commands.widths)
 }
 
-fn ended(recording: &Recording) -> String {
-    match &recording.state {
+fn load(elf: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
+    Uno::load(elf, fidelity).map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))
+}
+
+fn ended(state: &State) -> String {
+    match state {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
         State::Crashed { pc, message } => format!("the firmware crashed at {pc:#06x}: {message}"),

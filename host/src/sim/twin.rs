@@ -7,14 +7,19 @@
 //!
 //! What has to be reconstructed is *when* main takes a byte: not before it is
 //! complete at the UNO, and not while the serial line has no room for the
-//! longest answer. That follows from the length of what has been written so far.
+//! longest answer. That follows from the length of what has been written so far. What
+//! main waits for while it writes the EEPROM is not reconstructed: here that takes no
+//! time.
 
 use std::collections::VecDeque;
 
 use lizard_core::console::{Counters, LONGEST_LINE};
-use lizard_core::pose::Pulses;
+use lizard_core::memory::Bytes;
+use lizard_core::pose::{Pose, Pulses};
+use lizard_core::restart::Restart;
 use lizard_core::robot::Robot;
 use lizard_core::step::{Board, Main, Step};
+use lizard_core::supply::Reading;
 use simulated_uno::SerialByte;
 
 use super::frame::{FRAME, SLOT};
@@ -41,10 +46,37 @@ struct Line {
     /// Cycle at which all that was written is through the line.
     free: u64,
     pulses: Pulses,
+    memory: Bytes,
+    /// Frames whose supply has been asked for.
+    measured: u32,
 }
+
+/// What the converter of a simulated UNO reads: the reference of 1.1 V at 5 V.
+const REFERENCE: u16 = 225;
 
 impl Board for Line {
     type Writer = String;
+    type Memory = Bytes;
+
+    fn keep(&mut self, _: Option<&Pose>) {}
+
+    fn restart(&self) -> Restart {
+        Restart::default()
+    }
+
+    fn supply(&mut self) -> Reading {
+        self.measured += 1;
+        let reference = if self.measured > 1 { REFERENCE } else { 0 };
+        Reading { reference, rail: 0 }
+    }
+
+    fn stack_is_intact(&self) -> bool {
+        true
+    }
+
+    fn memory(&mut self) -> &mut Bytes {
+        &mut self.memory
+    }
 
     fn ticks(&self) -> u8 {
         self.ticks
@@ -82,9 +114,10 @@ struct Twin<R> {
 
 impl<R: Robot> Twin<R> {
     fn new(robot: R) -> Self {
+        let mut line = Line::default();
         Self {
-            main: Main::new(robot, 0),
-            line: Line::default(),
+            main: Main::new(robot, &mut line),
+            line,
         }
     }
 

@@ -1,0 +1,161 @@
+//! What has gone wrong, as a code, a word and a pattern of the LED.
+//!
+//! Somebody without a cable has only the LED on D13. It beats slowly while all is
+//! well; after a fault it flashes as many times as the fault's code says, pauses,
+//! and begins again, until the robot is told to move.
+
+use crate::text::Text;
+
+/// A fault. Each of them stops the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// The next pose would not have been safe.
+    Guard = 1,
+    /// The supply is too low.
+    Supply,
+    /// No line has come for as long as `deadman` allows.
+    Link,
+    /// The program hung and was begun again.
+    Watchdog,
+    /// An edge of a pulse came late; its pulse was dropped.
+    Late,
+    /// The stack has grown into the data.
+    Stack,
+}
+
+impl Fault {
+    /// Its code: how many times the LED flashes.
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// Its word in `status`.
+    pub const fn word(self) -> Text {
+        match self {
+            Self::Guard => Text::FaultGuard,
+            Self::Supply => Text::FaultSupply,
+            Self::Link => Text::FaultLink,
+            Self::Watchdog => Text::FaultWatchdog,
+            Self::Late => Text::FaultLate,
+            Self::Stack => Text::FaultStack,
+        }
+    }
+}
+
+/// Frames that a flash is lit, and dark after it.
+const FLASH: u8 = 8;
+
+/// Frames of the pause after the flashes.
+const PAUSE: u8 = 48;
+
+/// Frames that the beat of a robot without a fault is lit, and dark.
+const BEAT: u8 = 32;
+
+/// The LED.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Led {
+    /// Frames since its pattern began.
+    frames: u8,
+    /// The pattern's code, 0 for the slow beat.
+    code: u8,
+}
+
+impl Led {
+    /// One frame on: whether it is lit.
+    pub fn frame(&mut self, fault: Option<Fault>) -> bool {
+        let code = fault.map_or(0, Fault::code);
+        let period = match code {
+            0 => 2 * BEAT,
+            code => 2 * FLASH * code + PAUSE,
+        };
+        if code == self.code {
+            self.frames += 1;
+        }
+        if code != self.code || self.frames >= period {
+            *self = Self { frames: 0, code };
+        }
+        if code == 0 {
+            self.frames < BEAT
+        } else {
+            self.frames < 2 * FLASH * code && self.frames & FLASH == 0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    const ALL: [Fault; 6] = [
+        Fault::Guard,
+        Fault::Supply,
+        Fault::Link,
+        Fault::Watchdog,
+        Fault::Late,
+        Fault::Stack,
+    ];
+
+    /// How long the LED is lit and dark, in turn, for some frames.
+    fn runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
+        let mut runs: Vec<(bool, usize)> = Vec::new();
+        for _ in 0..frames {
+            let lit = led.frame(fault);
+            match runs.last_mut() {
+                Some((last, count)) if *last == lit => *count += 1,
+                _ => runs.push((lit, 1)),
+            }
+        }
+        runs
+    }
+
+    #[test]
+    fn without_a_fault_it_beats_slowly() {
+        let runs = runs(&mut Led::default(), None, 1000);
+        assert!(runs[0].0, "lit first");
+        assert!(
+            runs[1..runs.len() - 1]
+                .iter()
+                .all(|(_, frames)| *frames == 32)
+        );
+    }
+
+    #[test]
+    fn a_fault_flashes_as_often_as_its_code_says_and_pauses() {
+        for (place, fault) in ALL.into_iter().enumerate() {
+            assert_eq!(usize::from(fault.code()), place + 1);
+            let mut led = Led::default();
+            runs(&mut led, None, 13 * (place + 1));
+            let runs = runs(&mut led, Some(fault), 1000);
+            // Cut into patterns by the pauses.
+            let mut flashes = 0;
+            let mut patterns = Vec::new();
+            for (lit, frames) in &runs[..runs.len() - 1] {
+                match (lit, frames) {
+                    (true, 8) => flashes += 1,
+                    (false, 8) => {}
+                    (false, 56) => {
+                        patterns.push(flashes);
+                        flashes = 0;
+                    }
+                    other => panic!("{fault:?}: {other:?}"),
+                }
+            }
+            assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
+            assert!(patterns.iter().all(|n| *n == place + 1), "{fault:?}");
+        }
+    }
+
+    #[test]
+    fn another_fault_begins_its_pattern_at_once() {
+        let mut led = Led::default();
+        runs(&mut led, Some(Fault::Stack), 100);
+        assert_eq!(
+            runs(&mut led, Some(Fault::Guard), 10),
+            [(true, 8), (false, 2)]
+        );
+        assert_eq!(runs(&mut led, None, 40), [(true, 32), (false, 8)]);
+    }
+}

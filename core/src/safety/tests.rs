@@ -1,0 +1,182 @@
+//! Every fault, alone and with others.
+
+use super::*;
+use crate::robot::Robot;
+use crate::sample::{Sample, WELL};
+
+fn supplies() -> Supplies {
+    Sample::odd().supplies()
+}
+
+fn frame(safety: &mut Safety, health: &Health) -> Order {
+    safety.frame(health, &supplies(), false, 0)
+}
+
+/// A board at so many volts, its rail at 6 V.
+fn at(volts: f64) -> Health {
+    Health {
+        supply: Reading {
+            reference: (1.08 / volts * 1024.0) as u16,
+            rail: (6.0 / 3.378 * 1.08 / volts * 1024.0) as u16,
+        },
+        ..WELL
+    }
+}
+
+/// Everything that is to be said, taken away.
+fn notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
+    let mut said = std::vec::Vec::new();
+    while let Some(notice) = safety.notice() {
+        safety.written(notice);
+        said.push(notice);
+    }
+    said
+}
+
+#[test]
+fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
+    let mut safety = Safety::new(false);
+    for _ in 0..1000 {
+        assert_eq!(frame(&mut safety, &WELL), Order::None);
+    }
+    assert_eq!(safety.fault(), None);
+    assert_eq!(safety.notice(), None);
+    assert!(safety.allows_motion() && safety.allows_writing());
+}
+
+#[test]
+fn boot_is_asked_for_once_three_seconds_after_power_on() {
+    let mut safety = Safety::new(true);
+    for number in 1..=1000 {
+        let order = frame(&mut safety, &WELL);
+        let expected = if number == 150 {
+            Order::Boot
+        } else {
+            Order::None
+        };
+        assert_eq!(order, expected, "{number}");
+    }
+}
+
+#[test]
+fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
+    let boots = |disturb: fn(&mut Safety)| {
+        let mut safety = Safety::new(true);
+        let mut booted = false;
+        for number in 1..=400 {
+            booted |= frame(&mut safety, &WELL) == Order::Boot;
+            if number == 100 {
+                disturb(&mut safety);
+            }
+        }
+        booted
+    };
+    assert!(boots(|_| {}));
+    assert!(!boots(Safety::byte_came));
+    assert!(!boots(|safety| _ = safety.fail(Fault::Late)));
+    assert!(!boots(|safety| {
+        for _ in 0..3 {
+            frame(safety, &at(4.2));
+        }
+        safety.clear();
+    }));
+}
+
+#[test]
+fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
+    for deadman in [20u16, 100, 1000, 60_000] {
+        let mut safety = Safety::new(false);
+        for _ in 0..10 {
+            safety.line_came();
+            let mut frames = 0;
+            while safety.frame(&WELL, &supplies(), true, deadman) == Order::None {
+                frames += 1;
+            }
+            assert_eq!(frames + 1, u32::from(deadman).div_ceil(20));
+            assert_eq!(safety.fault(), Some(Fault::Link));
+            safety.clear();
+        }
+    }
+}
+
+#[test]
+fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
+    let mut safety = Safety::new(false);
+    for _ in 0..5000 {
+        assert_eq!(safety.frame(&WELL, &supplies(), true, 0), Order::None);
+        assert_eq!(safety.frame(&WELL, &supplies(), false, 20), Order::None);
+    }
+}
+
+#[test]
+fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
+    let mut safety = Safety::new(false);
+    let mut run = |volts| {
+        let orders = [(); 3].map(|()| frame(&mut safety, &at(volts)));
+        (
+            orders[2],
+            safety.fault(),
+            safety.allows_motion(),
+            safety.allows_writing(),
+            notices(&mut safety).len(),
+        )
+    };
+    let supply = Some(Fault::Supply);
+    assert_eq!(run(4.4), (Order::None, None, true, false, 1));
+    assert_eq!(run(4.2), (Order::Stop, supply, false, false, 2));
+    assert_eq!(run(4.0), (Order::Rest, supply, false, false, 2));
+}
+
+#[test]
+fn each_late_edge_stops_and_is_told() {
+    let mut safety = Safety::new(false);
+    for late in [1, 2, 7, 65_535] {
+        let health = Health { late, ..WELL };
+        assert_eq!(frame(&mut safety, &health), Order::Stop);
+        assert_eq!(safety.fault(), Some(Fault::Late));
+        assert_eq!(notices(&mut safety), [Notice::Fault]);
+        assert_eq!(frame(&mut safety, &health), Order::None, "once");
+    }
+}
+
+#[test]
+fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
+    let mut safety = Safety::new(false);
+    let health = Health {
+        stack_is_intact: false,
+        ..WELL
+    };
+    for _ in 0..3 {
+        assert_eq!(frame(&mut safety, &health), Order::Stop);
+        assert_eq!(safety.fault(), Some(Fault::Stack));
+        for _ in 0..100 {
+            assert_eq!(frame(&mut safety, &health), Order::None);
+        }
+        safety.clear();
+    }
+}
+
+#[test]
+fn of_two_orders_at_once_the_stronger_one_counts() {
+    let mut safety = Safety::new(false);
+    frame(&mut safety, &at(4.0));
+    frame(&mut safety, &at(4.0));
+    let health = Health { late: 1, ..at(4.0) };
+    assert_eq!(frame(&mut safety, &health), Order::Rest);
+}
+
+#[test]
+fn what_is_said_unasked_comes_in_one_order_each_once() {
+    let mut safety = Safety::new(false);
+    for notice in [
+        Notice::Boot,
+        Notice::Memory,
+        Notice::Supply,
+        Notice::Fault,
+        Notice::Boot,
+    ] {
+        safety.notify(notice);
+    }
+    let expected = [Notice::Memory, Notice::Fault, Notice::Supply, Notice::Boot];
+    assert_eq!(notices(&mut safety), expected);
+}

@@ -1,0 +1,200 @@
+//! All that a person may set and the robot keeps: the servos' adjustments, what it
+//! does after power-on, and how long it walks without hearing anything.
+//!
+//! Settings are held as the bytes that the EEPROM keeps, so that neither saving nor
+//! loading converts anything.
+//!
+//! | byte | what |
+//! |---|---|
+//! | 0 | [`FORMAT`] |
+//! | 1 | the turn: one more with every `save` |
+//! | 2 | hash of the servos that they are for, 4 bytes |
+//! | 6 | for each servo trim, gain, clockwise and counter-clockwise end, 2 bytes each |
+//! | 38 | `boot`: 0 for `rest`, else the [`key`] of a gait |
+//! | 40 | `deadman`, ms |
+
+use crate::adjustment::{Adjustment, Reach};
+use crate::calibration::Calibration;
+use crate::gait::GaitId;
+use crate::memory::Content;
+use crate::part::Servo;
+use crate::robot::Robot;
+use crate::units::Sweep;
+
+/// Raised when the meaning of the bytes changes.
+pub const FORMAT: u8 = 1;
+
+const TURN: usize = 1;
+const HASH: usize = 2;
+const SERVOS: usize = 6;
+const BOOT: usize = 38;
+const DEADMAN: usize = 40;
+
+/// What the robot does three seconds after power-on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Boot {
+    /// A gait; `stand` is one.
+    Gait(GaitId),
+    /// No pulses.
+    Rest,
+}
+
+/// Everything that `save` keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    bytes: Content,
+}
+
+/// A servo that could not do what the gaits ask of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unfit {
+    /// Which one.
+    pub servo: Servo,
+    /// What it would reach.
+    pub reach: Reach,
+}
+
+impl Settings {
+    /// Those of robot.toml.
+    #[inline(never)]
+    pub fn of<R: Robot>(robot: &R) -> Self {
+        let mut settings = Self::blank(robot);
+        for (place, servo) in robot.calibration().iter().enumerate() {
+            settings.set_servo(place, Adjustment::of(servo));
+        }
+        settings.set_boot(Boot::Gait(GaitId::STAND), robot);
+        settings
+    }
+
+    /// Nothing but the head of a record for the servos of a robot.
+    pub fn blank<R: Robot>(robot: &R) -> Self {
+        let mut settings = Self { bytes: [0; _] };
+        settings.bytes[0] = FORMAT;
+        let hash = robot.servo_hash();
+        settings.put(HASH, hash as u16);
+        settings.put(HASH + 2, (hash >> 16) as u16);
+        settings
+    }
+
+    /// Bytes that a memory has kept.
+    pub const fn from_bytes(bytes: Content) -> Self {
+        Self { bytes }
+    }
+
+    /// What a memory keeps.
+    pub const fn bytes(&self) -> &Content {
+        &self.bytes
+    }
+
+    /// Whether they are of this format and for the servos of this robot.
+    pub fn are_for<R: Robot>(&self, robot: &R) -> bool {
+        let hash = robot.servo_hash();
+        self.bytes[0] == FORMAT
+            && self.get(HASH) == hash as u16
+            && self.get(HASH + 2) == (hash >> 16) as u16
+    }
+
+    /// How many times settings had been saved when these were.
+    pub const fn turn(&self) -> u8 {
+        self.bytes[TURN]
+    }
+
+    /// Sets the turn.
+    pub const fn set_turn(&mut self, turn: u8) {
+        self.bytes[TURN] = turn;
+    }
+
+    /// A servo's adjustment, by its place.
+    pub fn servo(&self, place: usize) -> Adjustment {
+        let number = |n: usize| self.get(SERVOS + 8 * (place & 3) + 2 * n) as i16;
+        Adjustment {
+            trim: Sweep(number(0)),
+            gain: number(1),
+            min: Sweep(number(2)),
+            max: Sweep(number(3)),
+        }
+    }
+
+    /// Sets a servo's adjustment.
+    pub fn set_servo(&mut self, place: usize, servo: Adjustment) {
+        let numbers = [servo.trim.0, servo.gain, servo.min.0, servo.max.0];
+        let mut at = SERVOS + 8 * (place & 3);
+        for number in numbers {
+            self.put(at, number as u16);
+            at += 2;
+        }
+    }
+
+    /// What is done after power-on; `stand` for a gait that is no more.
+    pub fn boot<R: Robot>(&self, robot: &R) -> Boot {
+        let kept = self.get(BOOT);
+        if kept == 0 {
+            return Boot::Rest;
+        }
+        let gait = GaitId::all(robot.gaits().len()).find(|id| key(robot, *id) == kept);
+        Boot::Gait(gait.unwrap_or(GaitId::STAND))
+    }
+
+    /// Sets what is done after power-on.
+    pub fn set_boot<R: Robot>(&mut self, boot: Boot, robot: &R) {
+        let kept = match boot {
+            Boot::Rest => 0,
+            Boot::Gait(id) => key(robot, id),
+        };
+        self.put(BOOT, kept);
+    }
+
+    /// A gait ends when no line has come for so many milliseconds; 0 for never.
+    pub fn deadman(&self) -> u16 {
+        self.get(DEADMAN)
+    }
+
+    /// Sets how long a gait goes on without a line.
+    pub fn set_deadman(&mut self, ms: u16) {
+        self.put(DEADMAN, ms);
+    }
+
+    /// The servos' calibration.
+    ///
+    /// # Errors
+    /// The first servo whose travel would end short of the neutral angle or of a gait.
+    #[inline(never)]
+    pub fn calibration<R: Robot>(&self, robot: &R) -> Result<[Calibration; 4], Unfit> {
+        let mut calibration = robot.calibration();
+        let needed = robot.reach();
+        for (place, servo) in calibration.iter_mut().enumerate() {
+            *servo = self.servo(place).apply(servo);
+            let (min, max) = (servo.min, servo.max);
+            if min > needed[place].min || max < needed[place].max {
+                return Err(Unfit {
+                    servo: Servo::at(place),
+                    reach: Reach { min, max },
+                });
+            }
+        }
+        Ok(calibration)
+    }
+
+    fn get(&self, at: usize) -> u16 {
+        match self.bytes.get(at..) {
+            Some([low, high, ..]) => u16::from_le_bytes([*low, *high]),
+            _ => 0,
+        }
+    }
+
+    fn put(&mut self, at: usize, number: u16) {
+        if let Some([low, high, ..]) = self.bytes.get_mut(at..) {
+            [*low, *high] = number.to_le_bytes();
+        }
+    }
+}
+
+/// What a gait is kept by: a number made of its name, so that it is found again
+/// when robot.toml has got other gaits. Never 0.
+pub fn key<R: Robot>(robot: &R, id: GaitId) -> u16 {
+    let mut key = 0u16;
+    for byte in robot.name(id) {
+        key = (key << 5).wrapping_sub(key).wrapping_add(byte.into());
+    }
+    key | 1
+}

@@ -1,0 +1,344 @@
+//! The judge: a second simulator for what the first one says.
+//!
+//! The simulated UNO stands on simavr, and a fault of simavr can look like a virtue
+//! of the firmware. avr8js is another simulator, in another language, by other
+//! people. The same image is given the same bytes at the same cycles on both, and
+//! what they say of it is compared: every pulse of every pin, every byte.
+
+use std::fmt;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use simulated_uno::{Edge, Pin, SerialByte};
+
+use crate::robots::root;
+
+/// The end of a run is not compared: there, one simulator may be through with a
+/// pulse or a byte and the other not yet.
+const LAST_CYCLES: u64 = 1_000;
+
+/// Cycles by which Timer1 starts later on avr8js, and with it all that the firmware
+/// does: simavr counts from the first cycle of the instruction that starts it, avr8js
+/// from its last. The bytes are sent so much later, too, so that they meet the firmware
+/// in the same state; then the two agree to the cycle, or not at all.
+pub const LATER: i64 = 1;
+
+/// A pulse and the pin that it is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PinPulse {
+    /// The pin.
+    pub pin: Pin,
+    /// Cycle of the rising edge.
+    pub rise: u64,
+    /// Cycles until the falling edge.
+    pub width: u64,
+}
+
+impl fmt::Display for PinPulse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pin, rise, width } = self;
+        write!(f, "{pin} rises at cycle {rise} for {width} cycles")
+    }
+}
+
+/// What a simulator says of a run from power-on.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Account {
+    /// The finished pulses of all pins, in the order of their ends.
+    pub pulses: Vec<PinPulse>,
+    /// What the UNO has sent, each byte with the cycle at which its stop bit ends.
+    pub sent: Vec<SerialByte>,
+    /// The cycle at which the run has ended.
+    pub end: u64,
+}
+
+impl Account {
+    /// From what the simulated UNO has recorded since power-on.
+    #[must_use]
+    pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
+        let mut rises = [None; 20];
+        let mut pulses = Vec::new();
+        for edge in edges {
+            let rise = &mut rises[usize::from(edge.pin.number())];
+            if edge.high {
+                *rise = Some(edge.cycle);
+            } else if let Some(rise) = rise.take() {
+                pulses.push(PinPulse {
+                    pin: edge.pin,
+                    rise,
+                    width: edge.cycle - rise,
+                });
+            }
+        }
+        Self {
+            pulses,
+            sent: sent.to_vec(),
+            end,
+        }
+    }
+}
+
+/// avr8js's account of a run, and what it cost.
+#[derive(Debug, Clone, Default)]
+pub struct Verdict {
+    /// What the firmware did.
+    pub account: Account,
+    /// The 1024 bytes of EEPROM at the end.
+    pub eeprom: Vec<u8>,
+    /// Processor time of the simulation, ms.
+    pub cpu_ms: u64,
+}
+
+/// Runs an ELF file on avr8js. `received` are the bytes that the serial line brings
+/// and the cycles at which each is complete on simavr, `end` the cycle at which the
+/// run ends.
+///
+/// # Errors
+/// A sentence: what is missing, or what avr8js cannot simulate.
+pub fn judge(elf: &Path, received: &[SerialByte], end: u64) -> Result<Verdict, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let hex = folder.path().join("firmware.hex");
+    let mut objcopy = Command::new("avr-objcopy");
+    objcopy.args(["-O", "ihex", "-R", ".eeprom"]);
+    done(objcopy.args([elf, &hex]), "binutils-avr", "")?;
+    let mut script = String::new();
+    for SerialByte { cycle, byte } in received {
+        script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(LATER));
+    }
+    script += &format!("end {end}\n");
+    let said = done(
+        node()?.arg(judge_folder().join("run.js")).arg(hex),
+        "nodejs",
+        &script,
+    )?;
+    let mut verdict = read(&said).ok_or_else(|| format!("the judge says nonsense:\n{said}"))?;
+    verdict.account.end = end;
+    Ok(verdict)
+}
+
+/// Runs the judge's own tests, which show each fault of avr8js and that it is
+/// corrected.
+///
+/// # Errors
+/// What is missing, or the tests that fail.
+pub fn own_tests() -> Result<String, String> {
+    let folder = judge_folder().join("test");
+    let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
+    let paths = files.filter_map(|file| Some(file.ok()?.path()));
+    // By name: what Node makes of a folder differs from version to version.
+    let tests = paths.filter(|path| path.to_string_lossy().ends_with(".test.js"));
+    done(node()?.arg("--test").args(tests), "nodejs", "")
+}
+
+fn judge_folder() -> PathBuf {
+    root().join("judge")
+}
+
+/// Node, if all that the judge needs of it is there.
+fn node() -> Result<Command, String> {
+    let package = judge_folder().join("node_modules/avr8js/package.json");
+    if !package.exists() {
+        return Err("the package avr8js is missing: scripts/setup-judge fetches it".into());
+    }
+    Ok(Command::new("node"))
+}
+
+/// What a program prints when it is given `input`.
+fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let output = run(command, input).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => format!(
+            "{program} is missing: scripts/setup and scripts/setup-judge install it \
+             (Debian package {debian})"
+        ),
+        _ => format!("{program}: {error}"),
+    })?;
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    if output.status.success() {
+        return Ok(said);
+    }
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    Err(format!("{program} fails: {}\n{said}", complaint.trim()))
+}
+
+fn run(command: &mut Command, input: &str) -> std::io::Result<Output> {
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    // A program that fails before it has read everything says why on its stderr.
+    let written = child
+        .stdin
+        .take()
+        .map_or(Ok(()), |mut stdin| stdin.write_all(input.as_bytes()));
+    let output = child.wait_with_output()?;
+    if output.status.success() {
+        written?;
+    }
+    Ok(output)
+}
+
+/// Reads what judge/run.js prints; its head explains the lines.
+fn read(said: &str) -> Option<Verdict> {
+    let mut verdict = Verdict::default();
+    for line in said.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        match words[..] {
+            ["pulse", pin, rise, width] => verdict.account.pulses.push(PinPulse {
+                pin: Pin::arduino(pin.parse().ok()?),
+                rise: rise.parse().ok()?,
+                width: width.parse().ok()?,
+            }),
+            ["sent", cycle, byte] => verdict.account.sent.push(SerialByte {
+                cycle: cycle.parse().ok()?,
+                byte: u8::from_str_radix(byte, 16).ok()?,
+            }),
+            ["eeprom", bytes] => {
+                let byte = |at| u8::from_str_radix(bytes.get(at..at + 2)?, 16).ok();
+                verdict.eeprom = (0..bytes.len())
+                    .step_by(2)
+                    .map(byte)
+                    .collect::<Option<_>>()?;
+            }
+            ["cpu", ms] => verdict.cpu_ms = ms.parse().ok()?,
+            _ => return None,
+        }
+    }
+    (verdict.eeprom.len() == 1024).then_some(verdict)
+}
+
+/// What two simulators agree about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Agreement {
+    /// Pulses or bytes.
+    pub what: &'static str,
+    /// How many.
+    pub count: usize,
+    /// Cycles by which avr8js's all come later.
+    pub offset: i64,
+    /// The most cycles by which one of them is off that.
+    pub wander: u64,
+}
+
+impl fmt::Display for Agreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            what,
+            count,
+            offset,
+            wander,
+        } = self;
+        write!(
+            f,
+            "{count} {what} {offset} cycles later, {wander} more or less"
+        )
+    }
+}
+
+/// Compares the servos' pulses: their pins, their order, their rising edges but for
+/// a constant, and their widths, all to the cycle. The data sheet does not say in
+/// which of its cycles an instruction reaches a peripheral, hence the constant.
+///
+/// # Errors
+/// The first difference, in a sentence.
+pub fn compare_pulses(
+    simavr: &Account,
+    avr8js: &Account,
+    servos: &[Pin],
+) -> Result<Agreement, String> {
+    let of_servos = |account: &Account| -> Vec<PinPulse> {
+        let pulses = account.pulses.iter().copied();
+        pulses.filter(|pulse| servos.contains(&pulse.pin)).collect()
+    };
+    let (pulses, others) = (of_servos(simavr), of_servos(avr8js));
+    let (Some(first), Some(other)) = (pulses.first(), others.first()) else {
+        return Err("on one of them no servo gets a pulse".into());
+    };
+    let offset = other.rise as i64 - first.rise as i64;
+    let others: Vec<PinPulse> = others
+        .iter()
+        .map(|pulse| PinPulse {
+            rise: pulse.rise.saturating_add_signed(-offset),
+            ..*pulse
+        })
+        .collect();
+    let limit = simavr.end.min(avr8js.end) - LAST_CYCLES;
+    let (pulses, others) = (whole(&pulses, limit), whole(&others, limit));
+    let both = pulses.iter().zip(&others).enumerate();
+    if let Some((n, (a, b))) = both.into_iter().find(|(_, (a, b))| a != b) {
+        return Err(format!(
+            "pulse {n}: on simavr {a}, on avr8js {b}, where all come {offset} cycles later"
+        ));
+    }
+    let count = pulses.len().min(others.len());
+    for (name, pulses) in [("simavr", &pulses), ("avr8js", &others)] {
+        if let Some(next) = pulses.get(count) {
+            return Err(format!("pulse {count} is on {name} alone: {next}"));
+        }
+    }
+    Ok(Agreement {
+        what: "pulses",
+        count,
+        offset,
+        wander: 0,
+    })
+}
+
+/// Compares the bytes of the console.
+///
+/// # Errors
+/// The first difference, in a sentence.
+pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, String> {
+    let (Some(first), Some(other)) = (simavr.sent.first(), avr8js.sent.first()) else {
+        return Err("one of them is silent".into());
+    };
+    let offset = other.cycle as i64 - first.cycle as i64;
+    let both = simavr.sent.iter().zip(&avr8js.sent);
+    let mut wander = 0;
+    for (n, (a, b)) in both.enumerate() {
+        if a.byte != b.byte {
+            return Err(format!(
+                "byte {n} of the console, cycle {}: simavr has {:?}, avr8js {:?}",
+                a.cycle,
+                tail(&simavr.sent, n),
+                tail(&avr8js.sent, n)
+            ));
+        }
+        wander = wander.max(b.cycle.saturating_add_signed(-offset).abs_diff(a.cycle));
+    }
+    let count = simavr.sent.len().min(avr8js.sent.len());
+    for (name, account) in [("simavr", simavr), ("avr8js", avr8js)] {
+        if account.sent.len() > count {
+            let text = tail(&account.sent, count);
+            return Err(format!(
+                "byte {count} of the console is on {name} alone: {text:?}"
+            ));
+        }
+    }
+    Ok(Agreement {
+        what: "bytes",
+        count,
+        offset,
+        wander,
+    })
+}
+
+/// The pulses that have ended by a cycle.
+fn whole(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
+    let pulses = pulses.iter().copied();
+    pulses
+        .filter(|pulse| pulse.rise + pulse.width <= limit)
+        .collect()
+}
+
+/// The text up to byte `n`, a line's length of it.
+fn tail(bytes: &[SerialByte], n: usize) -> String {
+    let end = bytes.len().min(n + 1);
+    let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]
+        .iter()
+        .map(|byte| byte.byte)
+        .collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}

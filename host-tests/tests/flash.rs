@@ -1,0 +1,189 @@
+//! README's `make flash`, as it stands there: cargo, ravedude and avrdude write
+//! the image to a board as it is sold. The board is simulated, with the boot
+//! loader of a stock UNO in flash, behind a pseudo terminal and in real time.
+//!
+//! `make flash-test` runs these tests after it has installed the tools.
+
+mod shell;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use lizard_host::sim::frame::{frames, servo_pins};
+use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot, root};
+use shell::Shell;
+use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
+
+/// First byte of the boot loader; the firmware ends before it.
+const BOOT: usize = 0x7e00;
+/// The servos wake one after another; later than this all four are held.
+const AWAKE_FRAMES: u64 = 60;
+/// More than a slow machine needs to write, to verify and to boot.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn boot_loader() -> Image {
+    let elf: PathBuf = root().join("target/flash-test/optiboot.elf");
+    Image::read(elf).expect("`make flash-test` compiles the boot loader")
+}
+
+/// A board at a port of this machine, and what its pins have done.
+struct Desk {
+    uno: Uno,
+    port: Port,
+    edges: Vec<Edge>,
+}
+
+impl Desk {
+    fn with_a_new_board() -> Self {
+        Self {
+            uno: Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet),
+            port: Port::new().expect("a pseudo terminal"),
+            edges: Vec::new(),
+        }
+    }
+
+    fn make_flash(&self) -> Shell {
+        let port = self.port.path().display().to_string();
+        Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &port)])
+    }
+
+    /// Lets the board live until the condition holds. False if it never does.
+    fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
+        let end = std::time::Instant::now() + PATIENCE;
+        while !done(&mut self.uno) {
+            if std::time::Instant::now() > end {
+                return false;
+            }
+            let step = Duration::from_millis(10);
+            self.port
+                .serve(&mut self.uno, step)
+                .expect("the port is well");
+            self.edges.extend(self.uno.take_edges());
+        }
+        true
+    }
+
+    /// Lets a number of frames pass.
+    fn pass(&mut self, count: u64) {
+        let end = self.uno.cycle() + count * FRAME;
+        assert!(self.until(|uno| uno.cycle() > end));
+    }
+
+    /// Waits until `text` is on the screen; the test fails if it never is.
+    fn see(&mut self, shell: &Shell, text: &str) {
+        let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
+        let screen = shell.screen();
+        assert!(seen && screen.contains(text), "no {text:?} in\n{screen}");
+    }
+}
+
+#[test]
+#[ignore = "needs ravedude and avrdude: make flash-test"]
+fn make_flash_writes_the_image_and_the_robot_walks() {
+    let mut desk = Desk::with_a_new_board();
+    let mut shell = desk.make_flash();
+    desk.see(&shell, "# lizard");
+    let screen = shell.screen();
+    assert!(screen.contains("bytes of flash verified"), "{screen}");
+
+    let elf = FirmwareBench::elf();
+    let truth = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
+    let wrong: Vec<usize> = (0..BOOT)
+        .filter(|&at| desk.uno.flash()[at] != truth.flash()[at])
+        .collect();
+    assert!(
+        wrong.is_empty(),
+        "flash differs from the image at {wrong:x?}"
+    );
+    let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
+    assert!(
+        desk.uno.flash()[BOOT..] == new.flash()[BOOT..],
+        "the boot loader is whole"
+    );
+
+    // All four servos awake, then two steps.
+    shell.say("stand");
+    desk.see(&shell, "ok stand");
+    desk.pass(AWAKE_FRAMES);
+    shell.say("walk");
+    desk.see(&shell, "ok walk");
+    desk.edges.clear();
+    desk.pass(110);
+    let pins = servo_pins(robot());
+    let first = desk
+        .edges
+        .iter()
+        .find(|edge| edge.high && edge.pin == pins[0]);
+    let start = first.expect("A1 has a pulse").cycle;
+    let walked: Vec<[u64; 4]> = frames(&desk.edges, pins, start, 100)
+        .iter()
+        .map(Frame::widths)
+        .collect();
+
+    // The same image in a simulation without boot loader, port and wall clock.
+    let mut bench = FirmwareBench::boot();
+    bench.say("stand");
+    bench.run_for_frames(AWAKE_FRAMES);
+    bench.say("walk");
+    let bench: Vec<[u64; 4]> = bench
+        .run_for_frames(150)
+        .iter()
+        .map(Frame::widths)
+        .collect();
+    assert!(
+        bench.windows(walked.len()).any(|part| part == walked),
+        "the robot walks as on the bench; pulses in cycles: {walked:?}"
+    );
+    shell.interrupt();
+}
+
+#[test]
+#[ignore = "needs ravedude and avrdude: make flash-test"]
+fn an_upload_keeps_the_eeprom() {
+    let mut desk = Desk::with_a_new_board();
+    let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
+    desk.uno.set_eeprom(&kept);
+    let mut shell = desk.make_flash();
+    // Before the firmware may write a byte of its own.
+    desk.see(&shell, "bytes of flash verified");
+    assert!(
+        desk.uno.eeprom() == kept,
+        "the upload has changed the EEPROM"
+    );
+    shell.interrupt();
+}
+
+#[test]
+#[ignore = "needs ravedude and avrdude: make flash-test"]
+fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
+    let mut desk = Desk::with_a_new_board();
+    let shell = desk.make_flash();
+    let mut worn = false;
+    // Once the image's first page is there, one bit of it falls.
+    let ended = desk.until(|uno| {
+        if !worn && uno.flash()[0x100] != 0xff {
+            uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
+            worn = true;
+        }
+        shell.has_ended()
+    });
+    let screen = shell.screen();
+    assert!(ended && worn, "{screen}");
+    assert!(screen.contains("verification"), "{screen}");
+    assert!(screen.contains("flash: it did not work"), "{screen}");
+    assert!(!screen.contains("# lizard"), "no console:\n{screen}");
+}
+
+#[test]
+#[ignore = "needs ravedude and avrdude: make flash-test"]
+fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
+    let mut desk = Desk::with_a_new_board();
+    // A boot loader that does nothing: `rjmp .-2`.
+    desk.uno.set_flash(BOOT as u16, &[0xff, 0xcf]);
+    let shell = desk.make_flash();
+    let ended = desk.until(|_| shell.has_ended());
+    let screen = shell.screen();
+    assert!(ended, "{screen}");
+    assert!(screen.contains("the board does not answer"), "{screen}");
+    assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
+}

@@ -1,0 +1,168 @@
+//! `make flash` where it cannot work: what a person reads then. No board is
+//! needed, and one that is connected is left alone.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::Path;
+use std::process::Command;
+
+use lizard_host_tests::root;
+use simulated_uno::Port;
+use tempfile::TempDir;
+
+/// What `scripts/flash --check` says of serial ports in this folder, and whether
+/// it goes on. `port`: what RAVEDUDE_PORT names.
+fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
+    let scripts = scripts();
+    let script = scripts.path().join("scripts/flash");
+    let words: Vec<&str> = [user, &["bash"]].concat();
+    let mut command = Command::new(words[0]);
+    command.args(&words[1..]).arg(script).arg("--check");
+    command.env("FLASH_DEV", ports).env_remove("RAVEDUDE_PORT");
+    if let Some(port) = port {
+        command.env("RAVEDUDE_PORT", port);
+    }
+    let output = command.output().expect("the script starts");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    (said, output.status.success())
+}
+
+fn check(ports: &Path) -> (String, bool) {
+    check_as(&[], ports, None)
+}
+
+/// A folder that every user may read.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let all = Permissions::from_mode(0o755);
+    fs::set_permissions(folder.path(), all).expect("it is ours");
+    folder
+}
+
+/// The scripts where another user can read them, too.
+fn scripts() -> TempDir {
+    let copy = folder();
+    let status = Command::new("cp")
+        .arg("-r")
+        .arg(root().join("scripts"))
+        .arg(copy.path())
+        .status();
+    assert!(
+        status.is_ok_and(|status| status.success()),
+        "the scripts are copied"
+    );
+    copy
+}
+
+#[test]
+fn without_a_board_it_says_what_to_connect() {
+    let (said, goes_on) = check(folder().path());
+    assert!(!goes_on);
+    assert!(said.contains("no board found"), "{said}");
+    assert!(said.contains("cable that carries data"), "{said}");
+}
+
+#[test]
+fn one_board_is_taken_whatever_its_usb_chip() {
+    let ports = folder();
+    File::create(ports.path().join("ttyUSB0")).expect("a file");
+    assert_eq!(check(ports.path()), (String::new(), true));
+}
+
+#[test]
+fn of_several_boards_one_must_be_named() {
+    let ports = folder();
+    for name in ["ttyACM0", "ttyUSB3"] {
+        File::create(ports.path().join(name)).expect("a file");
+    }
+    let (said, goes_on) = check(ports.path());
+    assert!(!goes_on);
+    assert!(said.contains("several boards found"), "{said}");
+    assert!(said.contains("make flash RAVEDUDE_PORT="), "{said}");
+    let named = ports.path().join("ttyUSB3");
+    assert!(check_as(&[], ports.path(), Some(&named)).1);
+}
+
+#[test]
+fn a_port_that_is_not_there_is_named() {
+    let missing = Path::new("/dev/no-such-port");
+    let (said, goes_on) = check_as(&[], folder().path(), Some(missing));
+    assert!(!goes_on);
+    assert!(said.contains("there is no /dev/no-such-port"), "{said}");
+    assert!(said.contains("of this machine: none"), "{said}");
+}
+
+#[test]
+fn a_port_that_another_program_has_open_names_the_program() {
+    let port = Port::new().expect("a pseudo terminal");
+    let ports = folder();
+    symlink(port.path(), ports.path().join("ttyACM0")).expect("a link");
+    assert_eq!(check(ports.path()), (String::new(), true));
+    let mut options = OpenOptions::new();
+    let other = options.read(true).write(true).open(port.path());
+    let (said, goes_on) = check(ports.path());
+    assert!(!goes_on);
+    let ours = format!("(process {})", std::process::id());
+    assert!(
+        said.contains("is open in ") && said.contains(&ours),
+        "{said}"
+    );
+    drop(other);
+    assert!(check(ports.path()).1);
+}
+
+#[test]
+fn without_permission_it_says_which_group_to_join() {
+    let ports = folder();
+    let port = ports.path().join("ttyACM0");
+    File::create(&port).expect("a file");
+    fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("it is ours");
+    let as_nobody = ["setpriv", "--reuid=nobody", "--clear-groups"];
+    let dialout = Command::new("chgrp").arg("dialout").arg(&port).status();
+    if !dialout.is_ok_and(|status| status.success()) {
+        eprintln!("left out: only root can make a port that another user may not open");
+        return;
+    }
+    let (said, goes_on) = check_as(&as_nobody, ports.path(), None);
+    assert!(!goes_on);
+    assert!(said.contains("nobody may not open"), "{said}");
+    assert!(said.contains("usermod -aG dialout nobody"), "{said}");
+}
+
+#[test]
+fn a_missing_avrdude_says_what_to_install() {
+    // Nothing installed, no avrdude and no sudo on the PATH, and a user who is not
+    // root.
+    let bin = folder();
+    for tool in [
+        "bash",
+        "env",
+        "id",
+        "dirname",
+        "dpkg-query",
+        "grep",
+        "apt-get",
+    ] {
+        let at = Path::new("/usr/bin").join(tool);
+        symlink(at, bin.path().join(tool)).expect("a link");
+    }
+    let no_package = bin.path().join("dpkg-query");
+    fs::write(&no_package, "#!/usr/bin/bash\nexit 1\n").expect("it is ours");
+    fs::set_permissions(&no_package, Permissions::from_mode(0o755)).expect("it is ours");
+    let scripts = scripts();
+    let script = scripts.path().join("scripts/setup-flash");
+    let mut command = Command::new("/usr/bin/setpriv");
+    command.args(["--reuid=nobody", "--clear-groups", "/usr/bin/bash"]);
+    let output = command.arg(script).env("PATH", bin.path()).output();
+    let output = output.expect("setpriv starts (Debian package util-linux)");
+    let said = String::from_utf8_lossy(&output.stdout);
+    if !said.contains("setup:") {
+        eprintln!("left out: only root can run a script as another user");
+        return;
+    }
+    assert!(!output.status.success());
+    assert!(
+        said.contains("As root, run:\n    apt-get install -y avrdude"),
+        "{said}"
+    );
+}

@@ -1,0 +1,169 @@
+//! The same image on two simulators: they must agree about every pulse and every byte.
+//!
+//! See docs/judges.md for the two and for what their agreement means.
+
+use std::thread;
+
+use lizard_host::sim::frame::servo_pins;
+use lizard_host_tests::judge::{
+    Account, LATER, PinPulse, compare_console, compare_pulses, judge, own_tests,
+};
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
+
+/// A robot that stands, on the simulated UNO, everything recorded since power-on.
+fn awake() -> FirmwareBench {
+    let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
+    bench.run_ms(1000);
+    bench
+}
+
+/// The commands of all gaits.
+fn gaits() -> Vec<String> {
+    let names = robot().gaits().iter().map(|gait| gait.name());
+    names.map(|name| name.replace('-', " ")).collect()
+}
+
+/// Gives avr8js the bytes that the bench has received, and holds its account against
+/// the bench's.
+fn agree(bench: &mut FirmwareBench, what: &str) {
+    let end = bench.uno.cycle();
+    let edges = bench.uno.edges();
+    let simavr = Account::new(&edges, bench.bytes(), end);
+    let received = bench.uno.received_by_uno();
+    let verdict = done(judge(&FirmwareBench::elf(), &received, end));
+    let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
+    let pulses = pulses.unwrap_or_else(|difference| panic!("{what}: {difference}"));
+    assert_eq!(
+        pulses.offset, LATER,
+        "{what}: the pulses' cycle in the slot"
+    );
+    let console = compare_console(&simavr, &verdict.account);
+    let console = console.unwrap_or_else(|difference| panic!("{what}: {difference}"));
+    assert!(
+        console.offset.abs() <= 1 && console.wander <= 1,
+        "{what}: the console's times differ: {console:?}"
+    );
+    let eeprom = bench.uno.eeprom();
+    let differs = eeprom.iter().zip(&verdict.eeprom).position(|(a, b)| a != b);
+    assert_eq!(differs, None, "{what}: the EEPROMs differ at this address");
+    println!(
+        "{what}: {} bytes received, {pulses}, {console}; {:.1} s in {} ms of processor time",
+        received.len(),
+        end as f64 / (1000 * CYCLES_PER_MS) as f64,
+        verdict.cpu_ms
+    );
+}
+
+fn done<T>(result: Result<T, String>) -> T {
+    result.unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn two_simulators_agree_about_every_pulse_of_every_gait() {
+    let mut bench = awake();
+    for line in gaits() {
+        bench.say(&line);
+        bench.run_ms(2000);
+        bench.say("status");
+    }
+    bench.say("stop");
+    bench.say("rest");
+    bench.run_ms(500);
+    agree(&mut bench, "all gaits");
+}
+
+#[test]
+fn two_simulators_agree_under_a_saturated_line() {
+    let moving = gaits().iter().find(|line| *line != "stand").cloned();
+    let moving = moving.unwrap_or_else(|| "stand".into());
+    let commands = gaits().join("\n") + "\nspeed 30\nstatus\n";
+    let floods = [
+        "status\n",
+        "help\n",
+        "?\r",
+        "x",
+        "\0\u{7f}\u{8}\n",
+        &commands,
+    ];
+    thread::scope(|scope| {
+        for flood in floods {
+            let moving = &moving;
+            scope.spawn(move || {
+                let mut bench = awake();
+                bench.say("watch 1");
+                bench.say(moving);
+                bench.uno.flood(flood.as_bytes());
+                bench.run_ms(2000);
+                bench.uno.flood(b"");
+                bench.uno.send(b"\nwatch 0\nstatus\n");
+                bench.run_ms(500);
+                agree(&mut bench, &format!("{flood:?}"));
+            });
+        }
+    });
+}
+
+#[test]
+fn the_faults_of_avr8js_are_corrected_and_still_there() {
+    done(own_tests());
+}
+
+fn pulse(rise: u64, width: u64) -> PinPulse {
+    let pin = Pin::d(9);
+    PinPulse { pin, rise, width }
+}
+
+fn account(pulses: &[PinPulse], text: &str) -> Account {
+    let sent = text.bytes().map(|byte| SerialByte { cycle: 0, byte });
+    Account {
+        pulses: pulses.to_vec(),
+        sent: sent.collect(),
+        end: 10_000_000,
+    }
+}
+
+#[test]
+fn the_first_difference_between_two_accounts_is_named() {
+    let pulses = [pulse(1_000, 24_000), pulse(321_000, 24_000)];
+    let ours = account(&pulses, "ok walk");
+    let later = pulses.map(|PinPulse { rise, width, .. }| pulse(rise + 1, width));
+    let difference = |pulses: &[PinPulse]| {
+        let theirs = account(pulses, "ok walk");
+        compare_pulses(&ours, &theirs, &[Pin::d(9)]).map(|agreed| (agreed.count, agreed.offset))
+    };
+    assert_eq!(difference(&later), Ok((2, 1)));
+    for (theirs, named) in [
+        (
+            &[pulse(1_000, 24_000), pulse(321_000, 24_001)][..],
+            "pulse 1: on simavr D9 rises at cycle 321000 for 24000 cycles, on avr8js D9 rises at cycle 321000 for 24001 cycles",
+        ),
+        (
+            &[pulse(1_000, 24_000), pulse(321_001, 24_000)],
+            "on avr8js D9 rises at cycle 321001",
+        ),
+        (&pulses[..1], "pulse 1 is on simavr alone"),
+        (
+            &[pulses[0], pulses[1], pulse(641_000, 24_000)],
+            "pulse 2 is on avr8js alone: D9 rises at cycle 641000",
+        ),
+        (&[], "no servo gets a pulse"),
+    ] {
+        let said = difference(theirs).expect_err(named);
+        assert!(said.contains(named), "{said}");
+    }
+    for (text, named) in [
+        (
+            "ok well",
+            "byte 4 of the console, cycle 0: simavr has \"ok wa\", avr8js \"ok we\"",
+        ),
+        ("ok", "byte 2 of the console is on simavr alone: \"ok \""),
+        (
+            "ok walks",
+            "byte 7 of the console is on avr8js alone: \"ok walks\"",
+        ),
+    ] {
+        let said = compare_console(&ours, &account(&pulses, text)).expect_err(named);
+        assert!(said.contains(named), "{said}");
+    }
+}

@@ -1,0 +1,42 @@
+// Runs a firmware on avr8js: node run.js FIRMWARE.hex < SCRIPT
+//
+// SCRIPT is explained in src/script.js. Printed is, a line each and all cycles counted from power-on,
+//   pulse <pin> <rise> <width>   a pin was high; 14 to 19 are A0 to A5
+//   sent <cycle> <hex byte>      the UNO has sent a byte; the cycle is its stop bit's end
+//   eeprom <2048 hex digits>     at the end
+//   cpu <ms>                     processor time that the simulation took
+// What the judge cannot simulate ends the run with a sentence and exit code 1.
+import { readFileSync } from 'node:fs';
+
+import { corrections } from './src/corrections/index.js';
+import { load } from './src/hex.js';
+import { Scope } from './src/scope.js';
+import { read } from './src/script.js';
+import { Uno } from './src/uno.js';
+
+const hex = (byte) => byte.toString(16).padStart(2, '0');
+
+function run(file, script) {
+  const uno = new Uno(corrections);
+  load(readFileSync(file, 'utf8'), uno.flash);
+  const { bytes, end } = read(script);
+  const lines = [];
+  new Scope(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
+  uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${hex(byte)}`);
+  uno.deliver(bytes);
+  uno.run(end);
+  lines.push(`eeprom ${Array.from(uno.eeprom.backend.memory, hex).join('')}`);
+  return lines;
+}
+
+try {
+  if (process.argv.length !== 3) throw new Error('usage: node run.js FIRMWARE.hex < SCRIPT');
+  const before = process.cpuUsage();
+  const lines = run(process.argv[2], readFileSync(0, 'utf8'));
+  const { user, system } = process.cpuUsage(before);
+  lines.push(`cpu ${Math.round((user + system) / 1000)}`);
+  process.stdout.write(lines.join('\n') + '\n');
+} catch (error) {
+  console.error(`judge: ${error.message}`);
+  process.exitCode = 1;
+}

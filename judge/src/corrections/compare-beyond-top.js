@@ -1,0 +1,15 @@
+// A compare value beyond the counter's top is never reached. avr8js takes the wrap for passing it, and sets
+// OCF1B each time that the counter begins again.
+
+export function compareBeyondTop({ timers }) {
+  for (const timer of timers) {
+    const timerUpdated = timer.timerUpdated.bind(timer);
+    timer.timerUpdated = (value, previous) => {
+      const { ocrB } = timer;
+      // NaN is neither less nor more than anything: it never matches.
+      if (ocrB > timer.TOP) timer.ocrB = NaN;
+      timerUpdated(value, previous);
+      timer.ocrB = ocrB;
+    };
+  }
+}

@@ -1,0 +1,18 @@
+// Everything that has become due during an instruction is due at its end. avr8js deals with one event
+// and leaves the next to the next instruction, so that a byte delays a timer's flag.
+const SREG = 0x5f;
+const I = 0x80;
+
+export function dueEvents({ cpu }) {
+  const tick = cpu.tick.bind(cpu);
+  cpu.tick = () => {
+    const on = cpu.data[SREG] & I;
+    // All events but the last, without interrupts, which are to see all of them.
+    while (cpu.nextClockEvent?.next && cpu.nextClockEvent.next.cycles <= cpu.cycles) {
+      cpu.data[SREG] &= ~I;
+      tick();
+    }
+    cpu.data[SREG] |= on;
+    tick();
+  };
+}

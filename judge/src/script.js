@@ -1,0 +1,26 @@
+// What a run is given: bytes for the serial line, each with its cycle.
+
+/**
+ * Reads a script: lines `<cycle> <two hex digits>`, a byte that is complete at the UNO at that cycle,
+ * in the order of time, and last `end <cycle>`. Throws a sentence that names the line.
+ */
+export function read(text) {
+  const bytes = [];
+  let end;
+  text.split('\n').forEach((line, index) => {
+    if (line === '') return;
+    const wrong = (what) => new Error(`line ${index + 1} of the script ${what}: ${JSON.stringify(line)}`);
+    if (end !== undefined) throw wrong('comes after the end');
+    const match = /^(\d+) ([0-9a-f]{2})$|^end (\d+)$/.exec(line);
+    if (!match) throw wrong('is neither `<cycle> <hex byte>` nor `end <cycle>`');
+    if (match[3] !== undefined) {
+      end = Number(match[3]);
+      return;
+    }
+    const cycle = Number(match[1]);
+    if (cycle < (bytes.at(-1)?.cycle ?? 0)) throw wrong('is earlier than the one before');
+    bytes.push({ cycle, byte: parseInt(match[2], 16) });
+  });
+  if (end === undefined) throw new Error('the script has no `end <cycle>`');
+  return { bytes, end };
+}

@@ -1,0 +1,37 @@
+// avr8js counts a timer on every cycle that it steps, which is nearly all of its work. Here a timer
+// is woken only when its next flag is due, and brought up to date before anyone looks at it or changes
+// it. That changes nothing but the speed; a test holds one against the other.
+
+/** The cycle at which a running timer next sets a flag or wraps. */
+function nextFlag(timer) {
+  const { tcnt, TOP, lastCycle, divider } = timer;
+  let ticks = TOP + 1 - tcnt;
+  for (const compare of [timer.ocrA, timer.ocrB]) {
+    if (compare > tcnt && compare - tcnt < ticks) ticks = compare - tcnt;
+  }
+  // A counter beyond its TOP, which was lowered: avr8js wraps it at the next step.
+  return lastCycle + Math.max(ticks, 1) * divider;
+}
+
+/** Wakes the timers of an Uno only when they have something to do. */
+export function wakeTimersAtTheirFlags({ cpu, timers }) {
+  const timerOf = new Map(timers.map((timer) => [timer.count, timer]));
+  const addClockEvent = cpu.addClockEvent.bind(cpu);
+  cpu.addClockEvent = (callback, cycles) => {
+    const timer = timerOf.get(callback);
+    const steady = timer?.divider && !timer.updateDivider && !timer.tcntUpdated;
+    return addClockEvent(callback, steady ? nextFlag(timer) - cpu.cycles : cycles);
+  };
+  for (const timer of timers) {
+    const { OCRA, OCRB, TCNT, TCCRA, ICR } = timer.config;
+    for (const register of [OCRA, OCRB, TCNT, TCCRA, ICR].filter(Boolean)) {
+      const write = cpu.writeHooks[register];
+      cpu.writeHooks[register] = (...args) => {
+        if (timer.divider) timer.count(false);
+        const done = write(...args);
+        if (timer.divider) cpu.updateClockEvent(timer.count, 1);
+        return done;
+      };
+    }
+  }
+}

@@ -1,0 +1,33 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { compareBeyondTop } from '../src/corrections/compare-beyond-top.js';
+import { mended, run } from './program.js';
+
+// Timer 1 counts up to 99 and begins again; OCR1B is as given. r20 gets the flags.
+const program = (compare) => `
+    ldi r18, 99
+    sts 0x88, r18     ; OCR1AL
+    ldi r18, ${compare >> 8}
+    sts 0x8b, r18     ; OCR1BH
+    ldi r18, ${compare & 0xff}
+    sts 0x8a, r18     ; OCR1BL
+    ldi r18, 9
+    sts 0x81, r18     ; TCCR1B: clock, clear on match
+  again:
+    in r20, 0x16      ; TIFR1
+    rjmp again`;
+
+const OCF1A = 2;
+const OCF1B = 4;
+
+test('a compare value beyond the top never matches', () => {
+  const flags = (corrections, compare) => run(corrections, program(compare), 1000).cpu.data[20];
+  for (const beyond of [100, 1000, 0xffff]) {
+    assert.equal(flags([], beyond), OCF1A | OCF1B, mended('compare-beyond-top.js'));
+    assert.equal(flags([compareBeyondTop], beyond), OCF1A);
+  }
+  for (const within of [0, 1, 50, 98, 99]) {
+    assert.equal(flags([compareBeyondTop], within), OCF1A | OCF1B);
+  }
+});

@@ -1,0 +1,25 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { dataRegisterEmpty } from '../src/corrections/data-register-empty.js';
+import { mended, run } from './program.js';
+
+// The handler counts its calls in r16 and sends nothing.
+const program = `
+    jmp main
+    _LOC 0x4c         ; USART_UDRE
+    inc r16
+    reti
+    _LOC 0x68
+  main:
+    ldi r18, 0x28
+    sts 0xc1, r18     ; UCSR0B: transmitter and its interrupt
+    sei
+  stop:
+    rjmp stop`;
+
+test('the transmit interrupt comes again until a byte is written', () => {
+  const calls = (corrections) => run(corrections, program, 200).cpu.data[16];
+  assert.equal(calls([]), 1, mended('data-register-empty.js'));
+  assert.ok(calls([dataRegisterEmpty]) > 10);
+});

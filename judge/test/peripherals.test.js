@@ -1,0 +1,97 @@
+// What firmware may rely on in this simulation beside timers and serial line, and what not.
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { corrections } from '../src/corrections/index.js';
+import { run, uno } from './program.js';
+
+const MS = 16_000;
+
+/** Writes r16 to EEPROM address 5, counts in r24 and r25 while EEPE is up, and reads it back to r17. */
+const WRITE = `
+    ldi r16, 0x5a
+    ldi r18, 5
+    out 0x21, r18     ; EEARL
+    out 0x20, r16     ; EEDR
+    sbi 0x1f, 2       ; EEMPE
+    sbi 0x1f, 1       ; EEPE
+  wait:
+    adiw r24, 1
+    sbic 0x1f, 1
+    rjmp wait
+    sbi 0x1f, 0       ; EERE
+    in r17, 0x20
+  stop:
+    rjmp stop`;
+
+test('a byte of EEPROM takes 3.4 ms to write, and can be read back', () => {
+  const board = run(corrections, WRITE, 5 * MS);
+  const { data } = board.cpu;
+  // A turn of the loop takes five cycles.
+  const busy = (data[24] + 256 * data[25]) * 5;
+  assert.ok(Math.abs(busy - 3.4 * MS) < 20, `${busy} cycles`);
+  assert.equal(data[17], 0x5a);
+  assert.deepEqual([...board.eeprom.backend.memory.slice(4, 7)], [0xff, 0x5a, 0xff]);
+});
+
+test('EEPE without EEMPE just before writes nothing', () => {
+  const late = WRITE.replace('sbi 0x1f, 1 ', 'nop\n nop\n nop\n nop\n sbi 0x1f, 1 ');
+  assert.equal(run(corrections, late, 5 * MS).eeprom.backend.memory[5], 0xff);
+});
+
+test('the bandgap against 5 V reads 225', () => {
+  const { data } = run(corrections, `
+      ldi r16, 0x4e
+      sts 0x7c, r16     ; ADMUX: AVcc, 1.1 V
+      ldi r16, 0xc7
+      sts 0x7a, r16     ; ADCSRA: on, start, clock / 128
+    wait:
+      adiw r24, 1
+      lds r17, 0x7a
+      sbrc r17, 6       ; ADSC
+      rjmp wait
+      lds r18, 0x78     ; ADCL
+      lds r19, 0x79     ; ADCH
+    stop:
+      rjmp stop`, MS).cpu;
+  assert.equal(data[18] + 256 * data[19], 225);
+  // The first conversion takes 25 cycles of its clock; a turn of the loop takes seven.
+  assert.ok(Math.abs((data[24] + 256 * data[25]) * 7 - 25 * 128) < 20);
+});
+
+/** The watchdog at 16 ms, interrupt and reset; the handler counts in r20 and leaves WDIE off. */
+const watchdog = (loop) => `
+    jmp main
+    _LOC 0x18         ; WDT
+    inc r20
+    reti
+    _LOC 0x68
+  main:
+    ldi r16, 0x18
+    ldi r17, 0x48
+    sts 0x60, r16     ; WDTCSR: WDCE, WDE
+    sts 0x60, r17     ; WDIE, WDE
+    sei
+  again:
+    ${loop}
+    rjmp again`;
+
+test('a watchdog that is fed is silent', () => {
+  assert.equal(run(corrections, watchdog('wdr'), 100 * MS).cpu.data[20], 0);
+});
+
+test('a watchdog that is not fed interrupts after 16 ms', () => {
+  assert.equal(run(corrections, watchdog('nop'), 15 * MS).cpu.data[20], 0);
+  assert.equal(run(corrections, watchdog('nop'), 17 * MS).cpu.data[20], 1);
+});
+
+test('its reset ends the run: avr8js resets the processor alone', () => {
+  const board = uno(corrections, watchdog('nop'));
+  assert.throws(() => board.run(40 * MS), /^Error: the watchdog resets the UNO at cycle 51\d{4}, /);
+});
+
+test('a byte that would overrun the last one ends the run', () => {
+  const board = uno(corrections, 'ldi r16, 0x10\n sts 0xc1, r16\n again: rjmp again');
+  board.deliver([{ cycle: 100, byte: 1 }, { cycle: 1500, byte: 2 }]);
+  assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte comes before the last was read/);
+});

@@ -1,0 +1,44 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { transmitBuffer } from '../src/corrections/transmit-buffer.js';
+import { mended, uno } from './program.js';
+
+// 1 Mbaud, 16 cycles a bit. Three bytes, each as soon as UDRE0 is up; r16 is the status right after
+// the first.
+const program = `
+    ldi r18, 0x08
+    sts 0xc1, r18     ; UCSR0B: transmitter
+    ldi r18, 0x61
+    sts 0xc6, r18     ; UDR0
+    lds r16, 0xc0     ; UCSR0A
+  next:
+    inc r18
+  wait:
+    lds r17, 0xc0
+    sbrs r17, 5       ; UDRE0
+    rjmp wait
+    sts 0xc6, r18
+    cpi r18, 0x63
+    brne next
+  stop:
+    rjmp stop`;
+
+function transmit(corrections) {
+  const board = uno(corrections, program);
+  const bytes = [];
+  board.usart.onByteTransmit = (byte, cycle) => bytes.push({ byte, cycle });
+  board.run(1000);
+  return { empty: (board.cpu.data[16] >> 5) & 1, bytes };
+}
+
+test('the transmitter takes a byte while it sends another', () => {
+  assert.equal(transmit([]).empty, 0, mended('transmit-buffer.js'));
+  assert.equal(transmit([transmitBuffer]).empty, 1);
+});
+
+test('bytes go out back to back, ten bits each', () => {
+  const { bytes } = transmit([transmitBuffer]);
+  assert.deepEqual(bytes.map(({ byte }) => byte), [0x61, 0x62, 0x63]);
+  assert.deepEqual([bytes[1].cycle - bytes[0].cycle, bytes[2].cycle - bytes[1].cycle], [160, 160]);
+});

@@ -1,0 +1,203 @@
+//! A simulated UNO that other programs meet as they meet a board on USB: at a
+//! serial port, in real time.
+//!
+//! avrdude, a terminal program or a host tool cannot wait for a simulation that
+//! knows cycles only. Here the chip's time follows the clock on the wall, bytes
+//! go through a pseudo terminal such as /dev/pts/3, and opening it resets the
+//! chip, as the DTR line of a USB cable does on an UNO.
+//!
+//! Three things differ from a cable. The speed set at the port has no effect: it
+//! is always the chip's 115200 baud. A second opening resets the chip only if
+//! all programs had closed the port. And toggling DTR while it is open does
+//! nothing; the programs that try get `Inappropriate ioctl for device`.
+//!
+//! ```no_run
+//! use std::time::Duration;
+//! use simulated_uno::{Fidelity, Port, Uno};
+//! let mut uno = Uno::load("firmware.elf", Fidelity::DataSheet)?;
+//! let mut port = Port::new()?;
+//! println!("an UNO is at {}", port.path().display());
+//! port.serve(&mut uno, Duration::from_secs(60))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`Port::in_background`] does the same on a thread of its own.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use crate::pty::Pty;
+use crate::{FREQUENCY, State, Uno};
+
+/// How often the port is looked at: what the USB chip of an UNO takes as well.
+const TICK: Duration = Duration::from_millis(1);
+/// The longest time that is caught up when this program was held up. More would
+/// let a watchdog fire before the other program had its turn.
+const MOST_CAUGHT_UP: Duration = Duration::from_millis(20);
+/// Bytes on their way to the chip; the rest waits in the pseudo terminal, as in
+/// the driver of a USB port.
+const MOST_UNSENT: usize = 128;
+/// Bytes kept for a program that does not read. Later ones are lost.
+const MOST_UNREAD: usize = 1 << 16;
+
+/// A serial port of this machine with a simulated UNO behind it. The port is
+/// gone when this is dropped.
+#[derive(Debug)]
+pub struct Port {
+    pty: Pty,
+    /// The chip's bytes that did not find room yet.
+    unread: Vec<u8>,
+    open: bool,
+    /// Wall clock and cycle at one and the same moment.
+    anchor: Option<(Instant, u64)>,
+}
+
+impl Port {
+    /// Makes a port that nobody has open.
+    ///
+    /// # Errors
+    /// The system has no pseudo terminals left.
+    pub fn new() -> io::Result<Self> {
+        Ok(Self {
+            pty: Pty::new()?,
+            unread: Vec::new(),
+            open: false,
+            anchor: None,
+        })
+    }
+
+    /// The file that other programs open, such as /dev/pts/3.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.pty.path()
+    }
+
+    /// Whether a program had the port open when it was last looked at.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Lets `uno` run in real time for `time` of the wall clock, and passes bytes
+    /// between it and whoever has the port open. A chip that halts or crashes does
+    /// nothing more until the next opening resets it.
+    ///
+    /// Edges ([`Uno::take_edges`]) pile up for the caller, 1600 bytes a second from
+    /// four servos. The bytes of the serial line do not: they are the port's.
+    ///
+    /// # Errors
+    /// Those of the system at the pseudo terminal.
+    pub fn serve(&mut self, uno: &mut Uno, time: Duration) -> io::Result<()> {
+        let end = Instant::now() + time;
+        while Instant::now() < end {
+            self.tick(uno)?;
+            thread::sleep(TICK);
+        }
+        Ok(())
+    }
+
+    /// The same on a thread of its own, until [`Background::stop`]. `watch` gets
+    /// the UNO every millisecond and should take its edges; it must not block.
+    ///
+    /// # Errors
+    /// The system has no thread left.
+    pub fn in_background(
+        mut self,
+        mut uno: Uno,
+        mut watch: impl FnMut(&mut Uno) + Send + 'static,
+    ) -> io::Result<Background> {
+        let path = self.path().to_owned();
+        let stop = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&stop);
+        let serve = move || {
+            while !asked.load(Ordering::Relaxed) {
+                self.tick(&mut uno)?;
+                watch(&mut uno);
+                thread::sleep(TICK);
+            }
+            Ok(uno)
+        };
+        let name = "simulated UNO".to_owned();
+        let thread = thread::Builder::new().name(name).spawn(serve)?;
+        Ok(Background { path, stop, thread })
+    }
+
+    fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
+        let look = self.pty.look()?;
+        self.open = look.open;
+        if look.opened {
+            self.unread.clear();
+            uno.take_transmitted();
+            uno.reset();
+        }
+        let room = MOST_UNSENT.saturating_sub(uno.unsent());
+        let mut bytes = [0; MOST_UNSENT];
+        let read = self.pty.read(&mut bytes[..room])?;
+        uno.send(&bytes[..read]);
+        if *uno.state() == State::Alive {
+            uno.run_until_cycle(self.due(uno.cycle()));
+        }
+        uno.forget_received();
+        let sent = uno.take_transmitted();
+        // Asked again, since this program may have been held up meanwhile.
+        if self.open && self.pty.is_open()? {
+            self.unread.extend(sent.iter().map(|sent| sent.byte));
+            self.unread.truncate(MOST_UNREAD);
+            let written = self.pty.write(&self.unread)?;
+            self.unread.drain(..written);
+        }
+        Ok(())
+    }
+
+    /// The cycle that the chip should have reached by now.
+    fn due(&mut self, cycle: u64) -> u64 {
+        let now = Instant::now();
+        let (then, before) = *self.anchor.get_or_insert((now, cycle));
+        let due = before + cycles(now - then);
+        let most = cycle + cycles(MOST_CAUGHT_UP);
+        if due > most {
+            self.anchor = Some((now, most));
+        }
+        due.min(most)
+    }
+}
+
+fn cycles(time: Duration) -> u64 {
+    (time.as_nanos() * u128::from(FREQUENCY) / 1_000_000_000) as u64
+}
+
+/// A port with its UNO on a thread of its own. Dropped without
+/// [`Background::stop`], it goes on until the program ends.
+#[derive(Debug)]
+pub struct Background {
+    path: PathBuf,
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<io::Result<Uno>>,
+}
+
+impl Background {
+    /// The file that other programs open, such as /dev/pts/3.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Ends the thread, and the port with it; returns the UNO as it is.
+    ///
+    /// # Errors
+    /// What ended the thread before: see [`Port::serve`].
+    ///
+    /// # Panics
+    /// If `watch` has.
+    pub fn stop(self) -> io::Result<Uno> {
+        self.stop.store(true, Ordering::Relaxed);
+        match self.thread.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! A pseudo terminal: a serial port of this machine without a cable, its other
+//! end in this program.
+//!
+//! It is a serial port in all but three things. It has no DTR line, so who
+//! wants to know of an opening has to watch the file. The speed that a program
+//! sets has no effect. And what a program leaves unread waits for the next that
+//! opens it, where the driver of a cable forgets it; so it is thrown away here.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Write};
+use std::mem::MaybeUninit;
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
+use rustix::fs::{Mode, OFlags};
+use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
+
+/// The speed that `stty` shows until somebody sets another.
+const BAUD: u32 = 115_200;
+
+/// What programs have done with the port since the last look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Look {
+    /// A program has it open now.
+    pub(crate) open: bool,
+    /// It was opened, having been closed.
+    pub(crate) opened: bool,
+}
+
+/// A pseudo terminal. It exists until this is dropped.
+#[derive(Debug)]
+pub(crate) struct Pty {
+    ours: File,
+    opens: OwnedFd,
+    path: PathBuf,
+    was_open: bool,
+}
+
+impl Pty {
+    /// A new pseudo terminal that passes bytes on as they are.
+    ///
+    /// # Errors
+    /// The system has none left, or no /dev/pts.
+    pub(crate) fn new() -> io::Result<Self> {
+        let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+        unlockpt(&ours)?;
+        rustix::io::ioctl_fionbio(&ours, true)?;
+        let name = ptsname(&ours, Vec::new())?;
+        let path = PathBuf::from(name.to_string_lossy().into_owned());
+        // Opened once and closed: only from then on does the system say that
+        // nobody has it open. The settings outlive the closing.
+        let theirs = other_end(&path)?;
+        let mut settings = tcgetattr(&theirs)?;
+        settings.make_raw();
+        settings.set_speed(BAUD)?;
+        tcsetattr(&theirs, OptionalActions::Now, &settings)?;
+        drop(theirs);
+        let opens = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
+        let of_interest = WatchFlags::OPEN | WatchFlags::CLOSE;
+        inotify::add_watch(&opens, &path, of_interest)?;
+        Ok(Self {
+            ours: File::from(ours),
+            opens,
+            path,
+            was_open: false,
+        })
+    }
+
+    /// The file that other programs open, such as /dev/pts/3.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What has happened since the last look. An opening is seen however short
+    /// it was, or the pause before it.
+    ///
+    /// # Errors
+    /// Only those of a system that is out of memory.
+    pub(crate) fn look(&mut self) -> io::Result<Look> {
+        let was_open = self.was_open;
+        let (mut closed, mut opened) = (!was_open, false);
+        self.events(|event| {
+            if event.contains(ReadFlags::OPEN) {
+                opened |= closed;
+            } else {
+                closed = true;
+            }
+        })?;
+        let mut open = self.is_open()?;
+        opened |= open && !was_open;
+        // A program that closes it while another has it open changes nothing.
+        if was_open && (opened || !open) {
+            self.throw_away_unread()?;
+            let now = self.is_open()?;
+            opened |= now && !open;
+            open = now;
+        }
+        self.was_open = open;
+        Ok(Look { open, opened })
+    }
+
+    /// Whether a program has it open at this moment.
+    ///
+    /// # Errors
+    /// Only those of a system that is out of memory.
+    pub(crate) fn is_open(&self) -> io::Result<bool> {
+        let mut fds = [PollFd::new(&self.ours, PollFlags::IN)];
+        poll(&mut fds, Some(&Timespec::default()))?;
+        Ok(!fds[0].revents().contains(PollFlags::HUP))
+    }
+
+    fn events(&self, mut tell: impl FnMut(ReadFlags)) -> io::Result<()> {
+        let mut space = [MaybeUninit::uninit(); 512];
+        let mut events = inotify::Reader::new(&self.opens, &mut space);
+        loop {
+            match events.next() {
+                Ok(event) => tell(event.events()),
+                Err(rustix::io::Errno::WOULDBLOCK) => return Ok(()),
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// What the last program has not read is not for the next.
+    fn throw_away_unread(&self) -> io::Result<()> {
+        // It cannot be opened while a program has it for itself alone; then that
+        // program has thrown away what it found.
+        if let Ok(theirs) = other_end(&self.path) {
+            tcflush(&theirs, QueueSelector::IFlush)?;
+        }
+        self.events(|_our_own| {})
+    }
+
+    /// Reads what programs have written, 0 bytes if there is nothing.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub(crate) fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        match self.ours.read(into) {
+            // EIO: nobody has it open and nothing is left to read.
+            Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
+            other => now(other),
+        }
+    }
+
+    /// Writes for whoever has it open; returns how many bytes found room.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        now(self.ours.write(bytes))
+    }
+}
+
+fn other_end(path: &Path) -> rustix::io::Result<OwnedFd> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
+    rustix::fs::open(path, flags, Mode::empty())
+}
+
+const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
+
+/// Nothing can be done just now: 0 bytes.
+fn now(done: io::Result<usize>) -> io::Result<usize> {
+    match done {
+        Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
+            Ok(0)
+        }
+        other => other,
+    }
+}

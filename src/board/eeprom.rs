@@ -1,0 +1,61 @@
+//! The EEPROM: 1024 bytes that outlast power.
+//!
+//! The chip erases and writes a byte by itself, in 3.4 ms, while the program runs
+//! on. A write must begin within four cycles of its being enabled (data sheet,
+//! section 8.6.3), so interrupts are off for those: about ten cycles.
+
+use core::arch::asm;
+
+use avr_device::atmega328p::EEPROM;
+use avr_device::interrupt;
+use lizard_core::memory::Memory;
+
+/// EECR as `sbi` numbers it, and two of its bits.
+const EECR: u8 = 0x1f;
+const EEMPE: u8 = 2;
+const EEPE: u8 = 1;
+
+/// The chip's EEPROM.
+pub struct Eeprom {
+    registers: EEPROM,
+}
+
+impl Eeprom {
+    pub fn new(registers: EEPROM) -> Self {
+        // Erase and write in one operation, and no interrupt; the boot loader may
+        // have left something else.
+        registers.eecr().reset();
+        Self { registers }
+    }
+}
+
+impl Memory for Eeprom {
+    fn is_ready(&self) -> bool {
+        self.registers.eecr().read().eepe().bit_is_clear()
+    }
+
+    fn read(&self, address: u16) -> u8 {
+        self.registers.eear().write(|w| w.set(address));
+        self.registers.eecr().write(|w| w.eere().set_bit());
+        self.registers.eedr().read().bits()
+    }
+
+    fn write(&mut self, address: u16, byte: u8) {
+        self.registers.eear().write(|w| w.set(address));
+        self.registers.eedr().write(|w| w.set(byte));
+        interrupt::free(|_| {
+            // SAFETY: sets two bits of EECR, which nobody else touches; the second
+            // two cycles after the first.
+            unsafe {
+                asm!(
+                    "sbi {eecr}, {eempe}",
+                    "sbi {eecr}, {eepe}",
+                    eecr = const EECR,
+                    eempe = const EEMPE,
+                    eepe = const EEPE,
+                    options(nostack, preserves_flags),
+                );
+            }
+        });
+    }
+}

@@ -1,0 +1,103 @@
+//! The supplies, by the analogue converter.
+//!
+//! The converter compares a voltage with its own supply, AVcc. Turned round, its
+//! reading of the chip's 1.1 V reference tells AVcc: without any part outside. A
+//! conversion takes 104 us, and the reference wants 70 us after it is chosen
+//! (data sheet, sections 24.6 and 28.8), so a conversion is begun in one frame,
+//! its channel having been chosen in the frame before, and read in the next.
+
+use avr_device::atmega328p::ADC;
+use lizard_core::supply::Reading;
+
+use crate::robot::RAIL_PIN;
+
+/// AVcc is what is compared with; then the channel.
+const AVCC: u8 = 0x40;
+
+/// The channel of the chip's reference.
+const REFERENCE: u8 = 0x0e;
+
+/// The channel of the servos' rail, where it is measured: A0 is Arduino pin 14.
+const RAIL: Option<u8> = match RAIL_PIN {
+    Some(pin) => Some(pin - 14),
+    None => None,
+};
+
+/// On, and 16 MHz / 128 = 125 kHz: ten bits want 50 to 200.
+const ON: u8 = 0x87;
+const START: u8 = 0x40;
+
+/// The converter, and what it has read.
+pub struct Converter {
+    registers: ADC,
+    reading: Reading,
+    /// Whether the rail's turn is under way.
+    rail: bool,
+    /// Whether the channel has been chosen and nothing converted yet.
+    chosen: bool,
+    /// Whether all that is measured has been.
+    complete: bool,
+}
+
+impl Converter {
+    pub fn new(registers: ADC) -> Self {
+        choose(&registers, REFERENCE);
+        // SAFETY: any value of ADCSRA is sound; this one switches the converter on.
+        registers.adcsra().write(|w| unsafe { w.bits(ON) });
+        Self {
+            registers,
+            reading: Reading::default(),
+            rail: false,
+            chosen: true,
+            complete: false,
+        }
+    }
+
+    /// What was read last, all of it or nothing; begins the next part of a
+    /// measurement. To be called once a frame.
+    pub fn next(&mut self) -> Reading {
+        if self.chosen {
+            self.chosen = false;
+            // SAFETY: as above; and it begins to convert.
+            self.registers
+                .adcsra()
+                .write(|w| unsafe { w.bits(ON | START) });
+        } else {
+            let value = self.registers.adc().read().bits();
+            self.take(value);
+            self.chosen = true;
+        }
+        if self.complete {
+            self.reading
+        } else {
+            Reading::default()
+        }
+    }
+
+    fn take(&mut self, value: u16) {
+        match RAIL {
+            None => {
+                self.reading.reference = value;
+                self.complete = true;
+            }
+            Some(channel) => {
+                if self.rail {
+                    self.reading.rail = value;
+                    self.complete = true;
+                    choose(&self.registers, REFERENCE);
+                } else {
+                    self.reading.reference = value;
+                    choose(&self.registers, channel);
+                }
+                self.rail = !self.rail;
+            }
+        }
+    }
+}
+
+fn choose(registers: &ADC, channel: u8) {
+    // SAFETY: AVcc as the reference is how the UNO is wired, and `channel` exists.
+    registers
+        .admux()
+        .write(|w| unsafe { w.bits(AVCC | channel) });
+}

@@ -1,0 +1,48 @@
+//! The watchdog: begins the program anew when it hangs.
+//!
+//! It has a clock of its own, 128 kHz. After 125 ms without being fed it interrupts
+//! the program, which then marks in memory that it hung, and lets no further pulse
+//! begin; after 125 ms more it resets the chip (data sheet, section 11.8). So a
+//! pulse is not cut short by the reset, and the program that begins knows why.
+//!
+//! It is fed only with a frame whose predecessor has been taken over by the pulses:
+//! then main, the clock that woke it and both handlers of the pulses are alive.
+
+use core::arch::asm;
+
+use super::{kept, pulses};
+
+/// WDTCSR, and its values: the four cycles in which it may be changed; interrupt
+/// first and reset then, after 125 ms each.
+const WDTCSR: u8 = 0x60;
+const CHANGE: u8 = 0x18;
+const GUARD: u8 = 0x4b;
+
+/// Sets it going. With interrupts off, once; WDRF must have been cleared before.
+pub fn start() {
+    // SAFETY: only the watchdog is changed; the second store comes two cycles after
+    // the first.
+    unsafe {
+        asm!(
+            "wdr",
+            "sts {wdtcsr}, {change}",
+            "sts {wdtcsr}, {guard}",
+            wdtcsr = const WDTCSR,
+            change = in(reg) CHANGE,
+            guard = in(reg) GUARD,
+            options(nostack, preserves_flags),
+        );
+    }
+}
+
+/// Puts off what it would do by 125 ms.
+pub fn feed() {
+    avr_device::asm::wdr();
+}
+
+// The program has hung for 125 ms; the chip resets in as many.
+#[avr_device::interrupt(atmega328p)]
+fn WDT() {
+    kept::mark_hung();
+    pulses::hush();
+}
