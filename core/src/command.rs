@@ -6,7 +6,6 @@
 
 use lizard_avr::flash;
 
-use crate::adjustment::LARGEST_TRIM_DEG;
 use crate::gait::{GaitId, Name};
 use crate::part::Servo;
 use crate::robot::Robot;
@@ -237,13 +236,10 @@ fn adjust(
 
 #[inline(never)]
 fn trim(words: &mut Words) -> Result<Change, Misread> {
-    let angle = centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))?;
-    // Before it wraps with the turn.
-    if angle.abs() > 100 * LARGEST_TRIM_DEG {
-        return Err(Misread::Range(Text::TrimRange));
+    match centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))? {
+        angle @ -2000..=2000 => Ok(Change::Trim(Sweep(Angle::from_centideg(angle).0 as i16))),
+        _ => Err(Misread::Range(Text::TrimRange)),
     }
-    let trim = Angle(0).sweep_to(Angle::from_centideg(angle));
-    Ok(Change::Trim(trim))
 }
 
 fn limit(words: &mut Words) -> Result<Change, Misread> {

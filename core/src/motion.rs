@@ -164,12 +164,17 @@ impl<R: Robot> Motion<R> {
         &self.calibration
     }
 
-    /// Takes another calibration of a servo, by its place. The pulses go over to it at
-    /// the slew limit, and nothing else moves meanwhile.
+    /// Takes another calibration of a servo, by its place; [`Motion::settle`] has to
+    /// follow.
     pub fn calibrate(&mut self, place: usize, calibration: Calibration) {
         if let Some(servo) = self.calibration.get_mut(place) {
             *servo = calibration;
         }
+    }
+
+    /// Lets the pulses go over to the new calibration, at the slew limit. Nothing
+    /// else moves meanwhile.
+    pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
         }
@@ -273,7 +278,7 @@ impl<R: Robot> Motion<R> {
         }
         let mut pulses = self.pose.pulses(&self.calibration);
         if self.settling {
-            self.settling = self.settle(&mut pulses);
+            self.settling = self.slow_down(&mut pulses);
         }
         self.sent = pulses;
         let mut wakes_at = WAKE_APART;
@@ -345,7 +350,7 @@ impl<R: Robot> Motion<R> {
     /// Keeps the pulses within a frame's way of the last ones; true while they are
     /// not yet those that are wanted.
     #[inline(never)]
-    fn settle(&self, pulses: &mut Pulses) -> bool {
+    fn slow_down(&self, pulses: &mut Pulses) -> bool {
         let mut under_way = false;
         let per_frame = self.robot.slew().per_frame;
         for (place, width) in pulses.0.iter_mut().enumerate() {

@@ -31,6 +31,8 @@ texts! {
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
     Servo = "# A";
+    Blank = " ";
+    Nothing = "";
     CalTrim = " trim ";
     CalLimit = " limit ";
     CalDir = " dir ";
@@ -60,21 +62,8 @@ texts! {
 
     // Help, a line each.
     HelpGaits = "# gaits:";
-    HelpStop = "# stop: freeze in this pose";
-    HelpRest = "# rest: end the pulses, stand wakes the servos";
-    HelpSpeed = "# speed <10..100>: percent of a gait's pace";
-    HelpPose = "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame";
-    HelpStatus = "# status: gait, phase, pose, smallest margin, counters";
-    HelpWatch = "# watch <n>: report the pose every n frames, 0 ends it";
-    HelpCal = "# cal: what is set of the servos, boot and deadman";
-    HelpTrim = "# trim <1..4> <deg>: turn a servo's horn, within 20";
-    HelpLimit = "# limit <1..4> <min> <max>: a servo's travel, chassis frame";
-    HelpDir = "# dir <1..4> <+|->: + if a longer pulse turns counter-clockwise";
-    HelpScale = "# scale <1..4> <us per deg>: 5..20";
-    HelpCenter = "# center: neutral pulses without trims, to fit horns";
-    HelpSave = "# save, load, factory: keep what is set, take it back, or robot.toml's";
-    HelpBoot = "# boot <gait|rest>: done 3 s after power-on";
-    HelpDeadman = "# deadman <ms>: end a gait after so long without a line, 0 never";
+    HelpWords = "# others:";
+    HelpHint = "# a word alone tells what it wants, the README what it does";
 
     // Answers, and the words of commands.
     Ok = "ok ";
