@@ -90,6 +90,7 @@ pub struct Console<R> {
 impl<R: Robot> Console<R> {
     /// A robot at power-on, its banner not yet written; [`Console::begin`] has to
     /// follow.
+    #[inline(never)]
     pub fn new(robot: R) -> Self {
         Self {
             line: Line::new(),

@@ -1,10 +1,10 @@
 //! Every sentence that the robot prints, kept in flash.
 //!
 //! A string literal of an AVR program is copied to its 2 KiB of RAM at start.
-//! The sentences here stay in flash as one run of bytes and are fetched byte
-//! by byte when they are printed.
+//! The sentences here stay in flash as one run of characters, six bits each, and
+//! are fetched one by one when they are printed.
 
-use core::ops::Range;
+use core::ops::{Range, RangeInclusive};
 
 use lizard_avr::flash;
 use ufmt::uWrite;
@@ -30,7 +30,7 @@ texts! {
     WatchTime = "# t=";
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
-    Servo = "# A";
+    Information = "# ";
     Blank = " ";
     Nothing = "";
     CalTrim = " trim ";
@@ -63,7 +63,7 @@ texts! {
     // Help, a line each.
     HelpGaits = "# gaits:";
     HelpWords = "# others:";
-    HelpHint = "# a word alone tells what it wants, the README what it does";
+    HelpHint = "# a word alone tells what it wants, the docs what it does";
 
     // Answers, and the words of commands.
     Ok = "ok ";
@@ -152,16 +152,22 @@ texts! {
     Needed = " would not reach what the gaits need, ";
     NotHere = " would not reach where it is or goes, send stand first";
     LowSupply = "the supply is too low";
-    Volts = " V";
-    NotKept = "the EEPROM does not keep what is written";
+    NotKept = "the memory does not keep what is written";
     NothingSaved = "nothing is saved that could be loaded";
 }
 
 const COUNT: usize = SENTENCES.len();
 const LENGTH: usize = starts()[COUNT] as usize;
 
+/// Bytes that hold so many characters; one more, because the last is fetched with
+/// its neighbour.
+const BYTE_COUNT: usize = LENGTH.div_ceil(4) * 3 + 1;
+
+/// Codes of letters.
+const LETTERS: RangeInclusive<u8> = 0x21..=0x3a;
+
 flash! {
-    const BYTES: [u8; LENGTH] = bytes();
+    const BYTES: [u8; BYTE_COUNT] = bytes();
     const STARTS: [u16; COUNT + 1] = starts();
 }
 
@@ -172,7 +178,7 @@ impl Text {
     /// Those of `out`.
     pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
         for at in self.place() {
-            out.write_char(char::from(BYTES.at(at).load() & 0x7f))?;
+            out.write_char(char::from(character(at) & 0x7f))?;
         }
         Ok(())
     }
@@ -185,10 +191,7 @@ impl Text {
     /// True if the sentence is just this word.
     pub fn is(self, word: &[u8]) -> bool {
         let place = self.place();
-        place.len() == word.len()
-            && place
-                .zip(word)
-                .all(|(at, byte)| BYTES.at(at).load() == *byte)
+        place.len() == word.len() && place.zip(word).all(|(at, byte)| character(at) == *byte)
     }
 
     fn place(self) -> Range<usize> {
@@ -197,16 +200,51 @@ impl Text {
     }
 }
 
-const fn bytes() -> [u8; LENGTH] {
-    let mut bytes = [0; LENGTH];
-    let starts = starts();
+/// The character at a place among all sentences.
+#[inline(never)]
+fn character(place: usize) -> u8 {
+    let (byte, shift) = bits(place);
+    let pair = u16::from_be_bytes([BYTES.at(byte).load(), BYTES.at(byte + 1).load()]);
+    let code = (pair >> shift) as u8 & 0x3f;
+    code + if LETTERS.contains(&code) { 0x40 } else { 0x20 }
+}
+
+/// Where the six bits of a place are: the first of the two bytes over which they may
+/// lie, and how many bits follow them in the second.
+const fn bits(place: usize) -> (usize, u8) {
+    let group = (place >> 2) * 3;
+    match place & 3 {
+        0 => (group, 10),
+        1 => (group, 4),
+        2 => (group + 1, 6),
+        _ => (group + 2, 8),
+    }
+}
+
+/// A character's six bits: ASCII from the blank to the underscore, less 32, with
+/// lower-case letters in the place of capitals, of which there are none.
+const fn code(character: u8) -> u8 {
+    match character {
+        b'a'..=b'z' => character - 0x40,
+        b' '..=b'@' | b'_' => character - 0x20,
+        _ => panic!("a sentence has lower-case letters, digits and signs below 0x40"),
+    }
+}
+
+/// All sentences, six bits a character, four characters in three bytes.
+const fn bytes() -> [u8; BYTE_COUNT] {
+    let mut bytes = [0; BYTE_COUNT];
     let mut index = 0;
+    let mut place = 0;
     while index < COUNT {
         let sentence = SENTENCES[index].as_bytes();
-        assert!(sentence.is_ascii());
         let mut at = 0;
         while at < sentence.len() {
-            bytes[starts[index] as usize + at] = sentence[at];
+            let (byte, shift) = bits(place);
+            let [first, second] = ((code(sentence[at]) as u16) << shift).to_be_bytes();
+            bytes[byte] |= first;
+            bytes[byte + 1] |= second;
+            place += 1;
             at += 1;
         }
         index += 1;

@@ -176,7 +176,8 @@ impl<R: Robot> Console<R> {
                 let place = usize::from(line & 3);
                 let set = settings.servo(place);
                 let neutral = self.motion.robot().neutral()[place];
-                Text::Servo.print(out)?;
+                Text::Information.print(out)?;
+                out.write_char('A')?;
                 out.write_char(char::from(b'1' + line))?;
                 Text::CalTrim.print(out)?;
                 print_sweep(out, set.trim)?;
@@ -227,7 +228,8 @@ impl<R: Robot> Console<R> {
             }
             Notice::Supply => {
                 answer::field(out, Text::NoticeSupply, self.voltage().hundredths())?;
-                Text::Volts.print(out)?;
+                out.write_char(' ')?;
+                out.write_char('V')?;
                 match self.safety.supply().level() {
                     Level::Good => Text::LevelGood,
                     Level::Slow => Text::LevelSlow,
