@@ -142,10 +142,10 @@ pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
         Text::Load => Command::Load,
         Text::Factory => Command::Factory,
         Text::Pose => return pose(words),
-        Text::Trim => return adjust(words, trim, Text::TrimWants),
-        Text::Limit => return adjust(words, limit, Text::LimitWants),
-        Text::Dir => return adjust(words, dir, Text::DirWants),
-        Text::Scale => return adjust(words, scale, Text::ScaleWants),
+        Text::Trim => return adjust(words, word, Text::TrimWants),
+        Text::Limit => return adjust(words, word, Text::LimitWants),
+        Text::Dir => return adjust(words, word, Text::DirWants),
+        Text::Scale => return adjust(words, word, Text::ScaleWants),
         Text::Boot => return boot(words, robot),
         Text::Speed => {
             return match whole(words).ok_or(Misread::Wants(Text::SpeedWants))? {
@@ -215,18 +215,19 @@ fn pose(mut words: Words) -> Result<Command, Misread> {
     }
 }
 
-/// A servo's number, then what is to be set of it; anything else is what `wants`
+/// A servo's number, then what `word` sets of it; anything else is what `wants`
 /// says.
-fn adjust(
-    mut words: Words,
-    change: fn(&mut Words) -> Result<Change, Misread>,
-    wants: Text,
-) -> Result<Command, Misread> {
+fn adjust(mut words: Words, word: Text, wants: Text) -> Result<Command, Misread> {
     let servo = match words.next() {
         [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
         _ => return Err(Misread::Wants(wants)),
     };
-    let change = change(&mut words);
+    let change = match word {
+        Text::Trim => trim(&mut words),
+        Text::Limit => limit(&mut words),
+        Text::Dir => dir(&mut words),
+        _ => scale(&mut words),
+    };
     if words.is_done() {
         Ok(Command::Adjust(servo, change?))
     } else {
@@ -234,7 +235,6 @@ fn adjust(
     }
 }
 
-#[inline(never)]
 fn trim(words: &mut Words) -> Result<Change, Misread> {
     match centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))? {
         angle @ -2000..=2000 => Ok(Change::Trim(Sweep(Angle::from_centideg(angle).0 as i16))),

@@ -291,7 +291,6 @@ impl<R: Robot> Console<R> {
     }
 
     /// Watches what may go wrong, and does what that asks for.
-    #[inline(never)]
     fn look_after(&mut self, health: &Health) {
         let motion = &self.motion;
         let walks = matches!(motion.activity(), Activity::Gait(id) if id != GaitId::STAND);

@@ -265,7 +265,6 @@ impl<R: Robot> Motion<R> {
     }
 
     /// One frame on: the pulses to send in it.
-    #[inline(never)]
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
         if matches!(self.state, State::Resting) {
@@ -281,12 +280,14 @@ impl<R: Robot> Motion<R> {
             self.settling = self.slow_down(&mut pulses);
         }
         self.sent = pulses;
-        let mut wakes_at = WAKE_APART;
-        for width in &mut pulses.0 {
-            if self.awake < wakes_at {
-                *width = Width(0);
+        if self.awake < AWAKE {
+            let mut wakes_at = WAKE_APART;
+            for width in &mut pulses.0 {
+                if self.awake < wakes_at {
+                    *width = Width(0);
+                }
+                wakes_at += WAKE_APART;
             }
-            wakes_at += WAKE_APART;
         }
         pulses
     }
@@ -421,14 +422,22 @@ impl<R: Robot> Motion<R> {
     }
 
     /// Begins the move towards what comes next, once the old motion has no pace.
-    #[inline(never)]
+    #[inline(always)]
     fn turn_to_next(&mut self) {
-        if let State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. } = self.state {
-            return;
+        if let Some(target) = self.next
+            && !matches!(
+                self.state,
+                State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. }
+            )
+        {
+            self.next = None;
+            self.move_to(target);
         }
-        let Some(target) = self.next.take() else {
-            return;
-        };
+    }
+
+    // Out of line: most frames do not need it.
+    #[inline(never)]
+    fn move_to(&mut self, target: Target) {
         let (to, gait) = match target {
             Target::Pose(pose) => (pose, None),
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),

@@ -126,7 +126,6 @@ impl Safety {
 
     /// One frame on. `walks` says whether a gait other than `stand` is under way,
     /// which ends after `deadman` milliseconds without a line (0: never).
-    #[inline(never)]
     pub fn frame(
         &mut self,
         health: &Health,
@@ -168,7 +167,6 @@ impl Safety {
     }
 
     /// The LED's part of a frame; `guard` says whether the guard holds the robot.
-    #[inline(never)]
     pub fn beat(&mut self, guard: bool) {
         let fault = if guard {
             Some(Fault::Guard)

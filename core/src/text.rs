@@ -159,9 +159,8 @@ texts! {
 const COUNT: usize = SENTENCES.len();
 const LENGTH: usize = starts()[COUNT] as usize;
 
-/// Bytes that hold so many characters; one more, because the last is fetched with
-/// its neighbour.
-const BYTE_COUNT: usize = LENGTH.div_ceil(4) * 3 + 1;
+/// Bytes that hold so many characters.
+const BYTE_COUNT: usize = LENGTH.div_ceil(4) * 3;
 
 /// Codes of letters.
 const LETTERS: RangeInclusive<u8> = 0x21..=0x3a;
@@ -203,22 +202,16 @@ impl Text {
 /// The character at a place among all sentences.
 #[inline(never)]
 fn character(place: usize) -> u8 {
-    let (byte, shift) = bits(place);
-    let pair = u16::from_be_bytes([BYTES.at(byte).load(), BYTES.at(byte + 1).load()]);
-    let code = (pair >> shift) as u8 & 0x3f;
-    code + if LETTERS.contains(&code) { 0x40 } else { 0x20 }
-}
-
-/// Where the six bits of a place are: the first of the two bytes over which they may
-/// lie, and how many bits follow them in the second.
-const fn bits(place: usize) -> (usize, u8) {
     let group = (place >> 2) * 3;
-    match place & 3 {
-        0 => (group, 10),
-        1 => (group, 4),
-        2 => (group + 1, 6),
-        _ => (group + 2, 8),
-    }
+    let byte = |n: usize| BYTES.at(group + n).load();
+    // Bit by bit shifts of two bytes would cost as much as sending the character.
+    let code = match place & 3 {
+        0 => byte(0) >> 2,
+        1 => (byte(0) << 4 | byte(1) >> 4) & 0x3f,
+        2 => (byte(1) << 2 | byte(2) >> 6) & 0x3f,
+        _ => byte(2) & 0x3f,
+    };
+    code + if LETTERS.contains(&code) { 0x40 } else { 0x20 }
 }
 
 /// A character's six bits: ASCII from the blank to the underscore, less 32, with
@@ -240,10 +233,20 @@ const fn bytes() -> [u8; BYTE_COUNT] {
         let sentence = SENTENCES[index].as_bytes();
         let mut at = 0;
         while at < sentence.len() {
-            let (byte, shift) = bits(place);
-            let [first, second] = ((code(sentence[at]) as u16) << shift).to_be_bytes();
-            bytes[byte] |= first;
-            bytes[byte + 1] |= second;
+            let code = code(sentence[at]);
+            let group = place / 4 * 3;
+            match place & 3 {
+                0 => bytes[group] = code << 2,
+                1 => {
+                    bytes[group] |= code >> 4;
+                    bytes[group + 1] = code << 4;
+                }
+                2 => {
+                    bytes[group + 1] |= code >> 2;
+                    bytes[group + 2] = code << 6;
+                }
+                _ => bytes[group + 2] |= code,
+            }
             place += 1;
             at += 1;
         }
