@@ -3,8 +3,8 @@
 //!
 //! The boot loader of the UNO clears the register that says why the chip was reset,
 //! and passes it on nowhere. But RAM keeps its contents as long as there is power. So
-//! these bytes say, by a mark and a check sum that chance will not make, that power
-//! was not lost; and they hold what the program did until then. Where no boot loader
+//! these bytes say, by a mark and a check sum that chance makes once in 32 768 times,
+//! that power was not lost; and they hold what the program did until then. Where no boot loader
 //! is in the way, the register itself tells.
 
 use core::mem::MaybeUninit;
@@ -52,7 +52,9 @@ fn kept() -> &'static Kept {
 pub fn restart(cpu: &CPU) -> Restart {
     let kept = kept();
     let flags = cpu.mcusr().read();
-    let survived = kept.count_check.get() == check(kept.mark.get(), kept.count.get());
+    let mark = kept.mark.get();
+    let survived =
+        matches!(mark, RUNNING | HUNG) && kept.count_check.get() == check(mark, kept.count.get());
     let cause = if flags.porf().bit_is_set() {
         Cause::Power
     } else if flags.wdrf().bit_is_set() {
@@ -63,7 +65,7 @@ pub fn restart(cpu: &CPU) -> Restart {
         Cause::External
     } else if !survived {
         Cause::Power
-    } else if kept.mark.get() == HUNG {
+    } else if mark == HUNG {
         Cause::Watchdog
     } else {
         Cause::External
