@@ -3,8 +3,8 @@
 //!
 //! The boot loader of the UNO clears the register that says why the chip was reset,
 //! and passes it on nowhere. But RAM keeps its contents as long as there is power. So
-//! these bytes say, by a mark and a check sum that chance will not make, that power
-//! was not lost; and they hold what the program did until then. Where no boot loader
+//! these bytes say, by a mark and a check sum that chance makes once in 32 768 times,
+//! that power was not lost; and they hold what the program did until then. Where no boot loader
 //! is in the way, the register itself tells.
 
 use core::mem::MaybeUninit;
@@ -56,11 +56,13 @@ fn kept() -> &'static Kept {
 #[inline(never)]
 pub fn restart(cpu: &CPU) -> Restart {
     let kept = kept();
-    let survived = kept.count_check.get() == check(kept.mark.get(), kept.count.get());
+    let mark = kept.mark.get();
+    let survived =
+        matches!(mark, RUNNING | HUNG) && kept.count_check.get() == check(mark, kept.count.get());
     let flags = cpu.mcusr().read().bits();
     let cause = if flags & POWER_ON != 0 || (flags == 0 && !survived) {
         Cause::Power
-    } else if flags & WATCHDOG != 0 || (flags == 0 && kept.mark.get() == HUNG) {
+    } else if flags & WATCHDOG != 0 || (flags == 0 && mark == HUNG) {
         Cause::Watchdog
     } else if flags & BROWN_OUT != 0 {
         Cause::BrownOut

@@ -105,6 +105,11 @@ pub fn pending() -> bool {
     !RECEIVED.is_empty()
 }
 
+/// Whether bytes wait to be sent.
+pub fn sending() -> bool {
+    !TO_SEND.is_empty()
+}
+
 /// Bytes that [`Writer`] takes at this moment without waiting, at most 255.
 pub fn room() -> u8 {
     TO_SEND.room()

@@ -16,12 +16,14 @@ pub fn start(cpu: CPU) {
     cpu.smcr().write(|w| w.sm().idle().se().set_bit());
 }
 
-/// Returns when the tick is no longer `seen` or a byte waits to be read; sleeps
-/// until then. Interrupts are off for fewer than 30 cycles at a time.
+/// Returns when the tick is no longer `seen`, a byte waits to be read or the last
+/// byte to be sent is on its way, for then there is room for the next line; sleeps
+/// until then. Interrupts are off for fewer than 40 cycles at a time.
 pub fn until_tick_or_byte(seen: u8) {
+    let sending = serial::sending();
     loop {
         interrupt::disable();
-        if pulses::ticks() != seen || serial::pending() {
+        if pulses::ticks() != seen || serial::pending() || sending && !serial::sending() {
             break;
         }
         // The `nop` is for stock simavr, which lets interrupts in an instruction

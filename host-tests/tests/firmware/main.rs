@@ -15,24 +15,30 @@ use lizard_host::sim::tour;
 use lizard_host_tests::{FirmwareBench, Frame, robot};
 use simulated_uno::Fidelity;
 
+mod calibration;
 mod console;
 mod costs;
 mod counters;
 mod every_cycle;
+mod faults;
 mod gaits;
 mod guard;
 mod held_up;
 mod image;
+mod kept;
 mod led;
 mod line;
 mod no_pulse;
+mod power_cut;
 mod power_up;
 mod pulses;
 mod serial;
 mod slow_main;
 mod stopping;
+mod supply;
 mod twin;
 mod walk;
+mod watchdog;
 
 /// Frames in a second.
 const SECOND: u64 = 50;
@@ -105,7 +111,8 @@ fn neutral_widths() -> [u64; 4] {
 /// Ends a flood and lets the robot answer what is left of it.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
-    bench.run_ms(3000);
+    // 32 times `?` may wait, and each has an answer of a kilobyte.
+    bench.run_ms(5000);
     bench.uno.send(b"\n");
     bench.run_ms(200);
 }
@@ -121,7 +128,8 @@ struct Status(HashMap<String, String>);
 impl Status {
     fn of(bench: &mut FirmwareBench) -> Self {
         let answer = bench.say("status");
-        let pairs = answer.strip_prefix("ok ").expect("status is never refused");
+        let pairs = answer.strip_prefix("ok gait=").map(|_| &answer[3..]);
+        let pairs = pairs.unwrap_or_else(|| panic!("no answer to status: {answer}"));
         let pair = |pair: &str| {
             let (key, value) = pair.split_once('=').expect("key=value");
             (key.to_owned(), value.to_owned())

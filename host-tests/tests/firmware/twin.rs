@@ -54,13 +54,14 @@ fn line(rng: &mut Rng) -> String {
 /// that it is received before; and each waits for the answer to the one before.
 fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
     let mut said = 0;
+    let mut written = 0;
     // The tick of a frame comes a slot before A1's pulse.
     let tick = first - FRAME / 5;
     while bench.uno.cycle() < END - FREQUENCY {
         let line = line(rng);
         let sending = (line.len() as u64 + 1) * BYTE;
         let wait = rng.u64(..40) * rng.u64(..40) * CYCLES_PER_MS;
-        let earliest = bench.uno.cycle() + wait + sending;
+        let earliest = bench.uno.cycle() + written + wait + sending;
         let frame = (earliest - tick).div_ceil(FRAME);
         let within = CYCLES_PER_MS + rng.u64(..18 * CYCLES_PER_MS);
         bench
@@ -68,6 +69,8 @@ fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
             .run_until_cycle(tick + frame * FRAME + within - sending);
         bench.say(&line);
         said += 1;
+        // Main takes no input while it keeps the pose of a rest, or forgets it.
+        written = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     said
 }

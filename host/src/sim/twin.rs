@@ -31,6 +31,8 @@ const BYTE: u64 = 1360;
 const CAPACITY: u64 = 255 + 2;
 /// What may be queued while there is still room for the longest answer.
 const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
+/// Cycles that the AVR takes to compute a frame, about.
+const FRAME_TAKES: u64 = 8_000;
 /// The robot wakes within this many frames of power-on.
 const WAKES: usize = 500;
 
@@ -141,12 +143,15 @@ impl<R: Robot> Twin<R> {
         self.wake(cycle);
         self.line.ticks = self.line.ticks.wrapping_add(1);
         _ = self.main.step(&mut self.line);
-        self.line.pulses.0.map(|width| width.0)
+        let widths = self.line.pulses.0.map(|width| width.0);
+        // What the frame gives to say is said right after it.
+        self.wake(cycle + FRAME_TAKES);
+        widths
     }
 
-    /// When bytes that wait for room are taken.
+    /// When lines and bytes that wait for room are written and taken.
     fn retry(&self) -> Option<u64> {
-        let waits = !self.line.received.is_empty();
+        let waits = !self.line.received.is_empty() || self.main.console().has_output();
         waits.then(|| self.line.free.saturating_sub(QUEUED * BYTE))
     }
 }

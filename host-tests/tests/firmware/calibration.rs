@@ -1,0 +1,323 @@
+//! What a person sets of the servos, measured at the pins, and what outlasts power.
+
+use lizard_host::sim::frame::FRAME;
+use lizard_host_tests::robot;
+use simulated_uno::{Fidelity, PowerCut, State};
+
+use crate::kept::{
+    MS, assert_no_leap, calibration, power_cycle, pulses, pulses_in, way, widths_now,
+};
+use crate::walk::{SLOT, Walk};
+use crate::{Status, awake, in_both, moving, neutral_widths, pose_at};
+
+/// A1's width at a sweep in degrees with a trim and a gain (us per degree), cycles.
+fn width(trim: f64, gain: f64, sweep: f64) -> u64 {
+    let servo = &robot().servos()[0];
+    ((servo.neutral_us + gain * (trim + sweep)) * 16.0).round() as u64
+}
+
+/// A1's gain, us per degree.
+fn gain() -> f64 {
+    robot().servos()[0].us_per_degree
+}
+
+fn assert_near(width: u64, expected: u64, what: &str) {
+    // An angle has steps of 0.0055 deg, and is typed with two decimals.
+    assert!(width.abs_diff(expected) <= 4, "{what}: {width}, {expected}");
+}
+
+#[test]
+fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let trim = [20, 10, 5, 2]
+            .into_iter()
+            .find(|trim| bench.say(&format!("trim 1 {trim}")) == format!("ok trim 1 {trim}"))
+            .expect("a trim that suits the gaits");
+        bench.say("trim 1 0");
+        bench.run_ms(500);
+        bench.uno.take_edges();
+        bench.say(&format!("trim 1 {trim}"));
+        bench.run_ms(1000);
+        let pulses = pulses(&bench);
+        assert_no_leap(&pulses);
+        assert!(
+            pulses[0]
+                .windows(2)
+                .any(|p| p[0].width.abs_diff(p[1].width) + 6 > way(0))
+                || trim < 10,
+            "as fast as it may"
+        );
+        let last = pulses[0].last().expect("a pulse").width;
+        assert_near(last, width(trim.into(), gain(), 0.0), "trimmed");
+        for servo in 1..4 {
+            let neutral = neutral_widths()[servo];
+            assert!(pulses[servo].iter().all(|pulse| pulse.width == neutral));
+        }
+        // What the guard and `status` see is the true angle.
+        assert!((Status::of(&mut bench).pose()[0] - robot().servos()[0].neutral).abs() < 0.01);
+    });
+}
+
+#[test]
+fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let size = gain().abs();
+        bench.say(&pose_at([5.0, 0.0, 0.0, 0.0]));
+        bench.run_ms(1000);
+        assert_near(widths_now(&mut bench)[0], width(0.0, gain(), 5.0), "before");
+        let scale = size + 1.25;
+        assert_eq!(
+            bench.say(&format!("scale 1 {scale:.2}")),
+            format!("ok scale 1 {scale:.2}")
+        );
+        bench.run_ms(500);
+        let turned = width(0.0, scale.copysign(gain()), 5.0);
+        assert_near(widths_now(&mut bench)[0], turned, "scaled");
+        let other = if gain() > 0.0 { '-' } else { '+' };
+        assert_eq!(
+            bench.say(&format!("dir 1 {other}")),
+            format!("ok dir 1 {other}")
+        );
+        bench.uno.take_edges();
+        bench.run_ms(500);
+        assert_no_leap(&pulses(&bench));
+        let turned = width(0.0, -scale.copysign(gain()), 5.0);
+        assert_near(widths_now(&mut bench)[0], turned, "the other way");
+    });
+}
+
+#[test]
+fn a_limit_ends_the_travel_of_poses_and_may_not_cut_off_a_gait() {
+    let mut bench = awake(Fidelity::DataSheet);
+    let neutral = robot().servos()[0].neutral;
+    let before = calibration(&mut bench);
+    let too_narrow = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
+    if robot().gaits().iter().any(|gait| gait.moves()) {
+        let refused = bench.say(&too_narrow);
+        assert!(refused.starts_with("err 3 "), "{refused}");
+        assert_eq!(calibration(&mut bench), before, "nothing has changed");
+    }
+    let narrow = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
+    assert_eq!(bench.say(&narrow), format!("ok {narrow}"));
+    let beyond = bench.say(&pose_at([41.0, 0.0, 0.0, 0.0]));
+    assert!(beyond.starts_with("err 3 "), "{beyond}");
+}
+
+#[test]
+fn what_was_saved_is_what_the_pulses_are_after_the_next_power_on() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        bench.say("trim 1 1.5");
+        bench.say("trim 3 -2");
+        bench.say("deadman 2500");
+        let set = calibration(&mut bench);
+        assert_eq!(bench.say("save"), "ok save");
+        bench.run_ms(500);
+        let widths = widths_now(&mut bench);
+        assert_near(widths[0], width(1.5, gain(), 0.0), "trimmed");
+        power_cycle(&mut bench);
+        bench.run_ms(700);
+        // From the first pulse on.
+        for (pulses, width) in pulses(&bench).iter().zip(widths) {
+            assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
+        }
+        assert_eq!(calibration(&mut bench), set);
+        let notes = bench.lines();
+        assert!(
+            !notes[notes.len() - 12..]
+                .iter()
+                .any(|line| line.text.contains("calibration:")),
+            "nothing to be said of a memory that is right"
+        );
+    });
+}
+
+#[test]
+fn what_is_not_saved_is_gone_and_load_and_factory_take_it_back() {
+    let mut bench = awake(Fidelity::DataSheet);
+    let factory = calibration(&mut bench);
+    let refused = bench.say("load");
+    assert!(refused.starts_with("err 9 "), "{refused}");
+    bench.say("trim 1 1");
+    let saved = calibration(&mut bench);
+    assert_eq!(bench.say("save"), "ok save");
+    bench.say("trim 1 -1");
+    assert_ne!(calibration(&mut bench), saved);
+    assert_eq!(bench.say("load"), "ok load");
+    assert_eq!(calibration(&mut bench), saved);
+    bench.run_ms(500);
+    assert_near(widths_now(&mut bench)[0], width(1.0, gain(), 0.0), "loaded");
+    assert_eq!(bench.say("factory"), "ok factory");
+    assert_eq!(calibration(&mut bench), factory);
+    bench.run_ms(500);
+    assert_eq!(widths_now(&mut bench), neutral_widths());
+    power_cycle(&mut bench);
+    assert_eq!(
+        calibration(&mut bench),
+        saved,
+        "factory alone saves nothing"
+    );
+}
+
+#[test]
+fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
+    in_both(|fidelity| {
+        let mut walk = Walk::begin(fidelity);
+        for n in 1..=6 {
+            walk.bench.say(&format!("deadman {}", 50_000 + 257 * n));
+            walk.bench.send("save");
+            for _ in 0..40 {
+                walk.bench.uno.send(b" ");
+                walk.bench.run_ms(3);
+            }
+            walk.bench.run_ms(150);
+            let lines = walk.bench.lines();
+            assert_eq!(lines.last().expect("an answer").text, "ok save");
+        }
+        let operations = walk.bench.uno.eeprom_operations();
+        if walk.is_by_the_data_sheet() {
+            assert!(operations.len() > 6 * 6, "{}", operations.len());
+        }
+        for operation in &operations {
+            assert_ne!(operation.old, operation.new, "only bytes that differ");
+        }
+        for pair in operations.windows(2) {
+            assert!(pair[1].cycle - pair[0].cycle >= 3 * MS, "one at a time");
+        }
+        assert_eq!(walk.late(), 0);
+        let status = Status::of(&mut walk.bench);
+        assert_eq!(status.number("rx_lost"), 0.0);
+    });
+}
+
+#[test]
+fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
+    in_both(|fidelity| {
+        let mut walk = Walk::begin(fidelity);
+        walk.bench.say("deadman 54321");
+        let start = walk.next_frame();
+        let written = walk.bench.uno.eeprom_operations().len();
+        walk.bench.send("save");
+        // The serial line stays busy: main takes none of it until it has saved.
+        for _ in 0..14 {
+            walk.bench.uno.send(b" \t ");
+            walk.run_to(walk.bench.uno.cycle() + FRAME);
+        }
+        walk.run_to(start + 40 * FRAME - SLOT / 2);
+        let frames = walk.frames_since(start);
+        assert!(frames.len() >= 40);
+        for (frame, asked) in frames {
+            assert_eq!(frame.all(), Some(asked), "{frame:?}");
+        }
+        assert_eq!(walk.late(), 0);
+        if walk.is_by_the_data_sheet() {
+            assert!(walk.bench.uno.eeprom_operations().len() > written + 40);
+        }
+    });
+}
+
+#[test]
+fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes_before() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let gait = moving();
+        assert_eq!(
+            bench.say(&format!("boot {gait}")),
+            format!("ok boot {gait}")
+        );
+        assert_eq!(bench.say("save"), "ok save");
+        power_cycle(&mut bench);
+        let stood = pulses_in(&mut bench, 2900);
+        let neutral = neutral_widths();
+        for (pulses, width) in stood.iter().zip(neutral) {
+            assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
+        }
+        bench.run_ms(300);
+        let said = bench.lines().last().expect("a note").text.clone();
+        assert_eq!(said, format!("# boot: {gait}"));
+        assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
+        power_cycle(&mut bench);
+        bench.run_ms(2000);
+        bench.uno.send(b" ");
+        for (pulses, width) in pulses_in(&mut bench, 4000).iter().zip(neutral) {
+            assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
+        }
+    });
+}
+
+/// A pose near the neutral one, and the widths that it has.
+fn elsewhere(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
+    bench.say(&pose_at([6.0, -6.0, 6.0, -6.0]));
+    bench.run_ms(1000);
+    let widths = widths_now(bench);
+    assert!(widths.iter().zip(neutral_widths()).all(|(a, b)| *a != b));
+    widths
+}
+
+#[test]
+fn power_on_begins_where_the_robot_rested_one_servo_after_another_without_a_leap() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let rested = elsewhere(&mut bench);
+        assert_eq!(bench.say("rest"), "ok rest");
+        bench.run_ms(400);
+        power_cycle(&mut bench);
+        bench.run_ms(1500);
+        let pulses = pulses(&bench);
+        for servo in 0..4 {
+            assert_eq!(pulses[servo][0].width, rested[servo]);
+            if servo > 0 {
+                let apart = pulses[servo][0].start - pulses[servo - 1][0].start;
+                assert_eq!(apart, 5 * FRAME + SLOT, "a tenth of a second");
+            }
+        }
+        assert_no_leap(&pulses);
+        assert_eq!(widths_now(&mut bench), neutral_widths(), "then it stands");
+        // It has moved since: where it rested is no longer known.
+        power_cycle(&mut bench);
+        bench.run_ms(300);
+        let first = bench.uno.pulses(bench.pins()[0])[0].width;
+        assert_eq!(first, neutral_widths()[0]);
+    });
+}
+
+#[test]
+fn a_power_cut_while_the_pose_of_a_rest_is_written_gives_that_pose_or_the_neutral_one() {
+    let mut bench = awake(Fidelity::DataSheet);
+    let blank = bench.uno.eeprom();
+    let rested = elsewhere(&mut bench);
+    let before = bench.uno.eeprom_operations().len();
+    bench.say("rest");
+    bench.run_ms(400);
+    let count = bench.uno.eeprom_operations().len() - before;
+    assert!(count > 10, "{count}");
+    let mut poses = [0, 0];
+    for operation in 0..count as u64 {
+        for (ones, in_write) in [(0, true), (0x5a, true), (0x33, false)] {
+            bench.uno.set_eeprom(&blank);
+            power_cycle(&mut bench);
+            bench.run_ms(500);
+            elsewhere(&mut bench);
+            let cut = if in_write {
+                PowerCut::InWrite(operation)
+            } else {
+                PowerCut::InErase(operation)
+            };
+            bench.uno.cut_power(cut, ones);
+            bench.say("rest");
+            bench.uno.run_ms(400);
+            assert_eq!(*bench.uno.state(), State::Off);
+            power_cycle(&mut bench);
+            bench.run_ms(600);
+            let first = pulses(&bench).map(|pulses| pulses[0].width);
+            assert!(
+                first == rested || first == neutral_widths(),
+                "byte {operation}, {ones:02x}: {first:?}"
+            );
+            poses[usize::from(first == rested)] += 1;
+        }
+    }
+    assert!(poses[0] > poses[1] && poses[1] > 0, "{poses:?}");
+}

@@ -1,0 +1,108 @@
+//! The faults that stop a motion: each with its word, its sentence and its flashes.
+
+use lizard_host::sim::frame::FRAME;
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::Fidelity;
+
+use crate::kept::{flashes, pulses, pulses_in, widths_now};
+use crate::walk::Walk;
+use crate::{Status, doing, moving};
+
+/// What a fault does: nothing moves, `status` and one line name it, the LED flashes so
+/// many times.
+fn assert_stopped(bench: &mut FirmwareBench, word: &str, sentence: &str, code: usize) {
+    let status = Status::of(bench);
+    assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
+    let held = widths_now(bench);
+    for (pulses, width) in pulses_in(bench, 1000).iter().zip(held) {
+        assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
+    }
+    let line = format!("# fault: {sentence}");
+    let said = bench.lines().iter().filter(|said| said.text == line);
+    assert_eq!(said.count(), 1, "{line}");
+    let flashes = flashes(bench, 12);
+    assert!(flashes.len() >= 3, "{flashes:?}");
+    assert!(flashes.iter().all(|count| *count == code), "{flashes:?}");
+}
+
+#[test]
+fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench.say("deadman 800");
+    let begin = bench.uno.cycle();
+    bench.run_ms(700);
+    bench.say("speed 90");
+    bench.run_ms(700);
+    bench.say("speed 100");
+    // Bytes alone are no line.
+    bench.uno.send(b"  ");
+    bench.run_ms(1500);
+    let stopped = bench
+        .lines()
+        .iter()
+        .find(|line| line.text.contains("deadman says"))
+        .map(|line| (line.cycle - begin) / 16_000);
+    // 1400 ms and the answers' time; the line itself takes 5 ms.
+    assert!(
+        stopped.is_some_and(|ms| (2_190..2_260).contains(&ms)),
+        "{stopped:?}"
+    );
+    let sentence = "no line for as long as deadman says, stopped";
+    assert_stopped(&mut bench, "link", sentence, 3);
+    assert_eq!(bench.say(&moving()), format!("ok {}", moving()));
+    assert_eq!(Status::of(&mut bench).text("fault"), "none");
+}
+
+#[test]
+fn deadman_is_off_unless_set_and_leaves_a_robot_that_stands_alone() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench.run_ms(70_000);
+    assert_eq!(Status::of(&mut bench).text("fault"), "none");
+    bench.say("stand");
+    bench.say("deadman 100");
+    bench.run_ms(5_000);
+    let status = Status::of(&mut bench);
+    assert_eq!(
+        (status.text("gait"), status.text("fault")),
+        ("stand", "none")
+    );
+}
+
+#[test]
+fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
+    let mut walk = Walk::begin(Fidelity::DataSheet);
+    let rise = walk.next_frame();
+    walk.run_to(rise - 600);
+    walk.bench.uno.hold(700);
+    walk.run_to(rise + 2 * FRAME);
+    let edges = pulses(&walk.bench);
+    assert!(
+        edges[0]
+            .iter()
+            .all(|pulse| pulse.start < rise || pulse.start > rise + FRAME / 2),
+        "{:?}",
+        edges[0]
+    );
+    let sentence = "a pulse came late and was dropped, stopped";
+    assert_stopped(&mut walk.bench, "late", sentence, 5);
+    assert_eq!(Status::of(&mut walk.bench).number("late"), 1.0);
+}
+
+#[test]
+fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
+    for byte in 0..4 {
+        let mut walk = Walk::begin(Fidelity::DataSheet);
+        let guard = walk.address("stack::WORD") + byte;
+        let was = walk.bench.uno.peek(guard);
+        walk.bench.uno.poke(guard, was ^ 0x10);
+        walk.bench.run_ms(100);
+        let sentence = "the stack has grown into the data, stopped";
+        assert_stopped(&mut walk.bench, "stack", sentence, 6);
+        // Whatever the data says now is not to be trusted: it does not move again.
+        walk.bench.say(&moving());
+        walk.bench.run_ms(100);
+        let held = widths_now(&mut walk.bench);
+        walk.bench.run_ms(1000);
+        assert_eq!(widths_now(&mut walk.bench), held);
+    }
+}

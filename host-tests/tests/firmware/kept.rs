@@ -1,0 +1,102 @@
+//! What the tests of calibration, power cuts and faults share.
+
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::{Pin, Pulse};
+
+use crate::pulses::servo_edges;
+use crate::robot;
+
+/// The LED.
+const LED: Pin = Pin::d(13);
+
+/// Cycles of a millisecond.
+pub const MS: u64 = simulated_uno::CYCLES_PER_MS;
+
+/// The pulses of A1 to A4 in the milliseconds to come, whatever happens meanwhile.
+pub fn pulses_in(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
+    bench.uno.take_edges();
+    bench.uno.run_ms(ms);
+    pulses(bench)
+}
+
+/// The pulses of A1 to A4 among the edges that nobody has taken.
+pub fn pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
+    let edges = servo_edges(&bench.uno);
+    bench.pins().map(|pin| simulated_uno::pulses(&edges, pin))
+}
+
+/// The widths that the servos get now, cycles; 0 without a pulse.
+pub fn widths_now(bench: &mut FirmwareBench) -> [u64; 4] {
+    pulses_in(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
+}
+
+/// Takes power away and gives it back, and waits for the banner. Edges so far are
+/// dropped.
+pub fn power_cycle(bench: &mut FirmwareBench) {
+    let said = bench.lines().len();
+    bench.uno.power_cycle();
+    bench.uno.take_edges();
+    for _ in 0..500 {
+        bench.uno.run_ms(1);
+        // What the power cut off of the line before may come first.
+        let lines = &bench.lines()[said..];
+        if lines.iter().any(|line| line.text.contains("# lizard ")) {
+            return;
+        }
+    }
+    panic!("no banner after power-on: {:?}", &bench.lines()[said..]);
+}
+
+/// What `cal` prints.
+pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
+    let (lines, answer) = bench.ask("cal");
+    assert_eq!(answer, "ok cal");
+    let is_set = |line: &String| {
+        ["# A", "# boot ", "# deadman "]
+            .iter()
+            .any(|start| line.starts_with(start))
+    };
+    lines.into_iter().filter(is_set).collect()
+}
+
+/// By how many cycles a pulse may change from frame to frame: the slew limit.
+pub fn way(servo: usize) -> u64 {
+    let servo = &robot().servos()[servo];
+    // A cycle of rounding at each end, and the limit's own, half a step of an angle.
+    (robot().pace().slew / 50.0 * servo.us_per_degree.abs() * 16.0) as u64 + 3
+}
+
+/// Whether no pulse is farther from the one before than the slew limit allows.
+pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
+    for (servo, pulses) in pulses.iter().enumerate() {
+        for pair in pulses.windows(2) {
+            let leap = pair[0].width.abs_diff(pair[1].width);
+            assert!(leap <= way(servo), "A{}: {pair:?}", servo + 1);
+        }
+    }
+}
+
+/// How many times the LED flashes between two pauses, as often as it does so in some
+/// seconds.
+pub fn flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
+    bench.uno.take_edges();
+    bench.uno.run_ms(1000 * seconds);
+    let edges = bench.uno.edges();
+    let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED).collect();
+    // A flash is 160 ms of light and 160 of dark, a pause a second more.
+    let mut patterns = Vec::new();
+    let mut count = None;
+    for pair in edges.windows(2) {
+        let ms = (pair[1].cycle - pair[0].cycle) / MS;
+        match (pair[0].high, ms) {
+            (true, 150..=170) => count = count.map(|n| n + 1),
+            (false, 150..=170) => {}
+            (false, 1100..=1140) => {
+                patterns.extend(count);
+                count = Some(0);
+            }
+            other => panic!("the LED: {other:?}"),
+        }
+    }
+    patterns
+}

@@ -1,0 +1,161 @@
+//! Power that fails while settings are saved, at every byte and with every way that
+//! a byte may be torn; and bits that change in the years.
+
+use lizard_core::memory::Bytes;
+use lizard_core::record::{self, Outcome};
+use lizard_core::settings::Settings;
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
+
+use crate::awake;
+use crate::kept::{calibration, power_cycle};
+
+/// What an EEPROM says to the core, the turn left out.
+fn loaded(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
+    let mut settings = Settings::of(robot().firmware());
+    let outcome = record::load(robot().firmware(), &Bytes(*contents), &mut settings);
+    settings.set_turn(0);
+    (settings, outcome)
+}
+
+/// A board on which settings have been saved twice, and others set and not saved.
+struct Saved {
+    bench: FirmwareBench,
+    before: [u8; EEPROM_SIZE],
+    /// What `cal` prints of the saved settings and of the others.
+    calibrations: [Vec<String>; 2],
+}
+
+impl Saved {
+    fn new() -> Self {
+        let mut bench = awake(Fidelity::DataSheet);
+        for trim in ["1 0.5", "2 -0.75"] {
+            bench.say(&format!("trim {trim}"));
+            assert_eq!(bench.say("save"), "ok save");
+        }
+        let saved = calibration(&mut bench);
+        for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
+            assert_eq!(bench.say(line), format!("ok {line}"));
+        }
+        let others = calibration(&mut bench);
+        Self {
+            before: bench.uno.eeprom(),
+            calibrations: [saved, others],
+            bench,
+        }
+    }
+
+    /// Saves the others, and tells the operations of that.
+    fn save(&mut self) -> Vec<EepromOperation> {
+        let before = self.bench.uno.eeprom_operations().len();
+        assert_eq!(self.bench.say("save"), "ok save");
+        self.bench.uno.eeprom_operations()[before..].to_vec()
+    }
+
+    /// Powers the board on with these contents; what `cal` prints then.
+    fn powered_on_with(&mut self, contents: &[u8; EEPROM_SIZE]) -> Vec<String> {
+        self.bench.uno.set_eeprom(contents);
+        power_cycle(&mut self.bench);
+        calibration(&mut self.bench)
+    }
+}
+
+#[test]
+fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new() {
+    let mut saved = Saved::new();
+    let mut contents = saved.before;
+    let operations = saved.save();
+    let after = saved.bench.uno.eeprom();
+    let [old, new] = [contents, after].map(|contents| loaded(&contents).0);
+    assert_ne!(old, new);
+    assert!(operations.len() > 10);
+    let (mut found, mut images) = ([0, 0], 0u64);
+    for operation in &operations {
+        assert_eq!(contents[usize::from(operation.address)], operation.old);
+        for ones in 0..=255u8 {
+            for torn in [operation.old | ones, operation.new | ones] {
+                let mut contents = contents;
+                contents[usize::from(operation.address)] = torn;
+                let (settings, outcome) = loaded(&contents);
+                let is_new = settings == new;
+                assert!(
+                    is_new || settings == old,
+                    "{operation:?} torn to {torn:02x}: {outcome:?}"
+                );
+                found[usize::from(is_new)] += 1;
+                // The running image, for some of them.
+                images += 1;
+                if images % 97 == 0 {
+                    let calibration = saved.powered_on_with(&contents);
+                    assert_eq!(calibration, saved.calibrations[usize::from(is_new)]);
+                }
+            }
+        }
+        contents[usize::from(operation.address)] = operation.new;
+    }
+    assert_eq!(contents, after);
+    println!("{images} images: {found:?} old and new");
+    assert!(found[0] > 0 && found[1] > 0);
+}
+
+#[test]
+fn the_running_image_loses_power_in_every_operation_of_a_save_and_has_the_old_or_the_new() {
+    let mut saved = Saved::new();
+    let before = saved.before;
+    let count = saved.save().len() as u64;
+    let after = saved.bench.uno.eeprom();
+    let mut found = [0, 0];
+    for operation in 0..count {
+        for (cut, ones) in [
+            (PowerCut::InErase(operation), 0x00),
+            (PowerCut::InErase(operation), 0x5a),
+            (PowerCut::InWrite(operation), 0x00),
+            (PowerCut::InWrite(operation), 0x81),
+            (PowerCut::InWrite(operation), 0xff),
+        ] {
+            saved.powered_on_with(&before);
+            for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
+                saved.bench.say(line);
+            }
+            saved.bench.uno.cut_power(cut, ones);
+            saved.bench.send("save");
+            saved.bench.uno.run_ms(400);
+            assert_eq!(*saved.bench.uno.state(), simulated_uno::State::Off);
+            power_cycle(&mut saved.bench);
+            let calibration = calibration(&mut saved.bench);
+            let which = saved.calibrations.iter().position(|c| *c == calibration);
+            found[which.unwrap_or_else(|| panic!("{cut:?} {ones:02x}: {calibration:?}"))] += 1;
+        }
+    }
+    assert!(found[0] > 0 && found[1] > 0, "{found:?}");
+    assert_ne!(loaded(&before).0, loaded(&after).0);
+}
+
+#[test]
+fn a_bit_that_changes_anywhere_gives_the_settings_the_other_copy_or_the_defaults() {
+    let mut saved = Saved::new();
+    saved.save();
+    let contents = saved.bench.uno.eeprom();
+    let [latest, older] = [contents, saved.before].map(|contents| loaded(&contents).0);
+    let mut defaults = Settings::of(robot().firmware());
+    defaults.set_turn(0);
+    let mut found = [0, 0, 0];
+    for bit in 0..8 * EEPROM_SIZE {
+        let mut flipped = contents;
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        let (settings, outcome) = loaded(&flipped);
+        let which = [&latest, &older, &defaults]
+            .iter()
+            .position(|known| **known == settings);
+        let which = which.unwrap_or_else(|| panic!("bit {bit}: {outcome:?} {settings:?}"));
+        found[which] += 1;
+        if bit % 64 == 11 {
+            let calibration = saved.powered_on_with(&flipped);
+            let expected = &saved.calibrations[if which == 0 { 1 } else { 0 }];
+            assert_eq!(&calibration, expected, "bit {bit}");
+        }
+    }
+    println!("{found:?} the latest, the copy before, the defaults");
+    assert_eq!(found[2], 0, "one copy is always whole");
+    assert!(found[1] >= 8 * 44, "the latest copy's own bits");
+}

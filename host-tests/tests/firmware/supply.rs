@@ -1,0 +1,185 @@
+//! The chip's supply swept down and up: what is measured, and what the robot does.
+
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::Fidelity;
+
+use crate::kept::{flashes, pulses_in, widths_now};
+use crate::{Status, awake, doing, moving};
+
+/// What a reading may be off by, V: a step of the converter at 5.5 V, and two decimals.
+const STEP: f64 = 0.04;
+
+/// The lines about the supply since line `from`, and the voltage that each tells.
+fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
+    let lines = &bench.lines()[from..];
+    let told = lines
+        .iter()
+        .filter_map(|line| line.text.strip_prefix("# supply: "));
+    let told = told.map(|text| {
+        let (volts, what) = text.split_once(" V, ").expect("volts and what follows");
+        (what.to_owned(), volts.parse().expect("a number"))
+    });
+    told.collect()
+}
+
+#[test]
+fn status_tells_the_supply_within_thirty_millivolts() {
+    let mut bench = awake(Fidelity::DataSheet);
+    bench
+        .uno
+        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+    let mut farthest = 0f64;
+    for mv in (2_700..=5_500).step_by(35) {
+        bench.uno.set_supply_mv(f64::from(mv));
+        bench.run_ms(120);
+        let told = Status::of(&mut bench).number("vcc");
+        farthest = farthest.max((told - f64::from(mv) / 1000.0).abs());
+    }
+    assert!(farthest <= 0.030, "{farthest} V");
+}
+
+#[test]
+fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench
+        .uno
+        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+    let from = bench.lines().len();
+    let mut true_at = Vec::new();
+    for mv in (3_400..=5_000).rev().step_by(10) {
+        bench.uno.set_supply_mv(f64::from(mv));
+        bench.run_ms(160);
+        while true_at.len() < notes(&mut bench, from).len() {
+            true_at.push(f64::from(mv) / 1000.0);
+        }
+    }
+    let told = notes(&mut bench, from);
+    let words: Vec<&str> = told.iter().map(|(what, _)| what.as_str()).collect();
+    assert_eq!(
+        words,
+        [
+            "low: half speed, no saving",
+            "too low to move: stopped",
+            "too low to hold: pulses ended"
+        ]
+    );
+    for ((truth, (_, told)), threshold) in true_at.iter().zip(&told).zip(robot().supplies().board) {
+        assert!((truth - threshold).abs() <= STEP, "{truth}, {threshold}");
+        assert!((told - truth).abs() <= STEP, "{told}, {truth}");
+    }
+    let status = Status::of(&mut bench);
+    assert_eq!(
+        (status.text("gait"), status.text("fault")),
+        ("rest", "supply")
+    );
+    assert!(pulses_in(&mut bench, 200).iter().all(Vec::is_empty));
+    let flashes = flashes(&mut bench, 10);
+    assert!(
+        flashes.len() >= 3 && flashes.iter().all(|count| *count == 2),
+        "{flashes:?}"
+    );
+}
+
+#[test]
+fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench
+        .uno
+        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+    let pace = |bench: &mut FirmwareBench| {
+        let before = Status::of(bench).number("phase");
+        bench.run_ms(200);
+        (Status::of(bench).number("phase") - before).rem_euclid(1.0)
+    };
+    let full = pace(&mut bench);
+    let [slow, stop, _] = robot().supplies().board;
+    bench.uno.set_supply_mv((slow + stop) * 500.0);
+    bench.run_ms(500);
+    let written = bench.uno.eeprom_operations().len();
+    let refused = bench.say("save");
+    assert!(
+        refused.starts_with("err 8 the supply is too low"),
+        "{refused}"
+    );
+    let half = pace(&mut bench);
+    if full > 0.0 {
+        assert!((half / full - 0.5).abs() < 0.1, "{half} of {full}");
+    }
+    bench.say("rest");
+    bench.run_ms(400);
+    assert_eq!(
+        bench.uno.eeprom_operations().len(),
+        written,
+        "not even the pose"
+    );
+}
+
+#[test]
+fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench
+        .uno
+        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+    let [slow, stop, _] = robot().supplies().board;
+    bench.uno.set_supply_mv(stop * 1000.0 - 60.0);
+    bench.run_ms(500);
+    assert_eq!(Status::of(&mut bench).text("gait"), "stop");
+    let refused = bench.say(&moving());
+    assert!(refused.starts_with("err 8 "), "{refused}");
+    let held = widths_now(&mut bench);
+    let from = bench.lines().len();
+    let mut good_at = None;
+    for mv in ((stop * 1000.0) as i32..=5_000).step_by(10) {
+        bench.uno.set_supply_mv(f64::from(mv));
+        bench.run_ms(1_150);
+        if good_at.is_none()
+            && notes(&mut bench, from)
+                .iter()
+                .any(|(what, _)| what == "good")
+        {
+            good_at = Some(f64::from(mv) / 1000.0);
+        }
+    }
+    let good_at = good_at.expect("it is good at last");
+    assert!(
+        (good_at - slow - 0.150).abs() <= STEP,
+        "{good_at}: 150 mV above"
+    );
+    assert_eq!(widths_now(&mut bench), held, "nothing has moved");
+    assert_eq!(
+        Status::of(&mut bench).text("fault"),
+        "supply",
+        "until it moves"
+    );
+    assert_eq!(bench.say(&moving()), format!("ok {}", moving()));
+    bench.run_ms(500);
+    assert_eq!(Status::of(&mut bench).text("fault"), "none");
+    assert_eq!(bench.say("save"), "ok save");
+}
+
+#[test]
+fn a_short_dip_and_a_supply_that_wavers_change_little() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench
+        .uno
+        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+    let from = bench.lines().len();
+    // A servo's start takes a few milliseconds of it.
+    for n in 0..200u64 {
+        bench.uno.set_supply_mv(3_300.0);
+        bench.uno.run_cycles(15 * 16_000 + n * 997);
+        bench.uno.set_supply_mv(5_000.0);
+        bench.run_ms(100);
+    }
+    assert!(notes(&mut bench, from).is_empty());
+    // Around the threshold, for half a minute.
+    let slow = robot().supplies().board[0] * 1000.0;
+    for n in 0..300 {
+        bench
+            .uno
+            .set_supply_mv(slow + if n % 2 == 0 { -40.0 } else { 90.0 });
+        bench.run_ms(100);
+    }
+    let said = notes(&mut bench, from);
+    assert_eq!(said.len(), 1, "{said:?}");
+}

@@ -1,0 +1,219 @@
+//! A program that hangs is begun anew, and no servo notices; and every cause of a
+//! reset is told right.
+
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::{Fidelity, ResetCause};
+
+use crate::kept::{MS, flashes, power_cycle, pulses, pulses_in, way, widths_now};
+use crate::{Status, awake, doing, moving, neutral_widths, pose_at};
+
+/// Timer1's registers, by data address.
+const TCCR1B: u16 = 0x81;
+const TIMSK1: u16 = 0x6f;
+
+/// The patience of the watchdog, twice 125 ms, and the frame in which it was fed last.
+const PATIENCE_MS: u64 = 250 + 20;
+
+/// A robot that is held in a pose apart from the neutral one, and its widths.
+fn posed() -> (FirmwareBench, [u64; 4]) {
+    let mut bench = awake(Fidelity::DataSheet);
+    bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
+    bench.run_ms(1000);
+    let widths = widths_now(&mut bench);
+    assert_ne!(widths, neutral_widths());
+    (bench, widths)
+}
+
+/// Runs until the watchdog has reset the chip, and how many cycles that takes.
+fn until_reset(bench: &mut FirmwareBench) -> u64 {
+    let (begin, resets) = (bench.uno.cycle(), bench.uno.resets());
+    let limit = PATIENCE_MS * MS;
+    assert!(
+        bench
+            .uno
+            .run_until(limit, 1_000, |uno| uno.resets() > resets),
+        "no reset"
+    );
+    // The new program is not held up.
+    bench.uno.stall_main(0);
+    bench.uno.cycle() - begin
+}
+
+#[test]
+fn main_that_hangs_is_reset_and_the_robot_is_held_in_its_pose_without_a_wrong_pulse() {
+    let (mut bench, widths) = posed();
+    for n in 0..40u64 {
+        // Anywhere in a frame.
+        bench.uno.run_cycles(n * 7_919);
+        bench.uno.take_edges();
+        bench.uno.stall_main(2_000 * MS);
+        let took = until_reset(&mut bench);
+        assert!(took > 200 * MS, "{took}: not without need");
+        bench.uno.run_ms(300);
+        for (servo, pulses) in pulses(&bench).iter().enumerate() {
+            for pulse in pulses {
+                assert_eq!(pulse.width, widths[servo], "A{} in round {n}", servo + 1);
+            }
+            let gap = pulses
+                .windows(2)
+                .map(|pair| pair[1].start - pair[0].start)
+                .max();
+            assert!(
+                gap.is_some_and(|gap| gap < 200 * MS),
+                "limp for {gap:?} cycles"
+            );
+        }
+        let status = Status::of(&mut bench);
+        assert_eq!(
+            (status.text("reset"), status.text("fault")),
+            ("watchdog", "watchdog")
+        );
+        assert_eq!(status.number("resets"), (n + 1) as f64);
+    }
+    let said = bench
+        .lines()
+        .iter()
+        .any(|line| line.text == "# fault: the program hung and began anew");
+    assert!(said);
+}
+
+#[test]
+fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_and_nothing_moves_until_told_to() {
+    for hang_ms in [3, 137, 411, 893] {
+        let mut bench = doing(&moving(), Fidelity::DataSheet);
+        bench.run_ms(hang_ms);
+        let before = widths_now(&mut bench);
+        bench.uno.stall_main(2_000 * MS);
+        until_reset(&mut bench);
+        bench.uno.run_ms(60);
+        let after = pulses_in(&mut bench, 5000);
+        for servo in 0..4 {
+            let first = after[servo][0].width;
+            assert!(after[servo].iter().all(|pulse| pulse.width == first));
+            // The last frame may have been computed and not yet played.
+            assert!(
+                first.abs_diff(before[servo]) <= 2 * way(servo),
+                "A{}",
+                servo + 1
+            );
+        }
+        assert_eq!(Status::of(&mut bench).text("gait"), "stop");
+        let flashes = flashes(&mut bench, 12);
+        assert!(
+            flashes.len() >= 3 && flashes.iter().all(|count| *count == 4),
+            "{flashes:?}"
+        );
+        assert_eq!(bench.say("stand"), "ok stand");
+        bench.run_ms(1500);
+        assert_eq!(Status::of(&mut bench).text("fault"), "none");
+        assert_eq!(widths_now(&mut bench), neutral_widths());
+    }
+}
+
+#[test]
+fn a_timer_that_stands_still_or_interrupts_that_are_off_are_found_out() {
+    for (register, value) in [(TCCR1B, 0), (TIMSK1, 0), (TIMSK1, 0x02), (TIMSK1, 0x04)] {
+        let (mut bench, widths) = posed();
+        // In the tick's slot, where no pin is high.
+        bench.run_for_frames(1);
+        let pins = bench.pins();
+        assert!(pins.iter().all(|pin| !bench.uno.is_high(*pin)));
+        bench.uno.poke(register, value);
+        until_reset(&mut bench);
+        bench.uno.run_ms(100);
+        assert_eq!(widths_now(&mut bench), widths, "{register:02x}={value}");
+        let status = Status::of(&mut bench);
+        assert_eq!(status.text("reset"), "watchdog", "{register:02x}={value}");
+    }
+}
+
+#[test]
+fn interrupts_that_stay_off_are_found_out_and_the_cause_is_known_from_the_chip() {
+    let (mut bench, widths) = posed();
+    // SREG's I bit.
+    let sreg = 0x5f;
+    assert!(bench.uno.run_until(MS, 1, |uno| uno.peek(sreg) & 0x80 == 0));
+    bench.uno.hold(1_000 * MS);
+    until_reset(&mut bench);
+    bench.uno.run_ms(100);
+    assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
+    assert_eq!(widths_now(&mut bench), widths);
+}
+
+#[test]
+fn a_robot_that_works_is_never_reset() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench.uno.flood(b"status\nhelp\ncal\nsave\nx");
+    bench.run_ms(20_000);
+    assert_eq!(bench.uno.reset_events().len(), 1);
+}
+
+/// A board that has just begun, with or without a boot loader.
+fn begun(boot_loader: bool) -> FirmwareBench {
+    let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
+    bench.uno.set_boot_loader(boot_loader);
+    bench.run_ms(700);
+    bench
+}
+
+#[test]
+fn every_cause_of_a_reset_is_told_right_and_resets_are_counted() {
+    for boot_loader in [false, true] {
+        let mut bench = begun(boot_loader);
+        let expect = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
+            bench.uno.run_ms(700);
+            let status = Status::of(bench);
+            let told = (status.text("reset"), status.number("resets"));
+            assert_eq!(told, (cause, resets), "boot loader: {boot_loader}");
+        };
+        expect(&mut bench, "power", 0.0);
+        bench.uno.reset();
+        expect(&mut bench, "external", 1.0);
+        bench.uno.stall_main(1_000 * MS);
+        until_reset(&mut bench);
+        expect(&mut bench, "watchdog", 2.0);
+        bench.uno.set_supply_mv(2_400.0);
+        bench.uno.run_ms(5);
+        bench.uno.set_supply_mv(5_000.0);
+        // The boot loader clears what the chip knows of it; RAM was kept.
+        let dip = if boot_loader { "external" } else { "brownout" };
+        expect(&mut bench, dip, 3.0);
+        bench.uno.reset();
+        expect(&mut bench, "external", 4.0);
+        power_cycle(&mut bench);
+        expect(&mut bench, "power", 0.0);
+        let causes: Vec<ResetCause> = bench.uno.reset_events().iter().map(|r| r.cause).collect();
+        assert_eq!(
+            causes,
+            [
+                ResetCause::PowerOn,
+                ResetCause::External,
+                ResetCause::Watchdog,
+                ResetCause::BrownOut,
+                ResetCause::External,
+                ResetCause::PowerOn
+            ]
+        );
+    }
+}
+
+#[test]
+fn power_on_is_known_from_any_noise_in_the_memory() {
+    let mut bench = begun(true);
+    for seed in 0..300 {
+        bench.uno.set_noise_seed(seed);
+        power_cycle(&mut bench);
+        let status = Status::of(&mut bench);
+        assert_eq!(
+            (status.text("reset"), status.number("resets")),
+            ("power", 0.0)
+        );
+        assert_eq!(status.pose(), robot_neutral());
+    }
+}
+
+fn robot_neutral() -> [f64; 4] {
+    lizard_host_tests::robot()
+        .servos()
+        .map(|servo| (servo.neutral * 100.0).round() / 100.0)
+}
