@@ -4,7 +4,8 @@ use std::ffi::OsString;
 
 use crate::Failure;
 
-const SIMULATOR: [&str; 2] = ["sim", "bench"];
+const SIMULATOR: [&str; 3] = ["sim", "bench", "replay"];
+const CONSOLE: [&str; 5] = ["console", "calibrate", "backup", "restore", "record"];
 const PAPER: [&str; 10] = [
     "solve",
     "inverse",
@@ -27,6 +28,8 @@ pub fn explain(words: &[OsString]) -> Failure {
         "the simulator"
     } else if PAPER.contains(&name) {
         "the commands that compute"
+    } else if CONSOLE.contains(&name) {
+        "the commands for a board on USB"
     } else {
         return Failure::Input(format!(
             "there is no command `{name}`; lizard --help lists them"
