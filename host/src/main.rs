@@ -62,6 +62,8 @@ enum Command {
     #[cfg(feature = "console")]
     Console(console::interactive::ConsoleArgs),
     #[cfg(feature = "console")]
+    Calibrate(console::calibrate::Args),
+    #[cfg(feature = "console")]
     Backup(console::backup::BackupArgs),
     #[cfg(feature = "console")]
     Restore(console::backup::RestoreArgs),
@@ -103,6 +105,8 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(args),
         #[cfg(feature = "console")]
         Command::Console(args) => console::interactive::console(args),
+        #[cfg(feature = "console")]
+        Command::Calibrate(args) => console::calibrate::run(args),
         #[cfg(feature = "console")]
         Command::Backup(args) => console::backup::backup(args),
         #[cfg(feature = "console")]

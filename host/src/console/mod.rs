@@ -6,6 +6,7 @@
 //! scripted input.
 
 pub mod backup;
+pub mod calibrate;
 pub mod calibration;
 pub mod connect;
 #[cfg(test)]
