@@ -69,6 +69,8 @@ enum Command {
     Restore(console::backup::RestoreArgs),
     #[cfg(feature = "console")]
     Record(console::interactive::RecordArgs),
+    #[cfg(all(feature = "console", feature = "simulator"))]
+    Replay(console::replay::Args),
     /// A command that this build may lack.
     #[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
     #[command(external_subcommand)]
@@ -113,6 +115,8 @@ fn main() -> ExitCode {
         Command::Restore(args) => console::backup::restore(args),
         #[cfg(feature = "console")]
         Command::Record(args) => console::interactive::record(args),
+        #[cfg(all(feature = "console", feature = "simulator"))]
+        Command::Replay(args) => console::replay::run(args),
         #[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
         Command::Other(words) => Err(absent::explain(&words)),
     };

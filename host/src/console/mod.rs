@@ -1,5 +1,5 @@
 //! A board on USB to live with: `lizard console`, `calibrate`, `backup`, `restore`,
-//! `record`.
+//! `record`; and `replay`.
 //!
 //! What is done is kept apart from the terminal and from the serial port, so that it
 //! is tested without either: against the firmware's core on this machine, and with
@@ -19,6 +19,8 @@ pub mod link;
 pub mod port;
 pub mod prompt;
 pub mod recorder;
+#[cfg(feature = "simulator")]
+pub mod replay;
 mod screen;
 pub mod session;
 pub mod status;

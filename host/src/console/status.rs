@@ -7,6 +7,8 @@ pub struct Status {
     pub gait: String,
     /// Servo angles, degrees, chassis frame.
     pub pose: [f64; 4],
+    /// Frames since power-on.
+    pub frames: u64,
     /// The smallest margin.
     pub margin: f64,
     /// Whether the guard holds the robot.
@@ -40,6 +42,7 @@ impl Status {
         Some(Self {
             gait: value("gait")?.to_owned(),
             pose: angles(value("pose")?)?,
+            frames: value("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
             margin: value("margin")?.parse().ok()?,
             held: value("guard") == Some("held"),
             fault: value("fault")

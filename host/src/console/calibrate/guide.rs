@@ -18,6 +18,11 @@ const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left
 const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 /// The longest wait for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
+/// Frames without motion after which the robot stands still: a motion that has just
+/// begun is seen within these.
+const STILL: u64 = 4;
+/// Between two looks at the robot.
+const LOOK: Duration = Duration::from_millis(25);
 
 /// A key that means something here.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +88,7 @@ pub struct View {
 #[derive(Debug)]
 pub struct Guide<'a, P> {
     link: &'a mut Link<P>,
-    /// What the robot had.
+    /// What the robot had, or has saved since.
     before: Calibration,
     /// What it has.
     now: Calibration,
@@ -135,11 +140,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                 self.message = "Press the space bar, look, then answer with y or n.".to_owned();
                 Ok(false)
             }
-            (Key::Next | Key::Act, Step::Save) => self
-                .link
-                .tell("save")
-                .and_then(|_| self.go(self.at + 1))
-                .map(|()| false),
+            (Key::Next | Key::Act, Step::Save) => self.save().map(|()| false),
             (Key::Next, _) => self.go(self.at + 1).map(|()| false),
             (Key::Act, Step::Sign(servo)) => self.move_one(servo).map(|()| false),
             (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
@@ -148,7 +149,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             _ => Ok(false),
         };
         match done {
-            Err(LinkError::Refused { line, reason }) => {
+            Err(LinkError::Refused { line, reason }) if key != Key::Leave => {
                 self.message = format!("The robot refuses `{line}`: {reason}.");
                 Ok(false)
             }
@@ -178,11 +179,21 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     /// Gives the robot what it had before, and lets it stand.
     fn leave(&mut self) -> Result<(), LinkError> {
-        self.stand()?;
+        match self.stand() {
+            // The supply may be too low for it. That is no reason to stay.
+            Ok(()) | Err(LinkError::Refused { .. }) => {}
+            Err(error) => return Err(error),
+        }
         if self.now != self.before {
             self.before.apply(self.link)?;
         }
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), LinkError> {
+        self.link.tell("save")?;
+        self.before = self.now.clone();
+        self.go(self.at + 1)
     }
 
     fn go(&mut self, to: usize) -> Result<(), LinkError> {
@@ -221,6 +232,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                 Ok(_) => {
                     self.moved = Some(proof);
                     settle(self.link)?;
+                    self.message = format!("A{} has moved.", servo + 1);
                     return Ok(());
                 }
                 Err(error @ LinkError::Refused { .. }) => refusal = Some(error),
@@ -403,25 +415,29 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 }
 
-/// Waits until the robot has come to rest; returns its pose.
+/// Waits until the robot stands still; returns its pose.
 fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let end = Instant::now() + MOTION;
-    let mut last = None;
+    let mut last: Option<Status> = None;
     loop {
         let reply = link.tell("status")?;
-        let pose = Status::parse(&reply.answer).map(|status| status.pose);
-        let Some(pose) = pose else {
+        let Some(now) = Status::parse(&reply.answer) else {
             return Err(LinkError::Unclear {
                 line: "status".to_owned(),
                 answer: reply.answer,
             });
         };
-        if last == Some(pose) || Instant::now() >= end {
-            return Ok(pose);
+        let (frames, pose) = (now.frames, now.pose);
+        let since = last
+            .as_ref()
+            .and_then(|last| frames.checked_sub(last.frames));
+        match since {
+            Some(0..STILL) if Instant::now() < end => {}
+            Some(_) if last.is_some_and(|last| last.pose == pose) => return Ok(pose),
+            _ if Instant::now() >= end => return Ok(pose),
+            _ => last = Some(now),
         }
-        last = Some(pose);
-        // Several frames, so that a motion that has just begun is seen.
-        link.pause(Duration::from_millis(70))?;
+        link.pause(LOOK)?;
     }
 }
 
