@@ -35,7 +35,8 @@ pub fn robot() -> Link<Double> {
 impl Double {
     fn of(robot: &'static Robot) -> Self {
         let mut memory = Bytes::default();
-        let mut console = Console::new(robot.firmware(), &memory, Restart::default());
+        let mut console = Console::new(robot.firmware());
+        console.begin(&memory, &Restart::default());
         // A byte, or a frame without one.
         let step = move |byte: Option<u8>| {
             match byte {
