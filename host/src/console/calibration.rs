@@ -301,7 +301,7 @@ mod tests {
         let error = set.apply(&mut link).expect_err("too narrow");
         let words = error.to_string();
         assert!(
-            words.contains("`limit 2 40.00 43.00`: 3 A2 would reach"),
+            words.contains("`limit 2 40.00 43.00`: 3 A2 would"),
             "{words}"
         );
     }
