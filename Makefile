@@ -128,6 +128,6 @@ clean: ## remove everything that was built
 	@cd host && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
 	@cd host && cargo clippy --workspace --all-targets --quiet -- -D warnings
-	@cd host && cargo clippy -p lizard-host --no-default-features --features paper --quiet -- -D warnings
+	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@echo "lint: clean"
