@@ -286,6 +286,30 @@ fn pins_are_where_an_uno_has_them() {
 fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     for (name, text) in files() {
         let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
+        // All four in the same scale.
+        let link = |key: &str| -> f64 {
+            let line = text
+                .lines()
+                .find(|line| line.starts_with(&format!("{key} ")));
+            let value = line
+                .and_then(|line| line.split(['=', '#']).nth(1))
+                .expect(key);
+            value.trim().parse().expect("mm")
+        };
+        let scales = SERVOS
+            .iter()
+            .zip(["l1", "l4", "l9", "l6"])
+            .map(|(servo, key)| {
+                let crank = drawing.path(&format!("crank-{servo}"));
+                (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / link(key)
+            });
+        let scales: Vec<f64> = scales.collect();
+        assert!(
+            scales
+                .iter()
+                .all(|scale| (scale / scales[0] - 1.0).abs() < 1e-3),
+            "{name}"
+        );
         for servo in SERVOS {
             let neutral: f64 = said(&text, servo, "neutral").parse().expect("degrees");
             let crank = drawing.path(&format!("crank-{servo}"));
