@@ -68,6 +68,11 @@ impl Robot for Lizard {
         SERVOS.load()
     }
 
+    #[inline(never)]
+    fn servo(&self, place: usize) -> Calibration {
+        SERVOS.at(place).load()
+    }
+
     #[inline(always)]
     fn gaits(&self) -> Flash<'static, [Gait]> {
         GAITS.as_slice()
@@ -84,8 +89,8 @@ impl Robot for Lizard {
     }
 
     #[inline(never)]
-    fn reach(&self) -> [Reach; 4] {
-        REACHES.load()
+    fn reach(&self, place: usize) -> Reach {
+        REACHES.at(place).load()
     }
 
     #[inline(always)]

@@ -14,9 +14,7 @@ use crate::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::part::{End, Servo, Side};
 use crate::robot::Robot;
-use crate::settings::Unfit;
 use crate::slider::Slider;
-use crate::supply::Voltage;
 use crate::text::Text;
 use crate::units::{Angle, Sine};
 
@@ -34,12 +32,12 @@ pub enum Refusal {
     /// Code 7: the servos have no pulses.
     Resting,
     /// Code 3: with this calibration, a servo could not do what the gaits need.
-    Unfit(Unfit),
+    Unfit(Servo),
     /// Code 3: with this calibration, a servo could not stay where it is, or go
     /// where it goes.
-    Elsewhere(Unfit),
+    Elsewhere(Servo),
     /// Code 8: the supply is too low for this.
-    Supply(Voltage),
+    Supply,
     /// Code 9: the memory does not keep what is written.
     NotKept,
     /// Code 9: the memory holds no settings to load.
@@ -53,8 +51,12 @@ pub enum Answer {
     Done,
     /// The gaits from this one on, as many as a line takes.
     Gaits(GaitId),
-    /// A line of the list of commands, by its number; after the last one `ok help`.
-    Help(u8),
+    /// The words of the console.
+    Words,
+    /// What else there is to say to who asks for help.
+    Hint,
+    /// The end of help, `ok help`.
+    Helped,
     /// `ok` and the state.
     Status,
     /// A line of what is set, by its number; after the last one `ok cal`.
@@ -127,6 +129,29 @@ flash! {
     ];
 }
 
+/// Prints a text and a number after it, with two decimals.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn field<W>(out: &mut W, text: Text, hundredths: u16) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    text.print(out)?;
+    number(out, hundredths.into(), 2)
+}
+
+/// Prints a text and a whole number after it.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn count<W: uWrite + ?Sized>(out: &mut W, text: Text, count: u32) -> Result<(), W::Error> {
+    text.print(out)?;
+    number(out, count, 0)
+}
+
 /// Prints a number that may be negative, `decimals` behind the point.
 ///
 /// # Errors
@@ -164,7 +189,7 @@ impl Refusal {
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
             Self::TooLong => 6,
             Self::Resting => 7,
-            Self::Supply(_) => 8,
+            Self::Supply => 8,
             Self::NotKept | Self::NothingSaved => 9,
         }
     }
@@ -184,35 +209,21 @@ impl Refusal {
             Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
             Self::TooLong => Text::TooLong.print(out),
             Self::Resting => Text::Resting.print(out),
-            Self::Unfit(unfit) => {
-                let servo = unfit.servo;
-                print_reach(servo, Text::WouldReach, &unfit.reach, motion, out)?;
+            Self::Unfit(servo) => {
+                print_servo(*servo, out)?;
                 Text::Needed.print(out)?;
-                let needed = motion.robot().reach();
-                print_range(servo, &needed[servo.index()], motion, out)
+                let needed = motion.robot().reach(servo.index());
+                print_range(*servo, &needed, motion, out)
             }
-            Self::Elsewhere(unfit) => {
-                print_reach(unfit.servo, Text::WouldReach, &unfit.reach, motion, out)?;
+            Self::Elsewhere(servo) => {
+                print_servo(*servo, out)?;
                 Text::NotHere.print(out)
             }
-            Self::Supply(voltage) => {
-                Text::LowSupply.print(out)?;
-                print_voltage(out, *voltage)?;
-                Text::Volts.print(out)
-            }
+            Self::Supply => Text::LowSupply.print(out),
             Self::NotKept => Text::NotKept.print(out),
             Self::NothingSaved => Text::NothingSaved.print(out),
         }
     }
-}
-
-/// Prints a voltage with two decimals.
-///
-/// # Errors
-/// Those of `out`.
-#[inline(never)]
-pub fn print_voltage<W: uWrite + ?Sized>(out: &mut W, voltage: Voltage) -> Result<(), W::Error> {
-    number(out, voltage.hundredths().into(), 2)
 }
 
 #[inline(never)]
@@ -237,26 +248,10 @@ where
     R: Robot,
     W: uWrite + ?Sized,
 {
-    let Calibration { min, max, .. } = motion.calibration()[servo.index()];
-    print_reach(servo, Text::Beyond, &Reach { min, max }, motion, out)
-}
-
-/// A servo, a verb, and the chassis angles between which it may turn.
-#[inline(never)]
-fn print_reach<R, W>(
-    servo: Servo,
-    verb: Text,
-    reach: &Reach,
-    motion: &Motion<R>,
-    out: &mut W,
-) -> Result<(), W::Error>
-where
-    R: Robot,
-    W: uWrite + ?Sized,
-{
     print_servo(servo, out)?;
-    verb.print(out)?;
-    print_range(servo, reach, motion, out)
+    Text::Beyond.print(out)?;
+    let Calibration { min, max, .. } = motion.calibration()[servo.index()];
+    print_range(servo, &Reach { min, max }, motion, out)
 }
 
 fn print_range<R, W>(
@@ -270,9 +265,8 @@ where
     W: uWrite + ?Sized,
 {
     let neutral = motion.robot().neutral()[servo.index()];
-    number(out, neutral.swept(reach.min).centideg().into(), 2)?;
-    Text::Dots.print(out)?;
-    number(out, neutral.swept(reach.max).centideg().into(), 2)
+    field(out, Text::Nothing, neutral.swept(reach.min).centideg())?;
+    field(out, Text::Dots, neutral.swept(reach.max).centideg())
 }
 
 /// Prints what is wrong with a pose: the margin or the travel, and its limit.

@@ -6,7 +6,6 @@
 
 use lizard_avr::flash;
 
-use crate::adjustment::LARGEST_TRIM_DEG;
 use crate::gait::{GaitId, Name};
 use crate::part::Servo;
 use crate::robot::Robot;
@@ -128,7 +127,6 @@ pub fn own_word(word: &[u8]) -> Option<Text> {
 ///
 /// # Errors
 /// What keeps the line from being a command.
-#[inline(never)]
 pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
     let mut words = Words(line);
     let Some(word) = own_word(words.next()) else {
@@ -199,7 +197,6 @@ impl<'a> Words<'a> {
     }
 }
 
-#[inline(never)]
 fn pose(mut words: Words) -> Result<Command, Misread> {
     let mut angles = [Angle(0); 4];
     let mut beyond = None;
@@ -239,13 +236,10 @@ fn adjust(
 
 #[inline(never)]
 fn trim(words: &mut Words) -> Result<Change, Misread> {
-    let angle = centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))?;
-    // Before it wraps with the turn.
-    if angle.abs() > 100 * LARGEST_TRIM_DEG {
-        return Err(Misread::Range(Text::TrimRange));
+    match centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))? {
+        angle @ -2000..=2000 => Ok(Change::Trim(Sweep(Angle::from_centideg(angle).0 as i16))),
+        _ => Err(Misread::Range(Text::TrimRange)),
     }
-    let trim = Angle(0).sweep_to(Angle::from_centideg(angle));
-    Ok(Change::Trim(trim))
 }
 
 fn limit(words: &mut Words) -> Result<Change, Misread> {
@@ -280,7 +274,6 @@ fn scale(words: &mut Words) -> Result<Change, Misread> {
     }
 }
 
-#[inline(never)]
 fn boot<R: Robot>(words: Words, robot: &R) -> Result<Command, Misread> {
     let rest = words.0.trim_ascii();
     let boot = if Text::Rest.is(rest) {

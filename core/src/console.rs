@@ -7,9 +7,7 @@
 
 use ufmt::uWrite;
 
-use crate::adjustment::Reach;
 use crate::answer::{self, Answer, Refusal};
-use crate::calibration::Calibration;
 use crate::command::{Change, Command, parse};
 use crate::fault::Fault;
 use crate::gait::GaitId;
@@ -17,12 +15,13 @@ use crate::hazard::Hazard;
 use crate::line::{self, Line};
 use crate::memory::{Memory, Progress};
 use crate::motion::{Activity, Motion};
+use crate::part::Servo;
 use crate::pose::{Pose, Pulses};
 use crate::record::{self, Outcome, RESTED};
 use crate::restart::{Cause, Restart};
 use crate::robot::Robot;
 use crate::safety::{Health, Notice, Order, Safety};
-use crate::settings::{Boot, Settings, Unfit};
+use crate::settings::{Boot, Settings};
 use crate::supply::Voltage;
 use crate::text::Text;
 
@@ -43,25 +42,6 @@ pub struct Counters {
     /// Bytes received and lost.
     pub rx_lost: u16,
 }
-
-/// The list of commands, a line each, after the gaits.
-const HELP: [Text; 15] = [
-    Text::HelpStop,
-    Text::HelpRest,
-    Text::HelpSpeed,
-    Text::HelpPose,
-    Text::HelpStatus,
-    Text::HelpWatch,
-    Text::HelpCal,
-    Text::HelpTrim,
-    Text::HelpLimit,
-    Text::HelpDir,
-    Text::HelpScale,
-    Text::HelpCenter,
-    Text::HelpSave,
-    Text::HelpBoot,
-    Text::HelpDeadman,
-];
 
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +78,8 @@ pub struct Console<R> {
     /// What was found of them at power-on.
     found: Outcome,
     safety: Safety,
-    restart: Restart,
+    cause: Cause,
+    restarts: u8,
     job: Option<Job>,
     banner: bool,
     answer: Option<Answer>,
@@ -107,40 +88,46 @@ pub struct Console<R> {
 }
 
 impl<R: Robot> Console<R> {
-    /// A robot that begins, its banner not yet written. Its settings come from the
-    /// memory, and so does the pose in which it rested.
+    /// A robot at power-on, its banner not yet written; [`Console::begin`] has to
+    /// follow.
     #[inline(never)]
-    pub fn new<M: Memory>(robot: R, memory: &M, restart: Restart) -> Self {
-        let mut settings = Settings::of(&robot);
-        let found = record::load(&robot, memory, &mut settings);
-        let rested = record::rested(&robot, memory);
-        let hung = restart.cause == Cause::Watchdog;
-        let mut console = Self {
+    pub fn new(robot: R) -> Self {
+        Self {
             line: Line::new(),
+            settings: Settings::of(&robot),
             motion: Motion::new(robot),
-            settings,
-            found,
-            safety: Safety::new(!hung),
-            restart,
+            found: Outcome::Latest,
+            safety: Safety::new(),
+            cause: Cause::Power,
+            restarts: 0,
             job: Some(Job::Pose(RESTED.forget())),
             banner: true,
             answer: None,
             held: None,
             watch: Watch::default(),
-        };
-        if found != Outcome::Latest {
-            console.safety.notify(Notice::Memory);
         }
-        if let Ok(calibration) = settings.calibration(console.motion.robot()) {
-            console.motion.calibrate(&calibration);
+    }
+
+    /// Takes over what the memory keeps: settings, and the pose of the last rest; and
+    /// what is known of the program before, if there was one.
+    #[inline(never)]
+    pub fn begin<M: Memory>(&mut self, memory: &M, restart: &Restart) {
+        self.cause = restart.cause;
+        self.restarts = restart.count;
+        self.found = record::load(self.motion.robot(), memory, &mut self.settings);
+        if self.found != Outcome::Latest {
+            self.safety.notify(Notice::Memory);
         }
+        self.calibrate();
+        let hung = restart.cause == Cause::Watchdog;
         if hung {
-            console.safety.fail(Fault::Watchdog);
+            self.safety.byte_came();
+            self.safety.fail(Fault::Watchdog);
         }
+        let rested = record::rested(self.motion.robot(), memory);
         if let Some(pose) = restart.pose.or(rested) {
-            console.motion.begin_at(&pose, !hung);
+            self.motion.begin_at(&pose, !hung);
         }
-        console
     }
 
     /// The robot's motion.
@@ -210,7 +197,7 @@ impl<R: Robot> Console<R> {
                 Progress::Failed => Err(Refusal::NotKept),
             },
             Some(Job::Pose(writing)) => {
-                let pose = record::pose(self.motion.pose(), robot);
+                let pose = Settings::of_pose(self.motion.pose(), robot);
                 if writing.step(pose.bytes(), memory) != Progress::Going {
                     self.job = None;
                 }
@@ -354,9 +341,9 @@ impl<R: Robot> Console<R> {
                 self.go_to(&pose)?;
             }
             Command::Center => {
-                let mut pose = Pose::NEUTRAL;
-                for (place, sweep) in pose.0.iter_mut().enumerate() {
-                    sweep.0 = -self.settings.servo(place).trim.0;
+                let mut pose = self.settings.pose();
+                for sweep in &mut pose.0 {
+                    sweep.0 = -sweep.0;
                 }
                 if let Some(servo) = pose.beyond(self.motion.calibration()) {
                     return Err(Refusal::Travel(servo));
@@ -401,7 +388,7 @@ impl<R: Robot> Console<R> {
             }
             Command::Save => {
                 if !self.safety.allows_writing() {
-                    return Err(Refusal::Supply(self.voltage()));
+                    return Err(Refusal::Supply);
                 }
                 self.job = Some(Job::Save);
                 return Ok(None);
@@ -417,7 +404,7 @@ impl<R: Robot> Console<R> {
         if !wakes && self.motion.activity() == Activity::Rest {
             Err(Refusal::Resting)
         } else if !self.safety.allows_motion() {
-            Err(Refusal::Supply(self.voltage()))
+            Err(Refusal::Supply)
         } else {
             Ok(())
         }
@@ -448,15 +435,28 @@ impl<R: Robot> Console<R> {
     /// does; if not, they have to be taken back.
     #[inline(never)]
     fn adjust(&mut self) -> Result<(), Refusal> {
-        let calibration = self.settings.calibration(self.motion.robot());
-        let calibration = calibration.map_err(Refusal::Unfit)?;
-        if let Some(servo) = self.motion.beyond(&calibration) {
-            let Calibration { min, max, .. } = calibration[servo.index()];
-            let reach = Reach { min, max };
-            return Err(Refusal::Elsewhere(Unfit { servo, reach }));
+        let robot = self.motion.robot();
+        if let Some(servo) = self.settings.unfit(robot) {
+            return Err(Refusal::Unfit(servo));
         }
-        self.motion.calibrate(&calibration);
+        for place in 0..4 {
+            let calibration = self.settings.calibration(place, robot);
+            if self.motion.goes_beyond(place, &calibration) {
+                return Err(Refusal::Elsewhere(Servo::at(place)));
+            }
+        }
+        self.calibrate();
         Ok(())
+    }
+
+    /// Hands the motion what the settings say of the servos.
+    #[inline(never)]
+    fn calibrate(&mut self) {
+        for place in 0..4 {
+            let calibration = self.settings.calibration(place, self.motion.robot());
+            self.motion.calibrate(place, calibration);
+        }
+        self.motion.settle();
     }
 
     /// The supply that is the reason to refuse something.

@@ -106,29 +106,35 @@ pub struct Writing {
 }
 
 impl Place {
-    /// Reads what is there; `content` is what it says if it is whole.
+    /// Finds out what is there.
     #[inline(never)]
-    pub fn read<M: Memory>(self, memory: &M, content: &mut Content) -> Found {
+    pub fn check<M: Memory>(self, memory: &M) -> Found {
+        let mut content = [0; CONTENT];
+        self.fetch(memory, &mut content);
+        let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT as u16 + n));
         let mark = memory.read(self.0);
-        let mut at = self.0;
-        let mut blank = mark == ERASED;
-        let mut next = || {
-            at += 1;
-            let byte = memory.read(at);
-            blank &= byte == ERASED;
-            byte
-        };
-        for byte in content.iter_mut() {
-            *byte = next();
-        }
-        let crc = u16::from_le_bytes([next(), next()]);
-        if blank {
-            Found::Blank
-        } else if mark == WHOLE && crc == CRC.checksum(content) {
+        if mark == WHOLE && crc == CRC.checksum(&content).to_le_bytes() {
             Found::Whole
+        } else if mark == ERASED && content.iter().chain(&crc).all(|byte| *byte == ERASED) {
+            Found::Blank
         } else {
             Found::Damaged
         }
+    }
+
+    /// Reads the content, whole or not.
+    #[inline(never)]
+    pub fn fetch<M: Memory>(self, memory: &M, content: &mut Content) {
+        let mut at = self.0;
+        for byte in content {
+            at += 1;
+            *byte = memory.read(at);
+        }
+    }
+
+    /// A byte of the content.
+    pub fn byte<M: Memory>(self, memory: &M, n: u16) -> u8 {
+        memory.read(self.0 + 1 + n)
     }
 
     /// Begins to write a record.
@@ -222,8 +228,8 @@ mod tests {
 
     fn read(chip: &Chip) -> (Found, Content) {
         let mut content = [0; CONTENT];
-        let found = PLACE.read(chip, &mut content);
-        (found, content)
+        PLACE.fetch(chip, &mut content);
+        (PLACE.check(chip), content)
     }
 
     proptest! {

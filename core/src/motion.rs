@@ -39,7 +39,6 @@ use crate::calibration::Calibration;
 use crate::gait::{Gait, GaitId};
 use crate::guard::Clearance;
 use crate::hazard::Hazard;
-use crate::part::Servo;
 use crate::point_to_point::PointToPoint;
 use crate::pose::{Pose, Pulses};
 use crate::robot::Robot;
@@ -165,11 +164,17 @@ impl<R: Robot> Motion<R> {
         &self.calibration
     }
 
-    /// Takes another calibration. The pulses go over to it at the slew limit, and
-    /// nothing else moves meanwhile.
-    #[inline(never)]
-    pub fn calibrate(&mut self, calibration: &[Calibration; 4]) {
-        self.calibration = *calibration;
+    /// Takes another calibration of a servo, by its place; [`Motion::settle`] has to
+    /// follow.
+    pub fn calibrate(&mut self, place: usize, calibration: Calibration) {
+        if let Some(servo) = self.calibration.get_mut(place) {
+            *servo = calibration;
+        }
+    }
+
+    /// Lets the pulses go over to the new calibration, at the slew limit. Nothing
+    /// else moves meanwhile.
+    pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
         }
@@ -177,18 +182,19 @@ impl<R: Robot> Motion<R> {
         self.settling = self.awake > 0;
     }
 
-    /// The first servo that would have to leave the travel of another calibration,
-    /// where the robot is or where it goes.
-    #[inline(never)]
-    pub fn beyond(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
-        let mut poses = [self.pose; 3];
-        if let State::Moving { path, .. } = &self.state {
-            poses[1] = path.target();
-        }
-        if let Some(Target::Pose(pose)) = self.next {
-            poses[2] = pose;
-        }
-        poses.iter().find_map(|pose| pose.beyond(calibration))
+    /// True where a servo, by its place, would have to leave the travel of another
+    /// calibration, where the robot is or where it goes.
+    pub fn goes_beyond(&self, place: usize, calibration: &Calibration) -> bool {
+        let beyond = |pose: &Pose| !pose.0.get(place).is_some_and(|at| calibration.reaches(*at));
+        let moves_beyond = match &self.state {
+            State::Moving { path, .. } => beyond(path.target()),
+            _ => false,
+        };
+        let next_beyond = match &self.next {
+            Some(Target::Pose(pose)) => beyond(pose),
+            _ => false,
+        };
+        beyond(&self.pose) || moves_beyond || next_beyond
     }
 
     /// Takes a pose for the one that the servos have at power-on, and says whether it
@@ -272,7 +278,7 @@ impl<R: Robot> Motion<R> {
         }
         let mut pulses = self.pose.pulses(&self.calibration);
         if self.settling {
-            self.settling = self.settle(&mut pulses);
+            self.settling = self.slow_down(&mut pulses);
         }
         self.sent = pulses;
         let mut wakes_at = WAKE_APART;
@@ -344,7 +350,7 @@ impl<R: Robot> Motion<R> {
     /// Keeps the pulses within a frame's way of the last ones; true while they are
     /// not yet those that are wanted.
     #[inline(never)]
-    fn settle(&self, pulses: &mut Pulses) -> bool {
+    fn slow_down(&self, pulses: &mut Pulses) -> bool {
         let mut under_way = false;
         let per_frame = self.robot.slew().per_frame;
         for (place, width) in pulses.0.iter_mut().enumerate() {

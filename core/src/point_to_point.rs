@@ -69,8 +69,8 @@ impl PointToPoint {
     }
 
     /// Where it leads.
-    pub const fn target(&self) -> Pose {
-        self.to
+    pub const fn target(&self) -> &Pose {
+        &self.to
     }
 
     /// One frame on, at `pace` (1024 is full).

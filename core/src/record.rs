@@ -11,11 +11,10 @@
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::adjustment::Adjustment;
 use crate::memory::{CONTENT, Found, Memory, Place, Writing};
 use crate::pose::Pose;
 use crate::robot::Robot;
-use crate::settings::Settings;
+use crate::settings::{Settings, TURN};
 
 /// The two copies of the settings.
 pub const COPIES: [Place; 2] = [Place(0), Place(64)];
@@ -44,109 +43,84 @@ pub enum Outcome {
 struct Copies {
     /// What was found of each.
     found: [Found; 2],
-    /// The place of the one that was saved last; none if neither is whole.
-    latest: Option<usize>,
-    /// What that one says.
-    settings: Settings,
+    /// The place of the one that was saved last, if any is whole.
+    latest: usize,
 }
 
 impl Copies {
     #[inline(never)]
-    fn read<M: Memory>(memory: &M) -> Self {
-        let mut bytes = [0; CONTENT];
-        let first = COPIES[0].read(memory, &mut bytes);
-        let turn = bytes[1];
-        let second = COPIES[1].read(memory, &mut bytes);
-        let later = bytes[1].wrapping_sub(turn) < 0x80;
-        let latest = match (first, second) {
-            (Found::Whole, Found::Whole) if later => Some(1),
-            (Found::Whole, _) => {
-                COPIES[0].read(memory, &mut bytes);
-                Some(0)
-            }
-            (_, Found::Whole) => Some(1),
-            _ => None,
+    fn check<M: Memory>(memory: &M) -> Self {
+        let found = COPIES.map(|copy| copy.check(memory));
+        let turn = |copy: usize| COPIES[copy & 1].byte(memory, TURN as u16);
+        let latest = match found {
+            [Found::Whole, Found::Whole] => usize::from(turn(1).wrapping_sub(turn(0)) < 0x80),
+            [Found::Whole, _] => 0,
+            _ => 1,
         };
-        Self {
-            found: [first, second],
-            latest,
-            settings: Settings::from_bytes(bytes),
-        }
+        Self { found, latest }
+    }
+
+    fn none_is_whole(&self) -> bool {
+        self.found[self.latest & 1] != Found::Whole
+    }
+
+    fn place(&self) -> Place {
+        COPIES[self.latest & 1]
     }
 }
 
 /// Reads the settings to use into `settings`, which are robot.toml's: those saved
-/// last, if they will do.
+/// last, if they will do. If not, robot.toml's stay.
 #[inline(never)]
 pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
-    let copies = Copies::read(memory);
-    if copies.latest.is_none() {
+    let copies = Copies::check(memory);
+    if copies.none_is_whole() {
         return match copies.found {
             [Found::Blank, Found::Blank] => Outcome::Blank,
             _ => Outcome::Damaged,
         };
     }
-    if !copies.settings.are_for(robot) {
-        return Outcome::Foreign;
-    }
-    if copies.settings.calibration(robot).is_err() {
-        return Outcome::Unfit;
-    }
-    *settings = copies.settings;
-    match copies.found {
-        [Found::Damaged, _] | [_, Found::Damaged] => Outcome::Other,
-        _ => Outcome::Latest,
-    }
+    copies.place().fetch(memory, settings.bytes_mut());
+    let outcome = if !settings.are_for(robot) {
+        Outcome::Foreign
+    } else if settings.unfit(robot).is_some() {
+        Outcome::Unfit
+    } else if copies.found.contains(&Found::Damaged) {
+        return Outcome::Other;
+    } else {
+        return Outcome::Latest;
+    };
+    *settings = Settings::of(robot);
+    outcome
 }
 
 /// Begins to save settings over the older copy, and gives them their turn. None where
 /// they are what the latest copy holds.
 #[inline(never)]
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
-    let copies = Copies::read(memory);
-    let turn = copies.settings.turn();
-    let Some(latest) = copies.latest else {
+    let copies = Copies::check(memory);
+    if copies.none_is_whole() {
         settings.set_turn(1);
         return Some(COPIES[0].write());
-    };
+    }
+    let latest = copies.place();
+    let turn = latest.byte(memory, TURN as u16);
     settings.set_turn(turn);
-    if copies.settings == *settings {
+    let kept = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;
+    if settings.bytes().iter().enumerate().all(kept) {
         return None;
     }
     settings.set_turn(turn.wrapping_add(1));
-    Some(COPIES[latest & 1 ^ 1].write())
-}
-
-/// A pose as the memory keeps it.
-pub fn pose<R: Robot>(pose: &Pose, robot: &R) -> Settings {
-    let mut kept = Settings::blank(robot);
-    for (place, sweep) in pose.0.iter().enumerate() {
-        let none = Adjustment::default();
-        kept.set_servo(
-            place,
-            Adjustment {
-                trim: *sweep,
-                ..none
-            },
-        );
-    }
-    kept
+    Some(COPIES[copies.latest & 1 ^ 1].write())
 }
 
 /// Where the robot rested last, if it has not moved since.
 #[inline(never)]
 pub fn rested<R: Robot, M: Memory>(robot: &R, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
-    let found = RESTED.read(memory, &mut bytes);
+    RESTED.fetch(memory, &mut bytes);
     let kept = Settings::from_bytes(bytes);
-    if found != Found::Whole || !kept.are_for(robot) {
-        return None;
-    }
-    let mut pose = Pose::NEUTRAL;
-    for (place, sweep) in pose.0.iter_mut().enumerate() {
-        *sweep = kept.servo(place).trim;
-    }
-    Some(pose)
+    (RESTED.check(memory) == Found::Whole && kept.are_for(robot)).then(|| kept.pose())
 }
 
 #[cfg(test)]

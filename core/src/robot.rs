@@ -48,8 +48,19 @@ pub trait Robot {
     /// The waveforms that gaits share.
     fn waves(&self) -> Flash<'_, [Wave]>;
 
-    /// The sweeps that the gaits and the neutral pose need, A1 to A4.
-    fn reach(&self) -> [Reach; 4];
+    /// One servo of [`Robot::calibration`], by its place.
+    fn servo(&self, place: usize) -> Calibration {
+        let [a1, a2, a3, a4] = self.calibration();
+        match place {
+            0 => a1,
+            1 => a2,
+            2 => a3,
+            _ => a4,
+        }
+    }
+
+    /// The sweeps that the gaits and the neutral pose need of a servo, by its place.
+    fn reach(&self, place: usize) -> Reach;
 
     /// The supplies that are measured, and what their voltages mean.
     fn supplies(&self) -> Supplies;
@@ -109,8 +120,12 @@ impl<R: Robot + ?Sized> Robot for &R {
         (**self).waves()
     }
 
-    fn reach(&self) -> [Reach; 4] {
-        (**self).reach()
+    fn servo(&self, place: usize) -> Calibration {
+        (**self).servo(place)
+    }
+
+    fn reach(&self, place: usize) -> Reach {
+        (**self).reach(place)
     }
 
     fn supplies(&self) -> Supplies {
@@ -152,7 +167,10 @@ mod tests {
         assert_eq!((&reference).slew(), robot.slew);
         assert_eq!((&reference).neutral(), robot.neutral);
         assert_eq!((&reference).calibration(), robot.calibration);
-        assert_eq!((&reference).reach(), robot.reach);
+        for place in 0..4 {
+            assert_eq!((&reference).reach(place), robot.reach[place]);
+            assert_eq!((&reference).servo(place), robot.calibration[place]);
+        }
         assert_eq!((&reference).supplies(), robot.supplies);
         assert_eq!((&reference).hash(), robot.hash);
         assert_eq!((&reference).servo_hash(), robot.servo_hash);

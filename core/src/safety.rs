@@ -85,8 +85,8 @@ const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
 const BOOT_AFTER: u8 = 3 * FRAMES_PER_SECOND as u8;
 
 impl Safety {
-    /// At power-on; `boots` says whether `boot` is to be done.
-    pub fn new(boots: bool) -> Self {
+    /// At power-on.
+    pub fn new() -> Self {
         Self {
             supply: Supply::default(),
             fault: None,
@@ -94,7 +94,7 @@ impl Safety {
             lit: true,
             late: 0,
             silence: 0,
-            boot: if boots { BOOT_AFTER } else { 0 },
+            boot: BOOT_AFTER,
             notices: 0,
         }
     }

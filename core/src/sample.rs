@@ -306,8 +306,8 @@ impl Robot for Sample {
         Flash::from(self.waves.as_slice())
     }
 
-    fn reach(&self) -> [Reach; 4] {
-        self.reach
+    fn reach(&self, place: usize) -> Reach {
+        self.reach[place]
     }
 
     fn supplies(&self) -> Supplies {

@@ -13,18 +13,20 @@
 //! | 38 | `boot`: 0 for `rest`, else the [`key`] of a gait |
 //! | 40 | `deadman`, ms |
 
-use crate::adjustment::{Adjustment, Reach};
+use crate::adjustment::Adjustment;
 use crate::calibration::Calibration;
 use crate::gait::GaitId;
 use crate::memory::Content;
 use crate::part::Servo;
+use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::units::Sweep;
 
 /// Raised when the meaning of the bytes changes.
 pub const FORMAT: u8 = 1;
 
-const TURN: usize = 1;
+/// Where the turn is.
+pub const TURN: usize = 1;
 const HASH: usize = 2;
 const SERVOS: usize = 6;
 const BOOT: usize = 38;
@@ -45,35 +47,50 @@ pub struct Settings {
     bytes: Content,
 }
 
-/// A servo that could not do what the gaits ask of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unfit {
-    /// Which one.
-    pub servo: Servo,
-    /// What it would reach.
-    pub reach: Reach,
-}
-
 impl Settings {
     /// Those of robot.toml.
     #[inline(never)]
     pub fn of<R: Robot>(robot: &R) -> Self {
-        let mut settings = Self::blank(robot);
-        for (place, servo) in robot.calibration().iter().enumerate() {
-            settings.set_servo(place, Adjustment::of(servo));
+        let mut settings = Self { bytes: [0; _] };
+        settings.set_head(robot);
+        for place in 0..4 {
+            settings.set_servo(place, Adjustment::of(&robot.servo(place)));
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
         settings
     }
 
-    /// Nothing but the head of a record for the servos of a robot.
-    pub fn blank<R: Robot>(robot: &R) -> Self {
-        let mut settings = Self { bytes: [0; _] };
-        settings.bytes[0] = FORMAT;
+    /// Makes them a record for the servos of a robot.
+    fn set_head<R: Robot>(&mut self, robot: &R) {
+        self.bytes[0] = FORMAT;
         let hash = robot.servo_hash();
-        settings.put(HASH, hash as u16);
-        settings.put(HASH + 2, (hash >> 16) as u16);
-        settings
+        self.put(HASH, hash as u16);
+        self.put(HASH + 2, (hash >> 16) as u16);
+    }
+
+    /// A pose in the trims of a record for the servos of a robot.
+    #[inline(never)]
+    pub fn of_pose<R: Robot>(pose: &Pose, robot: &R) -> Self {
+        let mut kept = Self { bytes: [0; _] };
+        kept.set_head(robot);
+        let mut at = SERVOS;
+        for sweep in &pose.0 {
+            kept.put(at, sweep.0 as u16);
+            at += 8;
+        }
+        kept
+    }
+
+    /// The pose in the trims.
+    #[inline(never)]
+    pub fn pose(&self) -> Pose {
+        let mut pose = Pose::NEUTRAL;
+        let mut at = SERVOS;
+        for sweep in &mut pose.0 {
+            sweep.0 = self.get(at) as i16;
+            at += 8;
+        }
+        pose
     }
 
     /// Bytes that a memory has kept.
@@ -84,6 +101,11 @@ impl Settings {
     /// What a memory keeps.
     pub const fn bytes(&self) -> &Content {
         &self.bytes
+    }
+
+    /// The same, to be filled.
+    pub const fn bytes_mut(&mut self) -> &mut Content {
+        &mut self.bytes
     }
 
     /// Whether they are of this format and for the servos of this robot.
@@ -154,25 +176,22 @@ impl Settings {
         self.put(DEADMAN, ms);
     }
 
-    /// The servos' calibration.
-    ///
-    /// # Errors
-    /// The first servo whose travel would end short of the neutral angle or of a gait.
+    /// A servo's calibration, by its place.
     #[inline(never)]
-    pub fn calibration<R: Robot>(&self, robot: &R) -> Result<[Calibration; 4], Unfit> {
-        let mut calibration = robot.calibration();
-        let needed = robot.reach();
-        for (place, servo) in calibration.iter_mut().enumerate() {
-            *servo = self.servo(place).apply(servo);
-            let (min, max) = (servo.min, servo.max);
-            if min > needed[place].min || max < needed[place].max {
-                return Err(Unfit {
-                    servo: Servo::at(place),
-                    reach: Reach { min, max },
-                });
-            }
-        }
-        Ok(calibration)
+    pub fn calibration<R: Robot>(&self, place: usize, robot: &R) -> Calibration {
+        self.servo(place).apply(&robot.servo(place))
+    }
+
+    /// The first servo whose travel ends short of the neutral angle or of a gait.
+    #[inline(never)]
+    pub fn unfit<R: Robot>(&self, robot: &R) -> Option<Servo> {
+        (0..4)
+            .find(|place| {
+                let servo = self.calibration(*place, robot);
+                let needed = robot.reach(*place);
+                servo.min > needed.min || servo.max < needed.max
+            })
+            .map(Servo::at)
     }
 
     fn get(&self, at: usize) -> u16 {

@@ -178,7 +178,6 @@ impl Supply {
     }
 
     /// The voltage of the supply that allows less.
-    #[inline(never)]
     pub fn worst(&self, supplies: &Supplies) -> Voltage {
         let board = Voltage::of_board(self.reading, supplies);
         match &supplies.rail {
@@ -195,7 +194,6 @@ impl Supply {
     }
 
     /// One frame on; true where the level has changed.
-    #[inline(never)]
     pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
         let worse = supplies.level(reading, 0);

@@ -109,8 +109,8 @@ impl Robot for Firmware {
         Flash::from(self.numbers.tables.waves.as_slice())
     }
 
-    fn reach(&self) -> [Reach; 4] {
-        self.numbers.reach
+    fn reach(&self, place: usize) -> Reach {
+        self.numbers.reach[place & 3]
     }
 
     fn supplies(&self) -> Supplies {

@@ -278,8 +278,11 @@ mod tests {
                 ]
             });
             assert_eq!(of("CALIBRATION"), calibration.concat());
-            let reach = firmware.reach().map(|r| [r.min.0, r.max.0].map(i64::from));
-            assert_eq!(of("REACH"), reach.concat());
+            let reach = |place| {
+                let reach = firmware.reach(place);
+                [reach.min.0, reach.max.0].map(i64::from)
+            };
+            assert_eq!(of("REACH"), [0, 1, 2, 3].map(reach).concat());
             let supplies = firmware.supplies();
             let board = supplies.board;
             assert_eq!(

@@ -25,7 +25,7 @@ fn settings(robot: &Sample, n: i16) -> Settings {
     }
     settings.set_deadman(1000 + n as u16);
     settings.set_boot(Boot::Gait(robot.id("sway left")), robot);
-    assert!(settings.calibration(robot).is_ok());
+    assert_eq!(settings.unfit(robot), None);
     settings
 }
 
@@ -247,7 +247,7 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     assert_eq!(rested(&robot, &chip), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let there = Pose(sweeps.map(Sweep));
-        let kept = pose(&there, &robot);
+        let kept = Settings::of_pose(&there, &robot);
         let mut writing = RESTED.write();
         while writing.step(kept.bytes(), &mut chip) == Progress::Going {}
         assert_eq!(rested(&robot, &chip), Some(there));

@@ -71,10 +71,12 @@ fn what_takes_no_longer_than_the_rules_allow_moves_no_edge_wherever_it_begins() 
     });
 }
 
+// A late edge is a fault that stops a gait: from here on the robot stands.
+
 #[test]
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
     in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+        let mut walk = Walk::stand(fidelity);
         let holds = too_long();
         let mut dropped = 0;
         for (n, (frame, asked)) in sweep(&mut walk, Edges::Rising, &holds).iter().enumerate() {
@@ -99,7 +101,7 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
 #[test]
 fn a_late_falling_edge_is_made_at_once_and_counted() {
     in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+        let mut walk = Walk::stand(fidelity);
         let holds = too_long();
         let mut late = 0;
         for (n, (frame, asked)) in sweep(&mut walk, Edges::Falling, &holds).iter().enumerate() {
@@ -127,7 +129,7 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
 #[test]
 fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
     in_both(|fidelity| {
-        let mut walk = Walk::begin(fidelity);
+        let mut walk = Walk::stand(fidelity);
         for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
             let start = walk.next_frame();
             let late = walk.late();
