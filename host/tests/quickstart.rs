@@ -24,7 +24,8 @@ impl Board {
     fn new() -> Self {
         let robot = Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
         let memory = Bytes::default();
-        let console = Console::new(robot.firmware().clone(), &memory, Restart::default());
+        let mut console = Console::new(robot.firmware().clone());
+        console.begin(&memory, &Restart::default());
         Self { console, memory }
     }
 
