@@ -338,24 +338,43 @@ fn whole(mut words: Words) -> Option<u16> {
 /// hold stays at that.
 #[inline(never)]
 fn centideg(word: &[u8]) -> Option<i32> {
-    let (negative, digits) = match word {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
+    let (sign, digits) = match word {
+        [sign @ (b'-' | b'+'), digits @ ..] => (*sign, digits),
+        digits => (b'+', digits),
     };
-    let (degrees, rest) = number(digits);
-    let decimals = match rest {
-        [] | [b'.'] => 0,
-        [b'.', tenths] => digit(*tenths)? * 10,
-        [b'.', tenths, hundredths] => digit(*tenths)? * 10 + digit(*hundredths)?,
-        _ => return None,
-    };
-    let size = match degrees? {
-        degrees @ 0..=654 => degrees * 100 + decimals,
-        _ => u16::MAX,
-    };
+    let (degrees, mut rest) = number(digits);
+    let mut size = degrees?;
+    if let [b'.', decimals @ ..] = rest {
+        rest = decimals;
+    } else if !rest.is_empty() {
+        return None;
+    }
+    // As many decimals as there may be, zeros in the place of those that are not there.
+    for _ in 0..2 {
+        let mut decimal = 0;
+        if let [first, others @ ..] = rest {
+            decimal = digit(*first)?;
+            rest = others;
+        }
+        size = append(size, decimal);
+    }
     let size = i32::from(size);
-    Some(if negative { -size } else { size })
+    match (rest, sign) {
+        ([], b'-') => Some(-size),
+        ([], _) => Some(size),
+        _ => None,
+    }
+}
+
+/// A number with one more digit; 65535 stands for more than sixteen bits hold.
+#[inline(never)]
+fn append(number: u16, digit: u16) -> u16 {
+    // 6553 and one more digit is where sixteen bits may end.
+    if number < 6553 {
+        number * 10 + digit
+    } else {
+        u16::MAX
+    }
 }
 
 /// Leading digits as a number, saturating, and what follows them.
@@ -364,13 +383,7 @@ fn number(word: &[u8]) -> (Option<u16>, &[u8]) {
     while let [first, others @ ..] = rest
         && let Some(digit) = digit(*first)
     {
-        let so_far = value.unwrap_or(0);
-        // 6553 and one more digit is where sixteen bits may end.
-        value = Some(if so_far < 6553 {
-            so_far * 10 + digit
-        } else {
-            u16::MAX
-        });
+        value = Some(append(value.unwrap_or(0), digit));
         rest = others;
     }
     (value, rest)
