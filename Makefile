@@ -120,6 +120,8 @@ clean: ## remove everything that was built
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md
 	@$(LIZARD) draw --robot robots/paper.toml --output docs/lizard.svg
+	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
+	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
 
