@@ -97,7 +97,7 @@ impl<R: Robot> Console<R> {
             settings: Settings::of(&robot),
             motion: Motion::new(robot),
             found: Outcome::Latest,
-            safety: Safety::new(),
+            safety: Safety::default(),
             cause: Cause::Power,
             restarts: 0,
             job: Some(Job::Pose(RESTED.forget())),

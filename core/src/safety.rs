@@ -84,9 +84,9 @@ const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
 /// Frames from power-on to `boot`, three seconds.
 const BOOT_AFTER: u8 = 3 * FRAMES_PER_SECOND as u8;
 
-impl Safety {
+impl Default for Safety {
     /// At power-on.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self {
             supply: Supply::default(),
             fault: None,
@@ -98,7 +98,9 @@ impl Safety {
             notices: 0,
         }
     }
+}
 
+impl Safety {
     /// The fault that stopped the robot last, unless it has been told to move since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault

@@ -10,7 +10,7 @@ fn supplies() -> Supplies {
 
 /// At power-on, `boot` called off.
 fn without_boot() -> Safety {
-    let mut safety = Safety::new();
+    let mut safety = Safety::default();
     safety.byte_came();
     safety
 }
@@ -53,7 +53,7 @@ fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
 
 #[test]
 fn boot_is_asked_for_once_three_seconds_after_power_on() {
-    let mut safety = Safety::new();
+    let mut safety = Safety::default();
     for number in 1..=1000 {
         let order = frame(&mut safety, &WELL);
         let expected = if number == 150 {
@@ -68,7 +68,7 @@ fn boot_is_asked_for_once_three_seconds_after_power_on() {
 #[test]
 fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
     let boots = |disturb: fn(&mut Safety)| {
-        let mut safety = Safety::new();
+        let mut safety = Safety::default();
         let mut booted = false;
         for number in 1..=400 {
             booted |= frame(&mut safety, &WELL) == Order::Boot;
