@@ -1,0 +1,177 @@
+//! What is set of the servos, kept, and taken back.
+
+use super::*;
+
+/// The lines of `cal`.
+fn cal(dialogue: &mut Dialogue) -> Vec<String> {
+    dialogue.send(b"cal\r")
+}
+
+#[test]
+fn cal_prints_all_that_is_set_and_nothing_that_varies() {
+    let mut dialogue = Dialogue::standing();
+    let untouched = cal(&mut dialogue);
+    assert_eq!(untouched.len(), 7);
+    assert!(untouched[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
+    assert_eq!(untouched[4..], ["# boot stand", "# deadman 0", "ok cal"]);
+    for line in [
+        "trim 1 -3.25",
+        "limit 2 350 130.5",
+        "dir 3 -",
+        "scale 4 9.87",
+        "boot sway left",
+        "deadman 1500",
+    ] {
+        assert_eq!(dialogue.say(line), format!("ok {line}"));
+    }
+    let set = cal(&mut dialogue);
+    assert!(
+        set[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir "),
+        "{set:?}"
+    );
+    assert!(
+        set[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir "),
+        "{set:?}"
+    );
+    assert!(set[2].contains(" dir - scale "), "{set:?}");
+    assert!(set[3].ends_with(" scale 9.87"), "{set:?}");
+    assert_eq!(set[4..], ["# boot sway left", "# deadman 1500", "ok cal"]);
+    dialogue.say("sway");
+    dialogue.run(77);
+    assert_eq!(cal(&mut dialogue), set);
+    assert_eq!(dialogue.say("factory"), "ok factory");
+    assert_eq!(cal(&mut dialogue), untouched);
+}
+
+#[test]
+fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("trim 2 4");
+    assert_eq!(dialogue.say("save"), "ok save");
+    let saved = cal(&mut dialogue);
+    dialogue.say("trim 2 5");
+    assert_ne!(cal(&mut dialogue), saved);
+    let mut again = Dialogue::begun(Sample::odd(), dialogue.chip.clone(), Restart::default());
+    assert_eq!(again.read().len(), 1, "the banner alone");
+    assert_eq!(cal(&mut again), saved);
+    // And without power going off.
+    assert_eq!(dialogue.say("load"), "ok load");
+    assert_eq!(cal(&mut dialogue), saved);
+}
+
+#[test]
+fn there_is_nothing_to_load_before_the_first_save_and_a_worn_memory_is_told() {
+    let mut dialogue = Dialogue::standing();
+    assert_eq!(
+        dialogue.say("load"),
+        "err 9 nothing is saved that could be loaded"
+    );
+    dialogue.chip.worn = true;
+    assert_eq!(
+        dialogue.say("save"),
+        "err 9 the memory does not keep what is written"
+    );
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+#[test]
+fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_the_rest() {
+    for change in [
+        "trim 1 20",
+        "trim 1 -12.5",
+        "scale 1 8",
+        "dir 1 -",
+        "dir 1 +",
+    ] {
+        let mut dialogue = Dialogue::standing();
+        dialogue.say("pose 145 50 311 224.5");
+        dialogue.run(150);
+        let before = widths(&mut dialogue);
+        assert_eq!(dialogue.say(change), format!("ok {change}"));
+        let motion = dialogue.console.motion();
+        let wanted = motion
+            .pose()
+            .pulses(motion.calibration())
+            .0
+            .map(|width| width.0);
+        let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
+        let most = f64::from(motion.robot().slew.per_frame) * gain;
+        let mut last = before;
+        for _ in 0..200 {
+            let now = widths(&mut dialogue);
+            assert!(
+                f64::from(now[0].abs_diff(last[0])) <= most.max(1.0),
+                "{change}"
+            );
+            assert_eq!(now[1..], before[1..], "{change}");
+            last = now;
+        }
+        assert_eq!(last, wanted, "{change}");
+        assert_eq!(dialogue.status("pose"), "145.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn a_calibration_in_a_gait_halts_it_until_the_pulses_have_settled_and_it_goes_on() {
+    let mut dialogue = Dialogue::standing();
+    dialogue.say("sway");
+    dialogue.run(120);
+    let before = dialogue.console.motion().phase();
+    dialogue.say("trim 2 15");
+    dialogue.run(1);
+    assert_eq!(dialogue.console.motion().phase(), before);
+    dialogue.run(200);
+    assert_eq!(dialogue.status("gait"), "sway");
+    assert_ne!(dialogue.console.motion().phase(), before);
+    let motion = dialogue.console.motion();
+    let wanted = motion.pose().pulses(motion.calibration());
+    assert_eq!(motion.sent(), &wanted);
+}
+
+#[test]
+fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothing() {
+    let mut dialogue = Dialogue::standing();
+    let before = cal(&mut dialogue);
+    for line in [
+        "limit 1 140 215",
+        "limit 1 61.37 132",
+        "limit 2 131 350",
+        "limit 3 309 310",
+    ] {
+        let refused = dialogue.say(line);
+        assert!(refused.starts_with("err 3 A"), "{line}: {refused}");
+        assert!(refused.contains(" would not reach what the gaits need, "));
+        assert_eq!(cal(&mut dialogue), before);
+    }
+    dialogue.say("pose 150 47.91 309.64 226.18");
+    dialogue.run(2);
+    let refused = dialogue.say("limit 1 61.37 149");
+    assert!(refused.ends_with(" would not reach where it is or goes, send stand first"));
+    assert_eq!(cal(&mut dialogue), before);
+    dialogue.say("stand");
+    dialogue.run(150);
+    assert_eq!(dialogue.say("limit 1 61.37 149"), "ok limit 1 61.37 149");
+    assert_eq!(
+        dialogue.say("pose 150 47.91 309.64 226.18"),
+        "err 3 A1 reaches 61.37..149.00"
+    );
+}
+
+#[test]
+fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
+    let mut dialogue = Dialogue::standing();
+    for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
+        dialogue.say(line);
+    }
+    dialogue.run(100);
+    assert_eq!(dialogue.say("center"), "ok center");
+    dialogue.run(200);
+    let neutral = Sample::odd().calibration.map(|servo| servo.neutral.0);
+    for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
+        assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
+    }
+    dialogue.say("stand");
+    dialogue.run(200);
+    let motion = dialogue.console.motion();
+    assert_eq!(motion.sent(), &Pose::NEUTRAL.pulses(motion.calibration()));
+}
