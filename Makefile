@@ -120,6 +120,8 @@ clean: ## remove everything that was built
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md
 	@$(LIZARD) draw --robot robots/paper.toml --output docs/lizard.svg
+	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
+	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
 
@@ -128,6 +130,6 @@ clean: ## remove everything that was built
 	@cd host && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
 	@cd host && cargo clippy --workspace --all-targets --quiet -- -D warnings
-	@cd host && cargo clippy -p lizard-host --no-default-features --features paper --quiet -- -D warnings
+	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@echo "lint: clean"

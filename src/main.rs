@@ -5,6 +5,8 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 #![feature(abi_avr_interrupt, asm_experimental_arch)]
 
+use core::mem::MaybeUninit;
+
 use lizard_core::step::{Main, Step};
 use panic_halt as _;
 
@@ -13,10 +15,16 @@ mod robot;
 
 use board::{Uno, sleep};
 
+/// All that main knows. At a fixed address, which the compiler then puts into the
+/// instructions: on the stack, every access would have to work out its own, and the
+/// program would be a tenth larger.
+static mut MAIN: MaybeUninit<Main<robot::Lizard>> = MaybeUninit::uninit();
+
 #[avr_device::entry]
 fn main() -> ! {
     let mut uno = Uno::start();
-    let mut main = Main::new(robot::Lizard, &mut uno);
+    // SAFETY: this function is entered once, and nobody else names `MAIN`.
+    let main = unsafe { (*(&raw mut MAIN)).write(Main::new(robot::Lizard, &mut uno)) };
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {
             sleep::until_tick_or_byte(ticks);

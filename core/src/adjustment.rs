@@ -9,9 +9,6 @@ use lizard_avr::mul_unsigned;
 use crate::calibration::Calibration;
 use crate::units::{Sweep, Width};
 
-/// The largest trim, degrees: more than a spline's tooth.
-pub const LARGEST_TRIM_DEG: i32 = 20;
-
 /// The numbers of one servo that a person may set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Adjustment {

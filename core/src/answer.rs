@@ -15,7 +15,6 @@ use crate::motion::Motion;
 use crate::part::{End, Servo, Side};
 use crate::robot::Robot;
 use crate::slider::Slider;
-use crate::supply::Voltage;
 use crate::text::Text;
 use crate::units::{Angle, Sine};
 
@@ -52,8 +51,12 @@ pub enum Answer {
     Done,
     /// The gaits from this one on, as many as a line takes.
     Gaits(GaitId),
-    /// A line of the list of commands, by its number; after the last one `ok help`.
-    Help(u8),
+    /// The words of the console.
+    Words,
+    /// What else there is to say to who asks for help.
+    Hint,
+    /// The end of help, `ok help`.
+    Helped,
     /// `ok` and the state.
     Status,
     /// A line of what is set, by its number; after the last one `ok cal`.
@@ -124,6 +127,29 @@ flash! {
     const DECADES: [u32; 10] = [
         1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
     ];
+}
+
+/// Prints a text and a number after it, with two decimals.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn field<W>(out: &mut W, text: Text, hundredths: u16) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    text.print(out)?;
+    number(out, hundredths.into(), 2)
+}
+
+/// Prints a text and a whole number after it.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn count<W: uWrite + ?Sized>(out: &mut W, text: Text, count: u32) -> Result<(), W::Error> {
+    text.print(out)?;
+    number(out, count, 0)
 }
 
 /// Prints a number that may be negative, `decimals` behind the point.
@@ -200,15 +226,6 @@ impl Refusal {
     }
 }
 
-/// Prints a voltage with two decimals.
-///
-/// # Errors
-/// Those of `out`.
-#[inline(never)]
-pub fn print_voltage<W: uWrite + ?Sized>(out: &mut W, voltage: Voltage) -> Result<(), W::Error> {
-    number(out, voltage.hundredths().into(), 2)
-}
-
 #[inline(never)]
 fn print_misread<R, W>(misread: Misread, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
 where
@@ -248,9 +265,8 @@ where
     W: uWrite + ?Sized,
 {
     let neutral = motion.robot().neutral()[servo.index()];
-    number(out, neutral.swept(reach.min).centideg().into(), 2)?;
-    Text::Dots.print(out)?;
-    number(out, neutral.swept(reach.max).centideg().into(), 2)
+    field(out, Text::Nothing, neutral.swept(reach.min).centideg())?;
+    field(out, Text::Dots, neutral.swept(reach.max).centideg())
 }
 
 /// Prints what is wrong with a pose: the margin or the travel, and its limit.

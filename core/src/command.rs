@@ -6,7 +6,6 @@
 
 use lizard_avr::flash;
 
-use crate::adjustment::LARGEST_TRIM_DEG;
 use crate::gait::{GaitId, Name};
 use crate::part::Servo;
 use crate::robot::Robot;
@@ -143,10 +142,10 @@ pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
         Text::Load => Command::Load,
         Text::Factory => Command::Factory,
         Text::Pose => return pose(words),
-        Text::Trim => return adjust(words, trim, Text::TrimWants),
-        Text::Limit => return adjust(words, limit, Text::LimitWants),
-        Text::Dir => return adjust(words, dir, Text::DirWants),
-        Text::Scale => return adjust(words, scale, Text::ScaleWants),
+        Text::Trim => return adjust(words, word, Text::TrimWants),
+        Text::Limit => return adjust(words, word, Text::LimitWants),
+        Text::Dir => return adjust(words, word, Text::DirWants),
+        Text::Scale => return adjust(words, word, Text::ScaleWants),
         Text::Boot => return boot(words, robot),
         Text::Speed => {
             return match whole(words).ok_or(Misread::Wants(Text::SpeedWants))? {
@@ -216,18 +215,19 @@ fn pose(mut words: Words) -> Result<Command, Misread> {
     }
 }
 
-/// A servo's number, then what is to be set of it; anything else is what `wants`
+/// A servo's number, then what `word` sets of it; anything else is what `wants`
 /// says.
-fn adjust(
-    mut words: Words,
-    change: fn(&mut Words) -> Result<Change, Misread>,
-    wants: Text,
-) -> Result<Command, Misread> {
+fn adjust(mut words: Words, word: Text, wants: Text) -> Result<Command, Misread> {
     let servo = match words.next() {
         [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
         _ => return Err(Misread::Wants(wants)),
     };
-    let change = change(&mut words);
+    let change = match word {
+        Text::Trim => trim(&mut words),
+        Text::Limit => limit(&mut words),
+        Text::Dir => dir(&mut words),
+        _ => scale(&mut words),
+    };
     if words.is_done() {
         Ok(Command::Adjust(servo, change?))
     } else {
@@ -235,15 +235,11 @@ fn adjust(
     }
 }
 
-#[inline(never)]
 fn trim(words: &mut Words) -> Result<Change, Misread> {
-    let angle = centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))?;
-    // Before it wraps with the turn.
-    if angle.abs() > 100 * LARGEST_TRIM_DEG {
-        return Err(Misread::Range(Text::TrimRange));
+    match centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))? {
+        angle @ -2000..=2000 => Ok(Change::Trim(Sweep(Angle::from_centideg(angle).0 as i16))),
+        _ => Err(Misread::Range(Text::TrimRange)),
     }
-    let trim = Angle(0).sweep_to(Angle::from_centideg(angle));
-    Ok(Change::Trim(trim))
 }
 
 fn limit(words: &mut Words) -> Result<Change, Misread> {
@@ -342,24 +338,43 @@ fn whole(mut words: Words) -> Option<u16> {
 /// hold stays at that.
 #[inline(never)]
 fn centideg(word: &[u8]) -> Option<i32> {
-    let (negative, digits) = match word {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
+    let (sign, digits) = match word {
+        [sign @ (b'-' | b'+'), digits @ ..] => (*sign, digits),
+        digits => (b'+', digits),
     };
-    let (degrees, rest) = number(digits);
-    let decimals = match rest {
-        [] | [b'.'] => 0,
-        [b'.', tenths] => digit(*tenths)? * 10,
-        [b'.', tenths, hundredths] => digit(*tenths)? * 10 + digit(*hundredths)?,
-        _ => return None,
-    };
-    let size = match degrees? {
-        degrees @ 0..=654 => degrees * 100 + decimals,
-        _ => u16::MAX,
-    };
+    let (degrees, mut rest) = number(digits);
+    let mut size = degrees?;
+    if let [b'.', decimals @ ..] = rest {
+        rest = decimals;
+    } else if !rest.is_empty() {
+        return None;
+    }
+    // As many decimals as there may be, zeros in the place of those that are not there.
+    for _ in 0..2 {
+        let mut decimal = 0;
+        if let [first, others @ ..] = rest {
+            decimal = digit(*first)?;
+            rest = others;
+        }
+        size = append(size, decimal);
+    }
     let size = i32::from(size);
-    Some(if negative { -size } else { size })
+    match (rest, sign) {
+        ([], b'-') => Some(-size),
+        ([], _) => Some(size),
+        _ => None,
+    }
+}
+
+/// A number with one more digit; 65535 stands for more than sixteen bits hold.
+#[inline(never)]
+fn append(number: u16, digit: u16) -> u16 {
+    // 6553 and one more digit is where sixteen bits may end.
+    if number < 6553 {
+        number * 10 + digit
+    } else {
+        u16::MAX
+    }
 }
 
 /// Leading digits as a number, saturating, and what follows them.
@@ -368,13 +383,7 @@ fn number(word: &[u8]) -> (Option<u16>, &[u8]) {
     while let [first, others @ ..] = rest
         && let Some(digit) = digit(*first)
     {
-        let so_far = value.unwrap_or(0);
-        // 6553 and one more digit is where sixteen bits may end.
-        value = Some(if so_far < 6553 {
-            so_far * 10 + digit
-        } else {
-            u16::MAX
-        });
+        value = Some(append(value.unwrap_or(0), digit));
         rest = others;
     }
     (value, rest)

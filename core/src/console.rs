@@ -43,25 +43,6 @@ pub struct Counters {
     pub rx_lost: u16,
 }
 
-/// The list of commands, a line each, after the gaits.
-const HELP: [Text; 15] = [
-    Text::HelpStop,
-    Text::HelpRest,
-    Text::HelpSpeed,
-    Text::HelpPose,
-    Text::HelpStatus,
-    Text::HelpWatch,
-    Text::HelpCal,
-    Text::HelpTrim,
-    Text::HelpLimit,
-    Text::HelpDir,
-    Text::HelpScale,
-    Text::HelpCenter,
-    Text::HelpSave,
-    Text::HelpBoot,
-    Text::HelpDeadman,
-];
-
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Output {
@@ -97,7 +78,8 @@ pub struct Console<R> {
     /// What was found of them at power-on.
     found: Outcome,
     safety: Safety,
-    restart: Restart,
+    cause: Cause,
+    restarts: u8,
     job: Option<Job>,
     banner: bool,
     answer: Option<Answer>,
@@ -106,38 +88,46 @@ pub struct Console<R> {
 }
 
 impl<R: Robot> Console<R> {
-    /// A robot that begins, its banner not yet written. Its settings come from the
-    /// memory, and so does the pose in which it rested.
+    /// A robot at power-on, its banner not yet written; [`Console::begin`] has to
+    /// follow.
     #[inline(never)]
-    pub fn new<M: Memory>(robot: R, memory: &M, restart: Restart) -> Self {
-        let mut settings = Settings::of(&robot);
-        let found = record::load(&robot, memory, &mut settings);
-        let rested = record::rested(&robot, memory);
-        let hung = restart.cause == Cause::Watchdog;
-        let mut console = Self {
+    pub fn new(robot: R) -> Self {
+        Self {
             line: Line::new(),
+            settings: Settings::of(&robot),
             motion: Motion::new(robot),
-            settings,
-            found,
-            safety: Safety::new(!hung),
-            restart,
+            found: Outcome::Latest,
+            safety: Safety::default(),
+            cause: Cause::Power,
+            restarts: 0,
             job: Some(Job::Pose(RESTED.forget())),
             banner: true,
             answer: None,
             held: None,
             watch: Watch::default(),
-        };
-        if found != Outcome::Latest {
-            console.safety.notify(Notice::Memory);
         }
-        console.calibrate();
+    }
+
+    /// Takes over what the memory keeps: settings, and the pose of the last rest; and
+    /// what is known of the program before, if there was one.
+    #[inline(never)]
+    pub fn begin<M: Memory>(&mut self, memory: &M, restart: &Restart) {
+        self.cause = restart.cause;
+        self.restarts = restart.count;
+        self.found = record::load(self.motion.robot(), memory, &mut self.settings);
+        if self.found != Outcome::Latest {
+            self.safety.notify(Notice::Memory);
+        }
+        self.calibrate();
+        let hung = restart.cause == Cause::Watchdog;
         if hung {
-            console.safety.fail(Fault::Watchdog);
+            self.safety.byte_came();
+            self.safety.fail(Fault::Watchdog);
         }
+        let rested = record::rested(self.motion.robot(), memory);
         if let Some(pose) = restart.pose.or(rested) {
-            console.motion.begin_at(&pose, !hung);
+            self.motion.begin_at(&pose, !hung);
         }
-        console
     }
 
     /// The robot's motion.
@@ -207,7 +197,7 @@ impl<R: Robot> Console<R> {
                 Progress::Failed => Err(Refusal::NotKept),
             },
             Some(Job::Pose(writing)) => {
-                let pose = record::pose(self.motion.pose(), robot);
+                let pose = Settings::of_pose(self.motion.pose(), robot);
                 if writing.step(pose.bytes(), memory) != Progress::Going {
                     self.job = None;
                 }
@@ -301,7 +291,6 @@ impl<R: Robot> Console<R> {
     }
 
     /// Watches what may go wrong, and does what that asks for.
-    #[inline(never)]
     fn look_after(&mut self, health: &Health) {
         let motion = &self.motion;
         let walks = matches!(motion.activity(), Activity::Gait(id) if id != GaitId::STAND);
@@ -351,9 +340,9 @@ impl<R: Robot> Console<R> {
                 self.go_to(&pose)?;
             }
             Command::Center => {
-                let mut pose = Pose::NEUTRAL;
-                for (place, sweep) in pose.0.iter_mut().enumerate() {
-                    sweep.0 = -self.settings.servo(place).trim.0;
+                let mut pose = self.settings.pose();
+                for sweep in &mut pose.0 {
+                    sweep.0 = -sweep.0;
                 }
                 if let Some(servo) = pose.beyond(self.motion.calibration()) {
                     return Err(Refusal::Travel(servo));
@@ -460,11 +449,13 @@ impl<R: Robot> Console<R> {
     }
 
     /// Hands the motion what the settings say of the servos.
+    #[inline(never)]
     fn calibrate(&mut self) {
         for place in 0..4 {
             let calibration = self.settings.calibration(place, self.motion.robot());
             self.motion.calibrate(place, calibration);
         }
+        self.motion.settle();
     }
 
     /// The supply that is the reason to refuse something.

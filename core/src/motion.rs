@@ -164,12 +164,17 @@ impl<R: Robot> Motion<R> {
         &self.calibration
     }
 
-    /// Takes another calibration of a servo, by its place. The pulses go over to it at
-    /// the slew limit, and nothing else moves meanwhile.
+    /// Takes another calibration of a servo, by its place; [`Motion::settle`] has to
+    /// follow.
     pub fn calibrate(&mut self, place: usize, calibration: Calibration) {
         if let Some(servo) = self.calibration.get_mut(place) {
             *servo = calibration;
         }
+    }
+
+    /// Lets the pulses go over to the new calibration, at the slew limit. Nothing
+    /// else moves meanwhile.
+    pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
         }
@@ -260,7 +265,6 @@ impl<R: Robot> Motion<R> {
     }
 
     /// One frame on: the pulses to send in it.
-    #[inline(never)]
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
         if matches!(self.state, State::Resting) {
@@ -273,15 +277,17 @@ impl<R: Robot> Motion<R> {
         }
         let mut pulses = self.pose.pulses(&self.calibration);
         if self.settling {
-            self.settling = self.settle(&mut pulses);
+            self.settling = self.slow_down(&mut pulses);
         }
         self.sent = pulses;
-        let mut wakes_at = WAKE_APART;
-        for width in &mut pulses.0 {
-            if self.awake < wakes_at {
-                *width = Width(0);
+        if self.awake < AWAKE {
+            let mut wakes_at = WAKE_APART;
+            for width in &mut pulses.0 {
+                if self.awake < wakes_at {
+                    *width = Width(0);
+                }
+                wakes_at += WAKE_APART;
             }
-            wakes_at += WAKE_APART;
         }
         pulses
     }
@@ -345,7 +351,7 @@ impl<R: Robot> Motion<R> {
     /// Keeps the pulses within a frame's way of the last ones; true while they are
     /// not yet those that are wanted.
     #[inline(never)]
-    fn settle(&self, pulses: &mut Pulses) -> bool {
+    fn slow_down(&self, pulses: &mut Pulses) -> bool {
         let mut under_way = false;
         let per_frame = self.robot.slew().per_frame;
         for (place, width) in pulses.0.iter_mut().enumerate() {
@@ -416,14 +422,22 @@ impl<R: Robot> Motion<R> {
     }
 
     /// Begins the move towards what comes next, once the old motion has no pace.
-    #[inline(never)]
+    #[inline(always)]
     fn turn_to_next(&mut self) {
-        if let State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. } = self.state {
-            return;
+        if let Some(target) = self.next
+            && !matches!(
+                self.state,
+                State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. }
+            )
+        {
+            self.next = None;
+            self.move_to(target);
         }
-        let Some(target) = self.next.take() else {
-            return;
-        };
+    }
+
+    // Out of line: most frames do not need it.
+    #[inline(never)]
+    fn move_to(&mut self, target: Target) {
         let (to, gait) = match target {
             Target::Pose(pose) => (pose, None),
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),

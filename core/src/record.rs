@@ -11,8 +11,7 @@
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::adjustment::Adjustment;
-use crate::memory::{Found, Memory, Place, Writing};
+use crate::memory::{CONTENT, Found, Memory, Place, Writing};
 use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::settings::{Settings, TURN};
@@ -115,35 +114,13 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     Some(COPIES[copies.latest & 1 ^ 1].write())
 }
 
-/// A pose as the memory keeps it.
-pub fn pose<R: Robot>(pose: &Pose, robot: &R) -> Settings {
-    let mut kept = Settings::blank(robot);
-    for (place, sweep) in pose.0.iter().enumerate() {
-        let none = Adjustment::default();
-        kept.set_servo(
-            place,
-            Adjustment {
-                trim: *sweep,
-                ..none
-            },
-        );
-    }
-    kept
-}
-
 /// Where the robot rested last, if it has not moved since.
 #[inline(never)]
 pub fn rested<R: Robot, M: Memory>(robot: &R, memory: &M) -> Option<Pose> {
-    let mut kept = Settings::blank(robot);
-    RESTED.fetch(memory, kept.bytes_mut());
-    if RESTED.check(memory) != Found::Whole || !kept.are_for(robot) {
-        return None;
-    }
-    let mut pose = Pose::NEUTRAL;
-    for (place, sweep) in pose.0.iter_mut().enumerate() {
-        *sweep = kept.servo(place).trim;
-    }
-    Some(pose)
+    let mut bytes = [0; CONTENT];
+    RESTED.fetch(memory, &mut bytes);
+    let kept = Settings::from_bytes(bytes);
+    (RESTED.check(memory) == Found::Whole && kept.are_for(robot)).then(|| kept.pose())
 }
 
 #[cfg(test)]

@@ -84,9 +84,9 @@ const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
 /// Frames from power-on to `boot`, three seconds.
 const BOOT_AFTER: u8 = 3 * FRAMES_PER_SECOND as u8;
 
-impl Safety {
-    /// At power-on; `boots` says whether `boot` is to be done.
-    pub fn new(boots: bool) -> Self {
+impl Default for Safety {
+    /// At power-on.
+    fn default() -> Self {
         Self {
             supply: Supply::default(),
             fault: None,
@@ -94,11 +94,13 @@ impl Safety {
             lit: true,
             late: 0,
             silence: 0,
-            boot: if boots { BOOT_AFTER } else { 0 },
+            boot: BOOT_AFTER,
             notices: 0,
         }
     }
+}
 
+impl Safety {
     /// The fault that stopped the robot last, unless it has been told to move since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
@@ -126,7 +128,6 @@ impl Safety {
 
     /// One frame on. `walks` says whether a gait other than `stand` is under way,
     /// which ends after `deadman` milliseconds without a line (0: never).
-    #[inline(never)]
     pub fn frame(
         &mut self,
         health: &Health,
@@ -168,7 +169,6 @@ impl Safety {
     }
 
     /// The LED's part of a frame; `guard` says whether the guard holds the robot.
-    #[inline(never)]
     pub fn beat(&mut self, guard: bool) {
         let fault = if guard {
             Some(Fault::Guard)

@@ -18,6 +18,7 @@ use crate::calibration::Calibration;
 use crate::gait::GaitId;
 use crate::memory::Content;
 use crate::part::Servo;
+use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::units::Sweep;
 
@@ -50,7 +51,8 @@ impl Settings {
     /// Those of robot.toml.
     #[inline(never)]
     pub fn of<R: Robot>(robot: &R) -> Self {
-        let mut settings = Self::blank(robot);
+        let mut settings = Self { bytes: [0; _] };
+        settings.set_head(robot);
         for place in 0..4 {
             settings.set_servo(place, Adjustment::of(&robot.servo(place)));
         }
@@ -58,14 +60,37 @@ impl Settings {
         settings
     }
 
-    /// Nothing but the head of a record for the servos of a robot.
-    pub fn blank<R: Robot>(robot: &R) -> Self {
-        let mut settings = Self { bytes: [0; _] };
-        settings.bytes[0] = FORMAT;
+    /// Makes them a record for the servos of a robot.
+    fn set_head<R: Robot>(&mut self, robot: &R) {
+        self.bytes[0] = FORMAT;
         let hash = robot.servo_hash();
-        settings.put(HASH, hash as u16);
-        settings.put(HASH + 2, (hash >> 16) as u16);
-        settings
+        self.put(HASH, hash as u16);
+        self.put(HASH + 2, (hash >> 16) as u16);
+    }
+
+    /// A pose in the trims of a record for the servos of a robot.
+    #[inline(never)]
+    pub fn of_pose<R: Robot>(pose: &Pose, robot: &R) -> Self {
+        let mut kept = Self { bytes: [0; _] };
+        kept.set_head(robot);
+        let mut at = SERVOS;
+        for sweep in &pose.0 {
+            kept.put(at, sweep.0 as u16);
+            at += 8;
+        }
+        kept
+    }
+
+    /// The pose in the trims.
+    #[inline(never)]
+    pub fn pose(&self) -> Pose {
+        let mut pose = Pose::NEUTRAL;
+        let mut at = SERVOS;
+        for sweep in &mut pose.0 {
+            sweep.0 = self.get(at) as i16;
+            at += 8;
+        }
+        pose
     }
 
     /// Bytes that a memory has kept.

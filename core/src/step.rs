@@ -2,8 +2,8 @@
 //!
 //! Woken by the tick of the pulses or by a byte, main does one thing at a time
 //! and looks for a tick first: a frame waits for one byte or one line at most. While
-//! it writes its memory, which takes 3.4 ms a byte, it takes no input. It takes
-//! input only while the serial line has room for the longest answer, so it
+//! it writes its memory, which takes 3.4 ms a byte, it takes no input, and neither
+//! while an answer waits for the serial line to have room for all of it; so it
 //! never waits for a listener; and it computes a frame for every tick, also for one
 //! that it was late for, so the pace is the timer's and not the processor's.
 
@@ -85,10 +85,12 @@ impl<R: Robot> Main<R> {
     /// A robot that begins on a board.
     pub fn new<B: Board>(robot: R, board: &mut B) -> Self {
         let restart = board.restart();
-        Self {
-            console: Console::new(robot, board.memory(), restart),
+        let mut main = Self {
+            console: Console::new(robot),
             ticks: board.ticks(),
-        }
+        };
+        main.console.begin(board.memory(), &restart);
+        main
     }
 
     /// The console.
@@ -109,13 +111,14 @@ impl<R: Robot> Main<R> {
             board.submit(self.console.frame(&health));
             board.keep(self.console.motion().held_pose());
             board.set_led(self.console.is_lit());
-        } else if self.console.is_writing() && !self.console.has_output() {
-            self.console.write_memory(board.memory());
-        } else if board.room() < LONGEST_LINE {
-            return Step::Idle(self.ticks);
         } else if self.console.has_output() {
+            if board.room() < LONGEST_LINE {
+                return Step::Idle(self.ticks);
+            }
             let counters = board.counters();
             let Ok(()) = self.console.write_line(board.writer(), counters);
+        } else if self.console.is_writing() {
+            self.console.write_memory(board.memory());
         } else if let Some(byte) = board.receive() {
             self.console.receive(byte);
         } else {
@@ -259,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_written_or_read_without_room_for_the_longest_line_but_frames_go_on() {
+    fn nothing_is_written_without_room_for_the_longest_line_but_frames_go_on() {
         let mut main = main_at(0);
         let mut board = Fake::new(0, "speed 50\r");
         board.room = LONGEST_LINE - 1;

@@ -1,10 +1,10 @@
 //! Every sentence that the robot prints, kept in flash.
 //!
 //! A string literal of an AVR program is copied to its 2 KiB of RAM at start.
-//! The sentences here stay in flash as one run of bytes and are fetched byte
-//! by byte when they are printed.
+//! The sentences here stay in flash as one run of characters, six bits each, and
+//! are fetched one by one when they are printed.
 
-use core::ops::Range;
+use core::ops::{Range, RangeInclusive};
 
 use lizard_avr::flash;
 use ufmt::uWrite;
@@ -30,7 +30,9 @@ texts! {
     WatchTime = "# t=";
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
-    Servo = "# A";
+    Information = "# ";
+    Blank = " ";
+    Nothing = "";
     CalTrim = " trim ";
     CalLimit = " limit ";
     CalDir = " dir ";
@@ -60,21 +62,8 @@ texts! {
 
     // Help, a line each.
     HelpGaits = "# gaits:";
-    HelpStop = "# stop: freeze in this pose";
-    HelpRest = "# rest: end the pulses, stand wakes the servos";
-    HelpSpeed = "# speed <10..100>: percent of a gait's pace";
-    HelpPose = "# pose <A1> <A2> <A3> <A4>: degrees, chassis frame";
-    HelpStatus = "# status: gait, phase, pose, smallest margin, counters";
-    HelpWatch = "# watch <n>: report the pose every n frames, 0 ends it";
-    HelpCal = "# cal: what is set of the servos, boot and deadman";
-    HelpTrim = "# trim <1..4> <deg>: turn a servo's horn, within 20";
-    HelpLimit = "# limit <1..4> <min> <max>: a servo's travel, chassis frame";
-    HelpDir = "# dir <1..4> <+|->: + if a longer pulse turns counter-clockwise";
-    HelpScale = "# scale <1..4> <us per deg>: 5..20";
-    HelpCenter = "# center: neutral pulses without trims, to fit horns";
-    HelpSave = "# save, load, factory: keep what is set, take it back, or robot.toml's";
-    HelpBoot = "# boot <gait|rest>: done 3 s after power-on";
-    HelpDeadman = "# deadman <ms>: end a gait after so long without a line, 0 never";
+    HelpWords = "# others:";
+    HelpHint = "# a word alone tells what it wants, the docs what it does";
 
     // Answers, and the words of commands.
     Ok = "ok ";
@@ -163,16 +152,21 @@ texts! {
     Needed = " would not reach what the gaits need, ";
     NotHere = " would not reach where it is or goes, send stand first";
     LowSupply = "the supply is too low";
-    Volts = " V";
-    NotKept = "the EEPROM does not keep what is written";
+    NotKept = "the memory does not keep what is written";
     NothingSaved = "nothing is saved that could be loaded";
 }
 
 const COUNT: usize = SENTENCES.len();
 const LENGTH: usize = starts()[COUNT] as usize;
 
+/// Bytes that hold so many characters.
+const BYTE_COUNT: usize = LENGTH.div_ceil(4) * 3;
+
+/// Codes of letters.
+const LETTERS: RangeInclusive<u8> = 0x21..=0x3a;
+
 flash! {
-    const BYTES: [u8; LENGTH] = bytes();
+    const BYTES: [u8; BYTE_COUNT] = bytes();
     const STARTS: [u16; COUNT + 1] = starts();
 }
 
@@ -183,7 +177,7 @@ impl Text {
     /// Those of `out`.
     pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
         for at in self.place() {
-            out.write_char(char::from(BYTES.at(at).load() & 0x7f))?;
+            out.write_char(char::from(character(at) & 0x7f))?;
         }
         Ok(())
     }
@@ -196,10 +190,7 @@ impl Text {
     /// True if the sentence is just this word.
     pub fn is(self, word: &[u8]) -> bool {
         let place = self.place();
-        place.len() == word.len()
-            && place
-                .zip(word)
-                .all(|(at, byte)| BYTES.at(at).load() == *byte)
+        place.len() == word.len() && place.zip(word).all(|(at, byte)| character(at) == *byte)
     }
 
     fn place(self) -> Range<usize> {
@@ -208,16 +199,55 @@ impl Text {
     }
 }
 
-const fn bytes() -> [u8; LENGTH] {
-    let mut bytes = [0; LENGTH];
-    let starts = starts();
+/// The character at a place among all sentences.
+#[inline(never)]
+fn character(place: usize) -> u8 {
+    let group = (place >> 2) * 3;
+    let byte = |n: usize| BYTES.at(group + n).load();
+    // Bit by bit shifts of two bytes would cost as much as sending the character.
+    let code = match place & 3 {
+        0 => byte(0) >> 2,
+        1 => (byte(0) << 4 | byte(1) >> 4) & 0x3f,
+        2 => (byte(1) << 2 | byte(2) >> 6) & 0x3f,
+        _ => byte(2) & 0x3f,
+    };
+    code + if LETTERS.contains(&code) { 0x40 } else { 0x20 }
+}
+
+/// A character's six bits: ASCII from the blank to the underscore, less 32, with
+/// lower-case letters in the place of capitals, of which there are none.
+const fn code(character: u8) -> u8 {
+    match character {
+        b'a'..=b'z' => character - 0x40,
+        b' '..=b'@' | b'_' => character - 0x20,
+        _ => panic!("a sentence has lower-case letters, digits and signs below 0x40"),
+    }
+}
+
+/// All sentences, six bits a character, four characters in three bytes.
+const fn bytes() -> [u8; BYTE_COUNT] {
+    let mut bytes = [0; BYTE_COUNT];
     let mut index = 0;
+    let mut place = 0;
     while index < COUNT {
         let sentence = SENTENCES[index].as_bytes();
-        assert!(sentence.is_ascii());
         let mut at = 0;
         while at < sentence.len() {
-            bytes[starts[index] as usize + at] = sentence[at];
+            let code = code(sentence[at]);
+            let group = place / 4 * 3;
+            match place & 3 {
+                0 => bytes[group] = code << 2,
+                1 => {
+                    bytes[group] |= code >> 4;
+                    bytes[group + 1] = code << 4;
+                }
+                2 => {
+                    bytes[group + 1] |= code >> 2;
+                    bytes[group + 2] = code << 6;
+                }
+                _ => bytes[group + 2] |= code,
+            }
+            place += 1;
             at += 1;
         }
         index += 1;

@@ -75,6 +75,7 @@ pub struct Scale {
 
 impl Angle {
     /// The angle at `centideg`, at most one turn either way, within 0.004 deg.
+    #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
         let size = centideg.unsigned_abs() as u16;
         // A whole turn is none. 65536/36000 is 1 + 53769/65536 to within a fifth of a

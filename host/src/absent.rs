@@ -5,6 +5,15 @@ use std::ffi::OsString;
 use crate::Failure;
 
 const SIMULATOR: [&str; 2] = ["sim", "bench"];
+/// `replay` needs the simulator's pictures, too.
+const CONSOLE: [&str; 6] = [
+    "console",
+    "calibrate",
+    "backup",
+    "restore",
+    "record",
+    "replay",
+];
 const PAPER: [&str; 10] = [
     "solve",
     "inverse",
@@ -23,10 +32,13 @@ const PAPER: [&str; 10] = [
 pub fn explain(words: &[OsString]) -> Failure {
     let name = words.first().map(|word| word.to_string_lossy());
     let name = name.as_deref().unwrap_or_default();
-    let without = if SIMULATOR.contains(&name) {
+    let draws = name == "replay" && cfg!(feature = "console");
+    let without = if SIMULATOR.contains(&name) || draws {
         "the simulator"
     } else if PAPER.contains(&name) {
         "the commands that compute"
+    } else if CONSOLE.contains(&name) {
+        "the commands for a board on USB"
     } else {
         return Failure::Input(format!(
             "there is no command `{name}`; lizard --help lists them"
@@ -48,6 +60,7 @@ mod tests {
             words("sim"),
             "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
         );
+        assert!(words("backup").contains("without the commands for a board on USB"));
         assert!(words("solve").contains("without the commands that compute"));
         assert_eq!(
             words("fly"),

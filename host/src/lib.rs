@@ -9,6 +9,8 @@ pub mod absent;
 pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
+#[cfg(feature = "console")]
+pub mod console;
 pub mod draw;
 mod failure;
 pub mod gaits;

@@ -1,13 +1,15 @@
 //! `lizard`: the robot's mathematics and its simulation on the command line.
 #![forbid(unsafe_code)]
 
-#[cfg(not(all(feature = "simulator", feature = "paper")))]
+#[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-#[cfg(not(all(feature = "simulator", feature = "paper")))]
+#[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
 use lizard_host::absent;
+#[cfg(feature = "console")]
+use lizard_host::console;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim};
 use lizard_host::{draw, gaits};
@@ -57,8 +59,20 @@ enum Command {
     Draw(draw::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
+    #[cfg(feature = "console")]
+    Console(console::interactive::ConsoleArgs),
+    #[cfg(feature = "console")]
+    Calibrate(console::calibrate::Args),
+    #[cfg(feature = "console")]
+    Backup(console::backup::BackupArgs),
+    #[cfg(feature = "console")]
+    Restore(console::backup::RestoreArgs),
+    #[cfg(feature = "console")]
+    Record(console::interactive::RecordArgs),
+    #[cfg(all(feature = "console", feature = "simulator"))]
+    Replay(console::replay::Args),
     /// A command that this build may lack.
-    #[cfg(not(all(feature = "simulator", feature = "paper")))]
+    #[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
     #[command(external_subcommand)]
     Other(Vec<OsString>),
 }
@@ -91,7 +105,19 @@ fn main() -> ExitCode {
         Command::Draw(args) => draw::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),
-        #[cfg(not(all(feature = "simulator", feature = "paper")))]
+        #[cfg(feature = "console")]
+        Command::Console(args) => console::interactive::console(args),
+        #[cfg(feature = "console")]
+        Command::Calibrate(args) => console::calibrate::run(args),
+        #[cfg(feature = "console")]
+        Command::Backup(args) => console::backup::backup(args),
+        #[cfg(feature = "console")]
+        Command::Restore(args) => console::backup::restore(args),
+        #[cfg(feature = "console")]
+        Command::Record(args) => console::interactive::record(args),
+        #[cfg(all(feature = "console", feature = "simulator"))]
+        Command::Replay(args) => console::replay::run(args),
+        #[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
         Command::Other(words) => Err(absent::explain(&words)),
     };
     match done {

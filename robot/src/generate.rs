@@ -51,7 +51,7 @@ impl Body<'_> {
         let robot = self.0;
         let [head, tail] = &robot.ends;
         let [left, right] = &robot.sides;
-        let tail_tables = if tail.couplers == head.couplers {
+        let tail_tables = if share_tables(head, tail) {
             "HEAD"
         } else {
             "TAIL"
@@ -142,11 +142,13 @@ impl Body<'_> {
 
     fn coupler_tables(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [head, tail] = &self.0.ends;
-        coupler_tables(f, "HEAD", &head.couplers)?;
-        if tail.couplers == head.couplers {
-            return Ok(());
+        let near_stretched = head.couplers.near_stretched;
+        if share_tables(head, tail) {
+            let either = near_stretched || tail.couplers.near_stretched;
+            return coupler_tables(f, "HEAD", &head.couplers, either);
         }
-        coupler_tables(f, "TAIL", &tail.couplers)
+        coupler_tables(f, "HEAD", &head.couplers, near_stretched)?;
+        coupler_tables(f, "TAIL", &tail.couplers, tail.couplers.near_stretched)
     }
 
     fn gaits(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -209,12 +211,24 @@ fn five_bar(bars: &Loop, tables: &str) -> String {
     )
 }
 
+/// Whether the couplers of both ends are equally long, so that their tables are the
+/// same.
+fn share_tables(head: &Loop, tail: &Loop) -> bool {
+    let lengths = |end: &Loop| (end.couplers.left, end.couplers.right);
+    lengths(head) == lengths(tail)
+}
+
 /// The tables of a pair of couplers; the compiler computes them.
-fn coupler_tables(f: &mut fmt::Formatter, end: &str, bars: &Bars) -> fmt::Result {
+fn coupler_tables(
+    f: &mut fmt::Formatter,
+    end: &str,
+    bars: &Bars,
+    near_stretched: bool,
+) -> fmt::Result {
     let unequal = bars.left != bars.right;
     for (name, function, there) in [
         ("RISE", "rise", true),
-        ("STRETCHED", "stretched", bars.near_stretched),
+        ("STRETCHED", "stretched", near_stretched),
         ("FOLDED", "folded", bars.differ_much()),
         ("SKEW", "skew", unequal),
     ] {
@@ -361,11 +375,15 @@ mod tests {
             assert_eq!(value(&source, "ENDS_ALIKE").trim(), alike, "{name}");
             assert_eq!(value(&source, "SIDES_ALIKE").trim(), alike, "{name}");
             // The tail's tables are the head's where its couplers are.
-            let tables = if name == "unequal" { "TAIL" } else { "HEAD" };
-            assert!(value(&source, "TAIL").contains(&format!("rise: {tables}_RISE")));
-            assert!(value(&source, "HEAD").contains("rise: HEAD_RISE"));
-            assert_eq!(source.contains("TAIL_RISE: Table"), name == "unequal");
+            assert!(value(&source, "TAIL").contains("rise: HEAD_RISE"), "{name}");
+            assert!(value(&source, "HEAD").contains("rise: HEAD_RISE"), "{name}");
+            assert!(!source.contains("TAIL_RISE: Table"), "{name}");
         }
+        let changes = [("l7 = 55.0 ", "l7 = 46.0 "), ("l8 = 48.0 ", "l8 = 52.0 ")];
+        let apart = with("unequal", &changes).expect("other couplers on the tail");
+        let source = apart.firmware().source();
+        assert!(value(&source, "TAIL").contains("rise: TAIL_RISE"));
+        assert!(source.contains("TAIL_RISE: Table"));
         // Couplers alike, cranks not: two loops, one set of tables.
         let wider = with("paper", &[("l6 = 30.0 ", "l6 = 31.0 ")]).expect("a longer crank");
         let source = wider.firmware().source();

@@ -360,8 +360,8 @@ mod tests {
         for (from, to) in [
             ("l2 = 55.0", "l2 = 15.9"),
             ("l3 = 48.0", "l3 = 15.9"),
-            ("l7 = 46.0", "l7 = 15.9"),
-            ("l8 = 52.0", "l8 = 15.9"),
+            ("l7 = 55.0", "l7 = 15.9"),
+            ("l8 = 48.0", "l8 = 15.9"),
         ] {
             let refused = refused(&[(from, to)]);
             let key = from.split(' ').next().expect("a key");
@@ -372,7 +372,7 @@ mod tests {
             );
         }
         // A base twice as long halves the steps, for its own end alone.
-        let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 46.0", "l7 = 31.0")]);
+        let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
         assert!(
             long.contains("links.l7 is 31 mm") && long.contains("at least 32.1 mm"),
             "{long}"

@@ -24,6 +24,11 @@ const HUNG: u8 = 0xa3;
 const HELD: u8 = 0x96;
 const NONE: u8 = 0x69;
 
+/// Bits of MCUSR, of which a boot loader may have cleared all.
+const POWER_ON: u8 = 1;
+const BROWN_OUT: u8 = 4;
+const WATCHDOG: u8 = 8;
+
 /// The bytes that are kept.
 struct Kept {
     mark: Byte,
@@ -51,22 +56,16 @@ fn kept() -> &'static Kept {
 #[inline(never)]
 pub fn restart(cpu: &CPU) -> Restart {
     let kept = kept();
-    let flags = cpu.mcusr().read();
     let mark = kept.mark.get();
     let survived =
         matches!(mark, RUNNING | HUNG) && kept.count_check.get() == check(mark, kept.count.get());
-    let cause = if flags.porf().bit_is_set() {
+    let flags = cpu.mcusr().read().bits();
+    let cause = if flags & POWER_ON != 0 || (flags == 0 && !survived) {
         Cause::Power
-    } else if flags.wdrf().bit_is_set() {
+    } else if flags & WATCHDOG != 0 || (flags == 0 && mark == HUNG) {
         Cause::Watchdog
-    } else if flags.borf().bit_is_set() {
+    } else if flags & BROWN_OUT != 0 {
         Cause::BrownOut
-    } else if flags.extrf().bit_is_set() {
-        Cause::External
-    } else if !survived {
-        Cause::Power
-    } else if mark == HUNG {
-        Cause::Watchdog
     } else {
         Cause::External
     };

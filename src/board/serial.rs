@@ -130,15 +130,28 @@ impl ufmt::uWrite for Writer {
 
     fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
         for &byte in text.as_bytes() {
-            while room() == 0 {}
-            TO_SEND.put(byte);
-            // SAFETY: main writes UCSR0B, whole, to a value that is right
-            // whenever there is something to send, as there was a moment ago; if
-            // the handler has sent it meanwhile, it runs once more for nothing.
-            listen(&unsafe { USART0::steal() }, true);
+            send(byte);
         }
         Ok(())
     }
+
+    // The robot speaks ASCII. What the trait does for other characters would take as
+    // long as all else that a character needs.
+    #[inline(always)]
+    fn write_char(&mut self, character: char) -> Result<(), Infallible> {
+        send(character as u8);
+        Ok(())
+    }
+}
+
+#[inline(never)]
+fn send(byte: u8) {
+    while room() == 0 {}
+    TO_SEND.put(byte);
+    // SAFETY: main writes UCSR0B, whole, to a value that is right whenever there is
+    // something to send, as there was a moment ago; if the handler has sent it
+    // meanwhile, it runs once more for nothing.
+    listen(&unsafe { USART0::steal() }, true);
 }
 
 /// Receiver, transmitter and the receive interrupt on; the transmit interrupt on

@@ -2,8 +2,9 @@
 
 use ufmt::uWrite;
 
-use super::{Console, Counters, HELP, LONGEST_LINE};
+use super::{Console, Counters, LONGEST_LINE};
 use crate::answer::{self, Answer};
+use crate::command::WORDS;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::guard::Clearance;
@@ -42,15 +43,21 @@ impl<R: Robot> Console<R> {
             }
             Answer::Gaits(first) => {
                 let rest = self.print_gaits(out, first)?;
-                return Ok(Some(rest.map_or(Answer::Help(0), Answer::Gaits)));
+                return Ok(Some(rest.map_or(Answer::Words, Answer::Gaits)));
             }
-            Answer::Help(line) => match HELP.get(usize::from(line)) {
-                Some(text) => {
-                    text.print(out)?;
-                    return Ok(Some(Answer::Help(line + 1)));
+            Answer::Words => {
+                Text::HelpWords.print(out)?;
+                for place in 0..WORDS.as_slice().len() {
+                    out.write_char(if place == 0 { ' ' } else { '|' })?;
+                    WORDS.at(place).load().print(out)?;
                 }
-                None => Text::OkHelp.print(out)?,
-            },
+                return Ok(Some(Answer::Hint));
+            }
+            Answer::Hint => {
+                Text::HelpHint.print(out)?;
+                return Ok(Some(Answer::Helped));
+            }
+            Answer::Helped => Text::OkHelp.print(out)?,
             Answer::Done => {
                 Text::Ok.print(out)?;
                 answer::ascii(out, self.line.text().iter().copied())?;
@@ -111,16 +118,10 @@ impl<R: Robot> Console<R> {
         self.print_pose(out)?;
         Text::StatusMargin.print(out)?;
         answer::sine(out, Clearance::of(motion.robot(), motion.pose()).smallest())?;
-        let counts = [
-            (Text::StatusSpeed, motion.speed().into()),
-            (Text::StatusFrames, motion.frames()),
-            (Text::StatusLate, counters.late.into()),
-            (Text::StatusRxLost, counters.rx_lost.into()),
-        ];
-        for (key, count) in &counts {
-            key.print(out)?;
-            answer::number(out, *count, 0)?;
-        }
+        answer::count(out, Text::StatusSpeed, motion.speed().into())?;
+        answer::count(out, Text::StatusFrames, motion.frames())?;
+        answer::count(out, Text::StatusLate, counters.late.into())?;
+        answer::count(out, Text::StatusRxLost, counters.rx_lost.into())?;
         Text::StatusGuard.print(out)?;
         match motion.hazard() {
             None => Text::GuardClear,
@@ -132,9 +133,8 @@ impl<R: Robot> Console<R> {
             .map_or(Text::FaultNone, Fault::word)
             .print(out)?;
         Text::StatusReset.print(out)?;
-        self.restart.cause.word().print(out)?;
-        Text::StatusResets.print(out)?;
-        answer::number(out, self.restart.count.into(), 0)?;
+        self.cause.word().print(out)?;
+        answer::count(out, Text::StatusResets, self.restarts.into())?;
         self.print_supplies(out)
     }
 
@@ -143,11 +143,11 @@ impl<R: Robot> Console<R> {
     fn print_supplies<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         let supplies = self.motion.robot().supplies();
         let reading = self.safety.supply().reading();
-        Text::StatusVcc.print(out)?;
-        answer::print_voltage(out, Voltage::of_board(reading, &supplies))?;
+        let board = Voltage::of_board(reading, &supplies);
+        answer::field(out, Text::StatusVcc, board.hundredths())?;
         if let Some(rail) = &supplies.rail {
-            Text::StatusRail.print(out)?;
-            answer::print_voltage(out, Voltage::of_rail(reading, rail))?;
+            let rail = Voltage::of_rail(reading, rail);
+            answer::field(out, Text::StatusRail, rail.hundredths())?;
         }
         Ok(())
     }
@@ -165,8 +165,7 @@ impl<R: Robot> Console<R> {
                 self.print_boot(out)?;
             }
             CAL_DEADMAN => {
-                Text::CalDeadman.print(out)?;
-                answer::number(out, settings.deadman().into(), 0)?;
+                answer::count(out, Text::CalDeadman, settings.deadman().into())?;
             }
             CAL_END.. => {
                 Text::Ok.print(out)?;
@@ -177,18 +176,16 @@ impl<R: Robot> Console<R> {
                 let place = usize::from(line & 3);
                 let set = settings.servo(place);
                 let neutral = self.motion.robot().neutral()[place];
-                Text::Servo.print(out)?;
+                Text::Information.print(out)?;
+                out.write_char('A')?;
                 out.write_char(char::from(b'1' + line))?;
                 Text::CalTrim.print(out)?;
                 print_sweep(out, set.trim)?;
-                Text::CalLimit.print(out)?;
-                answer::number(out, neutral.swept(set.min).centideg().into(), 2)?;
-                out.write_char(' ')?;
-                answer::number(out, neutral.swept(set.max).centideg().into(), 2)?;
+                answer::field(out, Text::CalLimit, neutral.swept(set.min).centideg())?;
+                answer::field(out, Text::Blank, neutral.swept(set.max).centideg())?;
                 Text::CalDir.print(out)?;
                 out.write_char(if set.is_direct() { '+' } else { '-' })?;
-                Text::CalScale.print(out)?;
-                answer::number(out, set.scale().into(), 2)?;
+                answer::field(out, Text::CalScale, set.scale())?;
             }
         }
         Ok(true)
@@ -230,9 +227,9 @@ impl<R: Robot> Console<R> {
                 .print(out)
             }
             Notice::Supply => {
-                Text::NoticeSupply.print(out)?;
-                answer::print_voltage(out, self.voltage())?;
-                Text::Volts.print(out)?;
+                answer::field(out, Text::NoticeSupply, self.voltage().hundredths())?;
+                out.write_char(' ')?;
+                out.write_char('V')?;
                 match self.safety.supply().level() {
                     Level::Good => Text::LevelGood,
                     Level::Slow => Text::LevelSlow,

@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::gait::GaitId;
-use crate::memory::{CONTENT, ERASED, LENGTH, Progress};
+use crate::memory::{ERASED, LENGTH, Progress};
 use crate::sample::{Chip, Sample};
 use crate::settings::Boot;
 use crate::units::Sweep;
@@ -247,7 +247,7 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     assert_eq!(rested(&robot, &chip), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let there = Pose(sweeps.map(Sweep));
-        let kept = pose(&there, &robot);
+        let kept = Settings::of_pose(&there, &robot);
         let mut writing = RESTED.write();
         while writing.step(kept.bytes(), &mut chip) == Progress::Going {}
         assert_eq!(rested(&robot, &chip), Some(there));

@@ -8,6 +8,13 @@ fn supplies() -> Supplies {
     Sample::odd().supplies()
 }
 
+/// At power-on, `boot` called off.
+fn without_boot() -> Safety {
+    let mut safety = Safety::default();
+    safety.byte_came();
+    safety
+}
+
 fn frame(safety: &mut Safety, health: &Health) -> Order {
     safety.frame(health, &supplies(), false, 0)
 }
@@ -35,7 +42,7 @@ fn notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
 
 #[test]
 fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     for _ in 0..1000 {
         assert_eq!(frame(&mut safety, &WELL), Order::None);
     }
@@ -46,7 +53,7 @@ fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
 
 #[test]
 fn boot_is_asked_for_once_three_seconds_after_power_on() {
-    let mut safety = Safety::new(true);
+    let mut safety = Safety::default();
     for number in 1..=1000 {
         let order = frame(&mut safety, &WELL);
         let expected = if number == 150 {
@@ -61,7 +68,7 @@ fn boot_is_asked_for_once_three_seconds_after_power_on() {
 #[test]
 fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
     let boots = |disturb: fn(&mut Safety)| {
-        let mut safety = Safety::new(true);
+        let mut safety = Safety::default();
         let mut booted = false;
         for number in 1..=400 {
             booted |= frame(&mut safety, &WELL) == Order::Boot;
@@ -85,7 +92,7 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
 #[test]
 fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     for deadman in [20u16, 100, 1000, 60_000] {
-        let mut safety = Safety::new(false);
+        let mut safety = without_boot();
         for _ in 0..10 {
             safety.line_came();
             let mut frames = 0;
@@ -101,7 +108,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
 
 #[test]
 fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     for _ in 0..5000 {
         assert_eq!(safety.frame(&WELL, &supplies(), true, 0), Order::None);
         assert_eq!(safety.frame(&WELL, &supplies(), false, 20), Order::None);
@@ -110,7 +117,7 @@ fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
 
 #[test]
 fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     let mut run = |volts| {
         let orders = [(); 3].map(|()| frame(&mut safety, &at(volts)));
         (
@@ -129,7 +136,7 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
 
 #[test]
 fn each_late_edge_stops_and_is_told() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     for late in [1, 2, 7, 65_535] {
         let health = Health { late, ..WELL };
         assert_eq!(frame(&mut safety, &health), Order::Stop);
@@ -141,7 +148,7 @@ fn each_late_edge_stops_and_is_told() {
 
 #[test]
 fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     let health = Health {
         stack_is_intact: false,
         ..WELL
@@ -158,7 +165,7 @@ fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
 
 #[test]
 fn of_two_orders_at_once_the_stronger_one_counts() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     frame(&mut safety, &at(4.0));
     frame(&mut safety, &at(4.0));
     let health = Health { late: 1, ..at(4.0) };
@@ -167,7 +174,7 @@ fn of_two_orders_at_once_the_stronger_one_counts() {
 
 #[test]
 fn what_is_said_unasked_comes_in_one_order_each_once() {
-    let mut safety = Safety::new(false);
+    let mut safety = without_boot();
     for notice in [
         Notice::Boot,
         Notice::Memory,

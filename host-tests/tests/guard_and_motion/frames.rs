@@ -98,7 +98,11 @@ impl<'a> Walker<'a> {
         let mut walker = Self {
             name,
             robot,
-            console: Console::new(robot.firmware(), &memory, Restart::default()),
+            console: {
+                let mut console = Console::new(robot.firmware());
+                console.begin(&memory, &Restart::default());
+                console
+            },
             memory,
             speeds: [0.0; 4],
             may_stop: false,

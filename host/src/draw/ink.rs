@@ -11,6 +11,12 @@ pub const DARK: &str = "#222222";
 pub const GREY: &str = "#666666";
 /// Grid lines.
 pub const GRID: &str = "#dddddd";
+/// The wires of a servo: signal, +5 V, ground. Grey, they are light, middling and dark.
+pub const ORANGE: &str = "#e8930c";
+/// See [`ORANGE`].
+pub const RED: &str = "#e5383b";
+/// See [`ORANGE`].
+pub const BROWN: &str = "#3d2210";
 /// Backgrounds of panels.
 pub const PANEL: &str = "#f7f7f7";
 
@@ -91,6 +97,6 @@ pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
 }
 
 /// A hundredth of a pixel is enough, and keeps files small and alike.
-fn fixed(value: f64) -> f64 {
+pub(super) fn fixed(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }

@@ -1,20 +1,27 @@
-//! `lizard draw`: the robot from above.
+//! `lizard draw`: the robot from above, its wiring, and how its cranks are fitted.
 
+mod horns;
 pub mod ink;
 mod labels;
+mod route;
 mod top_view;
+mod uno;
+mod wiring;
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::{Failure, PoseArgs, RobotFile};
 
+pub use horns::horns;
 pub use labels::pin_name;
 pub use top_view::top_view;
+pub use wiring::wiring;
 
-/// Draw the robot from above as SVG
+/// Draw the robot from above as SVG, or what its builder needs
 ///
-/// At neutral, or at the pose given by --theta1 and so on.
+/// From above, at neutral or at the pose given by --theta1 and so on; or the wiring;
+/// or the angles at which the cranks are fitted.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// Where the picture goes [default: standard output]
@@ -23,6 +30,12 @@ pub struct Args {
     /// Leave out names and measures
     #[arg(long)]
     plain: bool,
+    /// Draw the wiring: servos, supply, board
+    #[arg(long, conflicts_with_all = ["plain", "theta1", "horns"])]
+    wiring: bool,
+    /// Draw the cranks at the angles where they are fitted, and what a trim is for
+    #[arg(long, conflicts_with_all = ["plain", "theta1"])]
+    horns: bool,
     #[command(flatten)]
     pose: PoseArgs,
     #[command(flatten)]
@@ -35,12 +48,18 @@ pub struct Args {
 /// A pose that the robot cannot have, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
-    let solution = robot
-        .lizard()
-        .solve(&pose)
-        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
-    let picture = top_view(&robot, &solution, !args.plain);
+    let picture = if args.wiring {
+        wiring(&robot)
+    } else if args.horns {
+        horns(&robot)
+    } else {
+        let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
+        let solution = robot
+            .lizard()
+            .solve(&pose)
+            .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+        top_view(&robot, &solution, !args.plain)
+    };
     match args.output {
         Some(path) => std::fs::write(&path, picture).map_err(|error| {
             Failure::Impossible(format!("cannot write {}: {error}", path.display()))

@@ -2,7 +2,7 @@
 //! its servos get, and where that would take the robot.
 
 pub mod analysis;
-mod dialogue;
+pub(crate) mod dialogue;
 pub mod footfall;
 pub mod frame;
 pub mod frame_log;
@@ -13,7 +13,7 @@ pub mod script;
 mod served;
 pub mod session;
 pub mod spans;
-mod timeline;
+pub(crate) mod timeline;
 pub mod tour;
 pub mod twin;
 
@@ -132,7 +132,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let commands = commands(&robot, &recording);
     let (robot, log) = (&robot, &recording.frames);
     let frames = Run { robot, log };
-    write_file(&args.svg, &timeline::draw(frames, &spans))?;
+    write_file(
+        &args.svg,
+        &timeline::draw(frames, &spans, &timeline::SIMULATED),
+    )?;
     let report = Report {
         elf: elf.display().to_string(),
         fidelity: match fidelity {
@@ -306,7 +309,7 @@ fn analysis_progress() -> ProgressBar {
 }
 
 /// Writes a file and the folders it needs.
-fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
     let failure =
         |error: io::Error| Failure::Impossible(format!("cannot write {}: {error}", path.display()));
     if let Some(folder) = path

@@ -13,8 +13,11 @@ pub struct Span {
     pub to: f64,
 }
 
-/// Commands that move nothing.
-const QUESTIONS: [&str; 4] = ["status", "help", "?", "watch"];
+/// Commands that begin and end no motion.
+const QUESTIONS: [&str; 14] = [
+    "status", "help", "?", "watch", "cal", "trim", "limit", "dir", "scale", "save", "load",
+    "factory", "boot", "deadman",
+];
 
 /// The commands that changed the motion, in order of time, after the stand that
 /// the robot wakes to. A command that was refused changes nothing: the one

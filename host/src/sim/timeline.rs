@@ -26,13 +26,32 @@ const HEIGHT: f64 = AXIS + 96.0;
 /// Where each servo's leg is.
 const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
+/// What the picture says of itself.
+#[derive(Debug, Clone, Copy)]
+pub struct Caption {
+    /// Above it, large.
+    pub title: &'static str,
+    /// Below that, small.
+    pub note: &'static str,
+    /// Below the axis of time.
+    pub axis: &'static str,
+}
+
+/// Of a run on the simulated UNO.
+pub const SIMULATED: Caption = Caption {
+    title: "Servo angles and footfalls, measured on the simulated UNO",
+    note: "degrees in the chassis frame, read back from every pulse; dashed: the neutral angle",
+    axis: "time since power-on (s)",
+};
+
 /// The picture as SVG text. `spans` are the commands that were in effect.
 #[must_use]
-pub fn draw(run: Run<'_>, spans: &[Span]) -> String {
+pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     let end = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {
         run,
         spans,
+        caption,
         seconds: end.max(0.1),
     };
     let reach = chart.reach();
@@ -57,6 +76,7 @@ pub fn draw(run: Run<'_>, spans: &[Span]) -> String {
 struct Chart<'a> {
     run: Run<'a>,
     spans: &'a [Span],
+    caption: &'a Caption,
     seconds: f64,
 }
 
@@ -66,9 +86,7 @@ impl Chart<'_> {
     }
 
     fn title(&self, group: Group) -> Group {
-        let title = "Servo angles and footfalls, measured on the simulated UNO";
-        let note = "degrees in the chassis frame, read back from every pulse; \
-                    dashed: the neutral angle";
+        let Caption { title, note, .. } = self.caption;
         group
             .add(text(title, (LEFT, 40.0), 24.0, DARK, Anchor::Start).set("font-weight", "bold"))
             .add(text(note, (LEFT, 66.0), 15.0, GREY, Anchor::Start))
@@ -263,9 +281,8 @@ impl Chart<'_> {
                 .add(text(&label, (x, AXIS + 25.0), 14.0, DARK, Anchor::Middle));
         }
         let middle = (self.x(0.0) + self.x(self.seconds)) / 2.0;
-        let words = "time since power-on (s)";
         group.add(text(
-            words,
+            self.caption.axis,
             (middle, AXIS + 50.0),
             15.0,
             DARK,
@@ -346,7 +363,7 @@ mod tests {
             ..FrameLog::default()
         };
         let (robot, log) = (&robot, &log);
-        draw(Run { robot, log }, spans)
+        draw(Run { robot, log }, spans, &SIMULATED)
     }
 
     fn span(command: &str, from: f64, to: f64) -> Span {

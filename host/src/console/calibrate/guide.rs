@@ -1,0 +1,593 @@
+//! The steps of a calibration: what each does at the robot, what it says, and which
+//! keys lead where.
+//!
+//! The signs are proven before the trims: a servo whose sign is wrong would turn
+//! away from where the arrow points.
+
+use std::io::{Read, Write};
+use std::time::{Duration, Instant};
+
+use super::super::calibration::Calibration;
+use super::super::link::{Link, LinkError};
+use super::super::status::Status;
+
+/// Where each servo is.
+const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
+/// How far a servo is moved to prove its sign, degrees; the first that the robot
+/// does not refuse.
+const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
+/// The longest wait for a motion to end.
+const MOTION: Duration = Duration::from_secs(5);
+/// Frames without motion after which the robot stands still: a motion that has just
+/// begun is seen within these.
+const STILL: u64 = 4;
+/// Between two looks at the robot.
+const LOOK: Duration = Duration::from_millis(25);
+
+/// A key that means something here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Key {
+    /// To the next step.
+    Next,
+    /// To the step before.
+    Back,
+    /// Leave; nothing is changed.
+    Leave,
+    /// Do what the step is about.
+    Act,
+    /// The answer is yes.
+    Yes,
+    /// The answer is no.
+    No,
+    /// Turn the servo by so many degrees, counter-clockwise if positive.
+    Turn(f64),
+}
+
+/// A step; servos by their place, 0 to 3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Begin,
+    Horns,
+    Sign(usize),
+    Trim(usize),
+    Walk,
+    Save,
+    Saved,
+}
+
+const STEPS: [Step; 13] = [
+    Step::Begin,
+    Step::Horns,
+    Step::Sign(0),
+    Step::Sign(1),
+    Step::Sign(2),
+    Step::Sign(3),
+    Step::Trim(0),
+    Step::Trim(1),
+    Step::Trim(2),
+    Step::Trim(3),
+    Step::Walk,
+    Step::Save,
+    Step::Saved,
+];
+
+/// What the person sees.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct View {
+    /// Which step it is.
+    pub title: String,
+    /// What to do.
+    pub text: Vec<String>,
+    /// The keys.
+    pub keys: String,
+    /// What the last key has led to.
+    pub message: String,
+}
+
+/// A calibration on its way.
+#[derive(Debug)]
+pub struct Guide<'a, P> {
+    link: &'a mut Link<P>,
+    /// What the robot had, or has saved since.
+    before: Calibration,
+    /// What it has.
+    now: Calibration,
+    /// The neutral angles, degrees.
+    neutral: [f64; 4],
+    at: usize,
+    /// By how much the servo of this step has been moved, if it has.
+    moved: Option<f64>,
+    walks: bool,
+    message: String,
+}
+
+impl<'a, P: Read + Write> Guide<'a, P> {
+    /// Asks the robot what it has, and lets it stand.
+    ///
+    /// # Errors
+    /// No answer, or the robot cannot stand.
+    pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
+        let before = Calibration::ask(link)?;
+        link.tell("stand")?;
+        let pose = settle(link)?;
+        Ok(Self {
+            link,
+            now: before.clone(),
+            before,
+            neutral: pose,
+            at: 0,
+            moved: None,
+            walks: false,
+            message: String::new(),
+        })
+    }
+
+    fn step(&self) -> Step {
+        STEPS[self.at]
+    }
+
+    /// Takes a key; true when the person is done or has left.
+    ///
+    /// # Errors
+    /// The connection breaks. A refusal is no error: it is shown.
+    pub fn key(&mut self, key: Key) -> Result<bool, LinkError> {
+        self.message.clear();
+        let done = match (key, self.step()) {
+            (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
+            (Key::Leave, _) => self.leave().map(|()| true),
+            (Key::Back, _) => self.go(self.at.saturating_sub(1)).map(|()| false),
+            (Key::Next, Step::Sign(_)) => {
+                self.message = "Press the space bar, look, then answer with y or n.".to_owned();
+                Ok(false)
+            }
+            (Key::Next | Key::Act, Step::Save) => self.save().map(|()| false),
+            (Key::Next, _) => self.go(self.at + 1).map(|()| false),
+            (Key::Act, Step::Sign(servo)) => self.move_one(servo).map(|()| false),
+            (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
+            (Key::Turn(degrees), Step::Trim(servo)) => self.trim(servo, degrees).map(|()| false),
+            (Key::Act, Step::Walk) => self.walk(!self.walks).map(|()| false),
+            _ => Ok(false),
+        };
+        match done {
+            Err(LinkError::Refused { line, reason }) if key != Key::Leave => {
+                self.message = format!("The robot refuses `{line}`: {reason}.");
+                Ok(false)
+            }
+            other => other,
+        }
+    }
+
+    /// Lets the robot speak while no key comes.
+    ///
+    /// # Errors
+    /// The connection breaks.
+    pub fn idle(&mut self) -> Result<(), LinkError> {
+        while let Some(line) = self.link.line(Duration::ZERO)? {
+            if line.starts_with("# lizard ") {
+                self.message = "The board was reset: leave with q and begin again.".to_owned();
+            } else if let Some(note) = line.strip_prefix("# ") {
+                self.message = format!("The robot says: {note}.");
+            }
+        }
+        if self.walks {
+            // Also keeps `deadman` from ending the gait.
+            let reply = self.link.ask("status")?;
+            self.walks = Status::parse(&reply.answer).is_some_and(|status| status.walks());
+        }
+        Ok(())
+    }
+
+    /// Gives the robot what it had before, and lets it stand.
+    fn leave(&mut self) -> Result<(), LinkError> {
+        match self.stand() {
+            // The supply may be too low for it. That is no reason to stay.
+            Ok(()) | Err(LinkError::Refused { .. }) => {}
+            Err(error) => return Err(error),
+        }
+        if self.now != self.before {
+            self.before.apply(self.link)?;
+        }
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), LinkError> {
+        self.link.tell("save")?;
+        self.before = self.now.clone();
+        self.go(self.at + 1)
+    }
+
+    fn go(&mut self, to: usize) -> Result<(), LinkError> {
+        match STEPS[to] {
+            Step::Horns => {
+                self.stand()?;
+                self.link.tell("center")?;
+                settle(self.link)?;
+            }
+            _ if self.step() == Step::Save => {}
+            _ => self.stand()?,
+        }
+        self.at = to;
+        Ok(())
+    }
+
+    fn stand(&mut self) -> Result<(), LinkError> {
+        self.link.tell("stand")?;
+        self.walks = false;
+        self.moved = None;
+        settle(self.link)?;
+        Ok(())
+    }
+
+    fn move_one(&mut self, servo: usize) -> Result<(), LinkError> {
+        self.stand()?;
+        let mut refusal = None;
+        for proof in PROOFS {
+            let mut pose = self.neutral;
+            pose[servo] += proof;
+            let [a1, a2, a3, a4] = pose;
+            match self
+                .link
+                .tell(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))
+            {
+                Ok(_) => {
+                    self.moved = Some(proof);
+                    settle(self.link)?;
+                    self.message = format!("A{} has moved.", servo + 1);
+                    return Ok(());
+                }
+                Err(error @ LinkError::Refused { .. }) => refusal = Some(error),
+                Err(error) => return Err(error),
+            }
+        }
+        refusal.map_or(Ok(()), Err)
+    }
+
+    fn prove(&mut self, servo: usize, answer: Key) -> Result<(), LinkError> {
+        if self.moved.is_none() {
+            self.message = "Press the space bar first, and look which way it turns.".to_owned();
+            return Ok(());
+        }
+        if answer == Key::Yes {
+            return self.go(self.at + 1);
+        }
+        self.stand()?;
+        let n = servo + 1;
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        set.dir = set.dir.reversed();
+        // The horn stays where it is: the same pulse is now the opposite trim.
+        set.trim = -set.trim;
+        let (dir, trim) = (set.dir.sign(), set.trim);
+        self.link.tell(&format!("dir {n} {dir}"))?;
+        if trim != 0.0 {
+            self.link.tell(&format!("trim {n} {trim:.2}"))?;
+        }
+        self.now = next;
+        settle(self.link)?;
+        self.message =
+            format!("The sign of A{n} is `{dir}` now. Press the space bar to look once more.");
+        Ok(())
+    }
+
+    fn trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        // Hundredths, as the robot has them; and no negative zero.
+        set.trim = ((set.trim + degrees) * 100.0).round() / 100.0 + 0.0;
+        let line = format!("trim {} {:.2}", servo + 1, set.trim);
+        self.link.tell(&line)?;
+        self.now = next;
+        Ok(())
+    }
+
+    fn walk(&mut self, begin: bool) -> Result<(), LinkError> {
+        if !begin {
+            return self.stand();
+        }
+        let gait = self.first_gait()?;
+        self.link.tell(&gait)?;
+        self.walks = true;
+        self.message = format!("The robot does `{gait}`.");
+        Ok(())
+    }
+
+    /// `walk`, or the first gait that the robot has besides `stand`.
+    fn first_gait(&mut self) -> Result<String, LinkError> {
+        let help = self.link.tell("help")?;
+        let gaits = help
+            .notes
+            .iter()
+            .filter_map(|line| line.strip_prefix("# gaits: "));
+        let gaits: Vec<&str> = gaits.flat_map(|names| names.split('|')).collect();
+        let moves = gaits.iter().copied().find(|name| *name == "walk");
+        let moves = moves.or_else(|| gaits.iter().copied().find(|name| *name != "stand"));
+        Ok(moves.unwrap_or("stand").to_owned())
+    }
+
+    /// What the person sees now.
+    #[must_use]
+    pub fn view(&self) -> View {
+        let step = |name: &str| format!("Step {} of {}: {name}", self.at + 1, STEPS.len());
+        let servo = |place: usize| format!("A{}, {}", place + 1, PLACES[place]);
+        let next = "Enter: next    b: back    q: leave, nothing is changed";
+        let (title, text, keys): (String, Vec<String>, &str) = match self.step() {
+            Step::Begin => (
+                step("before you begin"),
+                vec![
+                    "The servos need a supply of their own, 5 V and 3 A.".to_owned(),
+                    "Lift the robot off the table: its legs will move.".to_owned(),
+                    "Nothing is kept before the last step. Leave at any time with q.".to_owned(),
+                ],
+                "Enter: next    q: leave, nothing is changed",
+            ),
+            Step::Horns => {
+                let mut text = vec![
+                    "Every servo stands in its middle now, and holds.".to_owned(),
+                    "Take the horns off. Press each crank on as near to its angle as the"
+                        .to_owned(),
+                    "teeth allow, and fasten its screw. Angles from the robot's right,".to_owned(),
+                    "counter-clockwise, seen from above:".to_owned(),
+                    String::new(),
+                ];
+                for (place, neutral) in self.neutral.iter().enumerate() {
+                    text.push(format!("    {:<16} {neutral:6.2} deg", servo(place)));
+                }
+                text.push(String::new());
+                text.push("If the horns are on already, go on.".to_owned());
+                (step("fit the horns"), text, next)
+            }
+            Step::Sign(place) => {
+                let way = match self.moved {
+                    Some(by) if by < 0.0 => "clockwise",
+                    _ => "counter-clockwise",
+                };
+                let by = self.moved.unwrap_or(PROOFS[0]).abs();
+                (
+                    step(&format!("which way does {} turn?", servo(place))),
+                    vec![
+                        format!(
+                            "The space bar moves A{} alone, by {by:.0} degrees.",
+                            place + 1
+                        ),
+                        format!("Seen from above: did it turn {way}?"),
+                    ],
+                    "space: move it    y: yes    n: no    b: back    q: leave, nothing is changed",
+                )
+            }
+            Step::Trim(place) => (
+                step(&format!("straighten {}", servo(place))),
+                vec![
+                    format!(
+                        "Turn the crank of A{} with the arrow keys until it points to {:.2} deg,",
+                        place + 1,
+                        self.neutral[place]
+                    ),
+                    "or until it mirrors the one on the other side.".to_owned(),
+                    String::new(),
+                    format!("    trim {:+.2} deg", self.now.servo.all()[place].trim),
+                ],
+                "left, right: 0.5 deg counter-clockwise, clockwise    up, down: 0.1 deg    \
+                 Enter: next    b: back    q: leave",
+            ),
+            Step::Walk => (
+                step("a test walk"),
+                vec![
+                    "Put the robot on the floor, with room in front of it.".to_owned(),
+                    if self.walks {
+                        "It walks. The space bar ends it.".to_owned()
+                    } else {
+                        "The space bar starts it, and ends it.".to_owned()
+                    },
+                ],
+                "space: start, stop    Enter: next    b: back    q: leave, nothing is changed",
+            ),
+            Step::Save => {
+                let mut text = vec!["This will be kept in the board:".to_owned(), String::new()];
+                for (place, set) in self.now.servo.all().into_iter().enumerate() {
+                    text.push(format!(
+                        "    {:<16} sign {}   trim {:+.2} deg",
+                        servo(place),
+                        set.dir.sign(),
+                        set.trim
+                    ));
+                }
+                (
+                    step("save"),
+                    text,
+                    "Enter: save    b: back    q: leave, nothing is changed",
+                )
+            }
+            Step::Saved => (
+                step("done"),
+                vec![
+                    "The board has saved it and starts with it from now on.".to_owned(),
+                    "`lizard backup FILE` keeps a copy on this machine.".to_owned(),
+                ],
+                "Enter: end    b: back to change something",
+            ),
+        };
+        View {
+            title,
+            text,
+            keys: keys.to_owned(),
+            message: self.message.clone(),
+        }
+    }
+}
+
+/// Waits until the robot stands still; returns its pose.
+fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
+    let end = Instant::now() + MOTION;
+    let mut last: Option<Status> = None;
+    loop {
+        let reply = link.tell("status")?;
+        let Some(now) = Status::parse(&reply.answer) else {
+            return Err(LinkError::Unclear {
+                line: "status".to_owned(),
+                answer: reply.answer,
+            });
+        };
+        let (frames, pose) = (now.frames, now.pose);
+        let since = last
+            .as_ref()
+            .and_then(|last| frames.checked_sub(last.frames));
+        match since {
+            Some(0..STILL) if Instant::now() < end => {}
+            Some(_) if last.is_some_and(|last| last.pose == pose) => return Ok(pose),
+            _ if Instant::now() >= end => return Ok(pose),
+            _ => last = Some(now),
+        }
+        link.pause(LOOK)?;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::calibration::Direction;
+    use super::super::super::double::robot;
+    use super::*;
+
+    fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
+        let mut done = false;
+        for key in keys {
+            done = guide.key(*key).expect("the robot answers");
+        }
+        done
+    }
+
+    const PROVE: [Key; 2] = [Key::Act, Key::Yes];
+
+    #[test]
+    fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
+        let mut link = robot();
+        let mut guide = Guide::new(&mut link).expect("it answers");
+        press(&mut guide, &[Key::Next, Key::Next]);
+        press(&mut guide, &PROVE);
+        assert!(
+            guide
+                .view()
+                .title
+                .contains("which way does A2, front right turn")
+        );
+        press(&mut guide, &[Key::Act, Key::No, Key::Act, Key::Yes]);
+        press(&mut guide, &PROVE);
+        press(&mut guide, &PROVE);
+        assert!(
+            guide.view().title.contains("straighten A1"),
+            "{:?}",
+            guide.view()
+        );
+        press(
+            &mut guide,
+            &[Key::Turn(0.5), Key::Turn(0.5), Key::Turn(-0.1), Key::Next],
+        );
+        press(
+            &mut guide,
+            &[Key::Turn(-0.5), Key::Next, Key::Next, Key::Next],
+        );
+        press(&mut guide, &[Key::Act]);
+        guide.idle().expect("it answers");
+        assert!(guide.view().text[1].starts_with("It walks"));
+        press(&mut guide, &[Key::Next]);
+        assert!(
+            guide
+                .view()
+                .text
+                .contains(&"    A1, front left   sign +   trim +0.90 deg".to_owned())
+        );
+        assert!(!press(&mut guide, &[Key::Next]));
+        assert!(guide.view().title.ends_with("done"), "{:?}", guide.view());
+        assert!(press(&mut guide, &[Key::Next]));
+        link.tell("factory").expect("it is taken");
+        link.tell("load").expect("it was saved");
+        let kept = Calibration::ask(&mut link).expect("it answers");
+        assert_eq!(kept.servo.a1.trim, 0.9);
+        assert_eq!(kept.servo.a2.trim, -0.5);
+        assert_eq!(kept.servo.a2.dir, Direction::Minus);
+        assert_eq!(kept.servo.a3.dir, Direction::Plus);
+    }
+
+    #[test]
+    fn who_leaves_at_any_step_leaves_everything_as_it_was() {
+        let way: Vec<Key> = [Key::Next, Key::Next]
+            .into_iter()
+            .chain([Key::Act, Key::No, Key::Act, Key::Yes])
+            .chain(PROVE.repeat(3))
+            .chain([
+                Key::Turn(4.0),
+                Key::Next,
+                Key::Next,
+                Key::Next,
+                Key::Next,
+                Key::Act,
+            ])
+            .collect();
+        for length in [1, 2, 3, 4, 6, 13, 17, 18] {
+            let mut link = robot();
+            link.tell("trim 1 2.50").expect("it is taken");
+            link.tell("boot walk").expect("it is taken");
+            let before = Calibration::ask(&mut link).expect("it answers");
+            let mut guide = Guide::new(&mut link).expect("it answers");
+            press(&mut guide, &way[..length]);
+            assert!(press(&mut guide, &[Key::Leave]), "after {length} keys");
+            let after = Calibration::ask(&mut link).expect("it answers");
+            assert_eq!(after, before, "after {length} keys");
+            let status = link.ask("status").expect("it answers").answer;
+            assert!(status.starts_with("ok gait=stand"), "{status}");
+            let load = link.ask("load").expect("it answers").answer;
+            assert!(load.starts_with("err 9"), "nothing was saved: {load}");
+        }
+    }
+
+    #[test]
+    fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
+        let mut link = robot();
+        link.tell("trim 1 3").expect("it is taken");
+        let mut guide = Guide::new(&mut link).expect("it answers");
+        press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
+        assert_eq!(guide.now.servo.a1.trim, -3.0);
+        let now = Calibration::ask(&mut link).expect("it answers");
+        assert_eq!(
+            (now.servo.a1.trim, now.servo.a1.dir),
+            (-3.0, Direction::Minus)
+        );
+    }
+
+    #[test]
+    fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
+        let mut link = robot();
+        let mut guide = Guide::new(&mut link).expect("it answers");
+        press(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
+        assert!(guide.view().message.contains("space bar first"));
+        press(&mut guide, &[Key::Next]);
+        assert!(guide.view().title.contains("A1"), "no step is left out");
+        press(&mut guide, &[Key::Act]);
+        let status = link.ask("status").expect("it answers").answer;
+        assert!(
+            status.contains("pose=148.59,41.41,318.59,221.41"),
+            "{status}"
+        );
+    }
+
+    #[test]
+    fn one_can_go_back_and_a_refused_trim_is_said_and_changes_nothing() {
+        let mut link = robot();
+        let mut guide = Guide::new(&mut link).expect("it answers");
+        press(&mut guide, &[Key::Back, Key::Next, Key::Next]);
+        for _ in 0..4 {
+            press(&mut guide, &PROVE);
+        }
+        press(&mut guide, &[Key::Turn(19.9), Key::Turn(0.5)]);
+        let view = guide.view();
+        assert!(
+            view.message
+                .starts_with("The robot refuses `trim 1 20.40`: 3 trim must")
+        );
+        assert!(
+            view.text.contains(&"    trim +19.90 deg".to_owned()),
+            "{view:?}"
+        );
+        press(&mut guide, &[Key::Back]);
+        assert!(guide.view().title.contains("which way does A4"));
+    }
+}

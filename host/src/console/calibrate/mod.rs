@@ -1,0 +1,179 @@
+//! `lizard calibrate`: a person with a screwdriver in the other hand, one key at a
+//! time.
+
+mod guide;
+
+use std::io::{self, IsTerminal, Stdout, Write};
+use std::time::Duration;
+
+use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crossterm::style::{Attribute, Print, SetAttribute};
+use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
+use crossterm::{cursor, execute, queue};
+
+use super::connect::Connect;
+use super::link::LinkError;
+use crate::Failure;
+use guide::{Guide, Key, View};
+
+/// Calibrate the robot, step by step
+///
+/// Centres the servos for fitting the horns, proves which way each turns, trims
+/// each with the arrow keys, walks, and saves. Nothing is kept before the last step;
+/// who leaves earlier leaves the robot as it was.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    #[command(flatten)]
+    connect: Connect,
+}
+
+/// How often the robot is listened to while no key comes.
+const TURN: Duration = Duration::from_millis(200);
+
+/// Runs `lizard calibrate`.
+///
+/// # Errors
+/// No terminal, no board, or a connection that breaks.
+pub fn run(args: Args) -> Result<(), Failure> {
+    if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
+        let words = "calibrate asks for single keys; run it in a terminal";
+        return Err(Failure::Input(words.to_owned()));
+    }
+    let place = args.connect.place("calibrate")?;
+    let (mut board, _) = place.meet()?;
+    let ended = Guide::new(&mut board.link).map_err(TurnError::from);
+    let ended = ended.and_then(|mut guide| with_keys(&mut guide));
+    match ended {
+        Ok(View { title, .. }) if title.ends_with("done") => {
+            println!("the calibration is saved");
+            Ok(())
+        }
+        Ok(_) => {
+            println!("left: the robot has what it had before");
+            Ok(())
+        }
+        Err(TurnError::Io(error)) => Err(error.into()),
+        // Opening the port resets the board, so what was not saved is gone then.
+        Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
+            "{}: {error}; what was not saved is forgotten when the port is opened again",
+            board.name
+        ))),
+    }
+}
+
+/// Shows the steps until the person is done; returns the last.
+fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<View, TurnError> {
+    let mut page = Page::new()?;
+    let mut shown = None;
+    loop {
+        let view = guide.view();
+        if shown.as_ref() != Some(&view) {
+            page.show(&view)?;
+            shown = Some(view);
+        }
+        if !event::poll(TURN)? {
+            guide.idle()?;
+            continue;
+        }
+        match event::read()? {
+            Event::Key(key) => {
+                if let Some(key) = meaning(key)
+                    && guide.key(key)?
+                {
+                    return Ok(guide.view());
+                }
+            }
+            Event::Resize(..) => shown = None,
+            _ => {}
+        }
+    }
+}
+
+/// What a key means, if anything.
+fn meaning(key: KeyEvent) -> Option<Key> {
+    if key.kind == KeyEventKind::Release {
+        return None;
+    }
+    let fine = key.modifiers.contains(KeyModifiers::SHIFT);
+    let step = if fine { 0.1 } else { 0.5 };
+    Some(match key.code {
+        KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => Key::Leave,
+        KeyCode::Char('q' | 'Q') | KeyCode::Esc => Key::Leave,
+        KeyCode::Enter => Key::Next,
+        KeyCode::Backspace | KeyCode::Char('b' | 'B') => Key::Back,
+        KeyCode::Char(' ') => Key::Act,
+        KeyCode::Char('y' | 'Y') => Key::Yes,
+        KeyCode::Char('n' | 'N') => Key::No,
+        KeyCode::Left => Key::Turn(step),
+        KeyCode::Right => Key::Turn(-step),
+        KeyCode::Up => Key::Turn(0.1),
+        KeyCode::Down => Key::Turn(-0.1),
+        _ => return None,
+    })
+}
+
+/// A whole terminal for one step. It is as before when this is dropped.
+struct Page(Stdout);
+
+impl Page {
+    fn new() -> io::Result<Self> {
+        terminal::enable_raw_mode()?;
+        let mut page = Self(io::stdout());
+        execute!(page.0, EnterAlternateScreen, cursor::Hide)?;
+        Ok(page)
+    }
+
+    fn show(&mut self, view: &View) -> io::Result<()> {
+        let out = &mut self.0;
+        queue!(
+            out,
+            Clear(ClearType::All),
+            cursor::MoveTo(0, 1),
+            SetAttribute(Attribute::Bold),
+            Print(&view.title),
+            SetAttribute(Attribute::Reset),
+            Print("\r\n\r\n"),
+        )?;
+        for line in &view.text {
+            queue!(out, Print(line), Print("\r\n"))?;
+        }
+        queue!(
+            out,
+            Print("\r\n"),
+            SetAttribute(Attribute::Reverse),
+            Print(&view.keys),
+            SetAttribute(Attribute::Reset),
+            Print("\r\n\r\n"),
+            SetAttribute(Attribute::Bold),
+            Print(&view.message),
+            SetAttribute(Attribute::Reset),
+        )?;
+        out.flush()
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        // The terminal may be gone; then nothing is left to be done.
+        let _ = execute!(self.0, cursor::Show, LeaveAlternateScreen);
+        let _ = terminal::disable_raw_mode();
+    }
+}
+
+/// Why the steps do not go on.
+enum TurnError {
+    Link(LinkError),
+    Io(io::Error),
+}
+
+impl From<LinkError> for TurnError {
+    fn from(error: LinkError) -> Self {
+        Self::Link(error)
+    }
+}
+
+impl From<io::Error> for TurnError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}

@@ -1,0 +1,149 @@
+//! From the arguments to a board that has said what it is.
+
+use std::path::PathBuf;
+
+use serialport::SerialPort;
+
+use super::find;
+use super::link::{Link, LinkError, Patience};
+use super::port;
+use crate::Failure;
+
+/// Which board a subcommand is about.
+#[derive(clap::Args, Debug)]
+pub struct Connect {
+    /// The board's serial port [default: the one that has a UNO, or the only one]
+    port: Option<String>,
+    /// Take a simulated UNO instead, in real time
+    #[arg(long, conflicts_with = "port")]
+    sim: bool,
+    /// With --sim: the firmware [default: target/avr-atmega328p/release/lizard.elf
+    /// in this folder or one above it]
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    elf: Option<PathBuf>,
+}
+
+/// Where the board is looked for, each time anew: a board that is plugged in
+/// again may get another port.
+#[derive(Debug)]
+pub struct Place {
+    port: Option<String>,
+    command: &'static str,
+    #[cfg(all(feature = "simulator", target_os = "linux"))]
+    simulated: Option<simulated_uno::Background>,
+}
+
+/// An open port with a board at it.
+pub struct Board {
+    /// The connection.
+    pub link: Link<Box<dyn SerialPort>>,
+    /// What the user is told where the board is.
+    pub name: String,
+}
+
+impl Connect {
+    /// Where to look; starts the simulated UNO if it is that.
+    ///
+    /// # Errors
+    /// No firmware for it, or no pseudo terminal.
+    pub fn place(self, command: &'static str) -> Result<Place, Failure> {
+        if self.sim {
+            return simulated(self.elf.as_deref(), command);
+        }
+        Ok(Place {
+            port: self.port,
+            command,
+            #[cfg(all(feature = "simulator", target_os = "linux"))]
+            simulated: None,
+        })
+    }
+}
+
+#[cfg(all(feature = "simulator", target_os = "linux"))]
+fn simulated(elf: Option<&std::path::Path>, command: &'static str) -> Result<Place, Failure> {
+    use simulated_uno::{Fidelity, Port, Uno};
+    let elf = crate::sim::elf(elf)?;
+    let uno = Uno::load(&elf, Fidelity::DataSheet)
+        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    let port = Port::new().map_err(|error| {
+        Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
+    })?;
+    let board = port.in_background(uno, |uno| {
+        uno.take_edges();
+        uno.take_marks();
+    })?;
+    Ok(Place {
+        port: Some(board.path().display().to_string()),
+        command,
+        simulated: Some(board),
+    })
+}
+
+#[cfg(not(all(feature = "simulator", target_os = "linux")))]
+fn simulated(_: Option<&std::path::Path>, _: &'static str) -> Result<Place, Failure> {
+    Err(Failure::Input(
+        "--sim is missing: this program was built without the simulator, or not for Linux"
+            .to_owned(),
+    ))
+}
+
+impl Place {
+    /// Opens the port, which resets the board. To be greeted next.
+    ///
+    /// # Errors
+    /// No board, more than one, or its port cannot be opened.
+    pub fn open(&self) -> Result<Board, Failure> {
+        let (port, name) = match &self.port {
+            Some(port) => (port.clone(), self.name_of(port)),
+            None => {
+                let found = find::choose(&find::usb_ports(), self.command)
+                    .map_err(|error| Failure::Impossible(error.to_string()))?;
+                (found.name.clone(), found.to_string())
+            }
+        };
+        Ok(Board {
+            link: Link::new(port::open(&port)?, Patience::default()),
+            name,
+        })
+    }
+
+    /// Opens the port, says on standard error which, and waits for the banner.
+    ///
+    /// # Errors
+    /// As [`Place::open`], or no lizard answers.
+    pub fn meet(&self) -> Result<(Board, Option<String>), Failure> {
+        let mut board = self.open()?;
+        eprintln!("lizard: waiting for the board at {}", board.name);
+        let banner = board.greet()?;
+        Ok((board, banner))
+    }
+
+    #[cfg(all(feature = "simulator", target_os = "linux"))]
+    fn name_of(&self, port: &str) -> String {
+        match self.simulated {
+            Some(_) => format!("{port} (a simulated UNO)"),
+            None => port.to_owned(),
+        }
+    }
+
+    #[cfg(not(all(feature = "simulator", target_os = "linux")))]
+    fn name_of(&self, port: &str) -> String {
+        port.to_owned()
+    }
+}
+
+impl Board {
+    /// Waits for the banner; see [`Link::greet`].
+    ///
+    /// # Errors
+    /// No lizard answers; the sentence names the port.
+    pub fn greet(&mut self) -> Result<Option<String>, Failure> {
+        self.link.greet().map_err(|error| self.failure(&error))
+    }
+
+    /// What went wrong, with the port's name.
+    #[must_use]
+    pub fn failure(&self, error: &LinkError) -> Failure {
+        Failure::Impossible(format!("{}: {error}", self.name))
+    }
+}

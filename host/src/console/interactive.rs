@@ -1,0 +1,299 @@
+//! `lizard console` and `lizard record`: a person, or a script on standard input,
+//! talks to the robot.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
+use std::path::PathBuf;
+use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::time::{Duration, Instant};
+
+use crossterm::event::{self, Event as TerminalEvent};
+
+use super::connect::{Board, Connect, Place};
+use super::history;
+use super::link::LinkError;
+use super::prompt::{Outcome, Prompt};
+use super::recorder::{self, Event, FORMAT, Recorder};
+use super::screen::Screen;
+use super::session::Session;
+use crate::Failure;
+
+/// Talk to the robot
+///
+/// Finds the board, waits for it to start, and passes lines to it; `help` lists its
+/// commands. Arrows bring back older lines; Ctrl-C, Ctrl-D or `quit` leave. The line
+/// at the bottom shows gait, pose, smallest margin, supply and faults; for that the
+/// robot is asked for its `status` twice a second, which also keeps `boot` and
+/// `deadman` from acting. With standard input from a file or a pipe its lines are
+/// sent one after another.
+#[derive(clap::Args, Debug)]
+pub struct ConsoleArgs {
+    #[command(flatten)]
+    connect: Connect,
+}
+
+/// Talk to the robot, and keep all of it in a file
+///
+/// As `lizard console`; the file gets commands, answers, the pose of every frame
+/// and faults, each as a JSON object in a line with its time in ms. `lizard replay`
+/// draws it.
+#[derive(clap::Args, Debug)]
+pub struct RecordArgs {
+    /// A new file for the session
+    file: PathBuf,
+    #[command(flatten)]
+    connect: Connect,
+}
+
+type FileRecorder = Recorder<BufWriter<File>>;
+
+/// How long the loop waits for the robot before it looks at the keys.
+const TURN: Duration = Duration::from_millis(10);
+/// How often a vanished port is looked for.
+const RETRY: Duration = Duration::from_millis(300);
+
+/// Runs `lizard console`.
+///
+/// # Errors
+/// No board, or the terminal fails.
+pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
+    talk(&args.connect.place("console")?, None)
+}
+
+/// Runs `lizard record`.
+///
+/// # Errors
+/// As [`console`], or the file is there already or cannot be written.
+pub fn record(args: RecordArgs) -> Result<(), Failure> {
+    if args.file.exists() {
+        recorder::create(&args.file)?;
+    }
+    talk(&args.connect.place("record FILE")?, Some(args.file))
+}
+
+fn talk(place: &Place, file: Option<PathBuf>) -> Result<(), Failure> {
+    let (board, banner) = place.meet()?;
+    let mut talk = Talk {
+        session: Session::new(Instant::now(), true, file.is_some()),
+        recorder: None,
+        mark: "",
+    };
+    if let Some(path) = file {
+        talk.mark = "REC  ";
+        let mut recorder = recorder::create(&path)?;
+        let event = Event::Begin {
+            format: FORMAT.to_owned(),
+            port: board.name.clone(),
+            banner: banner.clone(),
+        };
+        recorder.write(Instant::now(), event)?;
+        talk.recorder = Some(recorder);
+    }
+    let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
+    if io::stdin().is_terminal() && io::stdout().is_terminal() {
+        talk.with_a_person(place, board, &first)
+    } else {
+        talk.with_a_script(board, &first)
+    }
+}
+
+/// A session with where it is kept.
+struct Talk {
+    session: Session,
+    recorder: Option<FileRecorder>,
+    mark: &'static str,
+}
+
+impl Talk {
+    /// Passes on what is to be sent, and takes what has come; `show` gets the lines
+    /// for the person.
+    fn turn(
+        &mut self,
+        board: &mut Board,
+        mut show: impl FnMut(&str) -> io::Result<()>,
+    ) -> Result<(), TurnError> {
+        if let Some(line) = self.session.due(Instant::now()) {
+            board.link.send(&line)?;
+        }
+        // Not for ever: the keys wait.
+        for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
+            let Some(line) = board.link.line(wait)? else {
+                break;
+            };
+            if let Some(line) = self.session.hear(&line) {
+                show(&line)?;
+            }
+        }
+        if let Some(line) = self.session.overdue(Instant::now()) {
+            show(&line)?;
+        }
+        self.keep()?;
+        Ok(())
+    }
+
+    fn keep(&mut self) -> io::Result<()> {
+        let said = self.session.take_said();
+        if let Some(recorder) = &mut self.recorder {
+            let now = Instant::now();
+            for said in said {
+                recorder.write(now, said.into())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn with_a_script(mut self, mut board: Board, first: &str) -> Result<(), Failure> {
+        let mut out = io::stdout();
+        writeln!(out, "{first}")?;
+        // The answers are all that is wanted.
+        self.session = Session::new(
+            Instant::now(),
+            self.recorder.is_some(),
+            self.recorder.is_some(),
+        );
+        let lines = lines_of_stdin();
+        let mut ended = false;
+        while !(ended && self.session.is_idle()) {
+            while !ended {
+                match lines.try_recv() {
+                    Ok(line) if line.trim().is_empty() => {}
+                    Ok(line) => self.session.say(line.trim()),
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => ended = true,
+                }
+            }
+            let shown = self.turn(&mut board, |line| writeln!(out, "{line}"));
+            shown.map_err(|error| error.failure(&board))?;
+        }
+        Ok(())
+    }
+
+    fn with_a_person(mut self, place: &Place, board: Board, first: &str) -> Result<(), Failure> {
+        let mut screen = Screen::new()?;
+        let mut prompt = Prompt::new(history::load());
+        screen.print(first)?;
+        screen.print("(help lists the commands; Ctrl-D leaves)")?;
+        let mut board = Some(board);
+        let mut failed = None;
+        while !self.keys(&mut screen, &mut prompt)? {
+            let Some(present) = &mut board else {
+                screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
+                board = self.look_again(place, &mut screen)?;
+                continue;
+            };
+            match self.turn(present, |line| screen.print(line)) {
+                Ok(()) => {}
+                Err(TurnError::Link(LinkError::Gone)) => {
+                    let words = format!("{}: {}", present.name, LinkError::Gone);
+                    screen.print(&words)?;
+                    if let Some(recorder) = &mut self.recorder {
+                        recorder.write(Instant::now(), Event::Gone)?;
+                    }
+                    board = None;
+                    continue;
+                }
+                Err(error) => {
+                    failed = Some(error.failure(present));
+                    break;
+                }
+            }
+            let status = self.session.status().map(super::status::Status::line);
+            let status = status.unwrap_or_default();
+            screen.draw(&format!("{}{status}", self.mark), &prompt)?;
+        }
+        drop(screen);
+        history::save(prompt.history());
+        if self
+            .session
+            .status()
+            .is_some_and(super::status::Status::walks)
+        {
+            println!("the robot goes on with its gait");
+        }
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Takes the keys that have been pressed; true if the person leaves.
+    fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
+        while event::poll(Duration::ZERO)? {
+            let outcomes = match event::read()? {
+                TerminalEvent::Key(key) => vec![prompt.key(key)],
+                TerminalEvent::Paste(text) => prompt.paste(&text),
+                _ => vec![],
+            };
+            for outcome in outcomes {
+                match outcome {
+                    Outcome::Edited => {}
+                    Outcome::Leave => return Ok(true),
+                    Outcome::Line(line) => {
+                        screen.print(&format!("> {line}"))?;
+                        self.session.say(&line);
+                    }
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// The board, if it is there again.
+    fn look_again(&mut self, place: &Place, screen: &mut Screen) -> Result<Option<Board>, Failure> {
+        std::thread::sleep(RETRY);
+        let Ok(mut board) = place.open() else {
+            return Ok(None);
+        };
+        match board.link.greet() {
+            Ok(banner) => {
+                let banner = banner.unwrap_or_default();
+                screen.print(&format!("{} is there again: {banner}", board.name))?;
+                self.session = Session::new(Instant::now(), true, self.recorder.is_some());
+                Ok(Some(board))
+            }
+            Err(LinkError::Gone) => Ok(None),
+            Err(error) => Err(board.failure(&error)),
+        }
+    }
+}
+
+/// The lines of standard input as they come; disconnected at its end.
+fn lines_of_stdin() -> Receiver<String> {
+    let (send, receive) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in io::stdin().lock().lines() {
+            let Ok(line) = line else {
+                break;
+            };
+            if send.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    receive
+}
+
+/// Why the dialogue does not go on.
+#[derive(Debug)]
+enum TurnError {
+    Link(LinkError),
+    Io(io::Error),
+}
+
+impl From<LinkError> for TurnError {
+    fn from(error: LinkError) -> Self {
+        Self::Link(error)
+    }
+}
+
+impl From<io::Error> for TurnError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl TurnError {
+    fn failure(self, board: &Board) -> Failure {
+        match self {
+            Self::Link(error) => board.failure(&error),
+            Self::Io(error) => error.into(),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! A session as a file: one JSON object in a line, with the time in ms.
+
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::session::Said;
+use super::status::angles;
+use crate::Failure;
+
+/// What the first line's `format` says. The number rises when a key changes its
+/// meaning.
+pub const FORMAT: &str = "lizard record 1";
+
+/// A line of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Milliseconds since the session began.
+    pub ms: u64,
+    /// What happened then.
+    #[serde(flatten)]
+    pub event: Event,
+}
+
+/// What may happen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Event {
+    /// The session began; always the first line.
+    Begin {
+        /// [`FORMAT`].
+        format: String,
+        /// Where the board is.
+        port: String,
+        /// The robot's first line, unless it was not reset.
+        banner: Option<String>,
+    },
+    /// A person's line.
+    Sent(String),
+    /// The robot's answer to it.
+    Answer(String),
+    /// A line that begins with `#`.
+    Note(String),
+    /// An answer to `status`, which the program asked for.
+    Status(String),
+    /// A report of `watch`.
+    Pose {
+        /// Frames since power-on, 50 a second.
+        frame: u64,
+        /// Degrees, chassis frame, A1 to A4.
+        angles: [f64; 4],
+    },
+    /// The port has vanished.
+    Gone,
+}
+
+/// Writes a session.
+#[derive(Debug)]
+pub struct Recorder<W: Write> {
+    out: W,
+    begin: Instant,
+}
+
+/// A new file for a session.
+///
+/// # Errors
+/// It is there already, or cannot be made.
+pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
+    let name = path.display();
+    match File::create_new(path) {
+        Ok(file) => Ok(Recorder::new(BufWriter::new(file), Instant::now())),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
+            "{name} is there already; name a new file for the session"
+        ))),
+        Err(error) => Err(Failure::Impossible(format!("cannot write {name}: {error}"))),
+    }
+}
+
+impl<W: Write> Recorder<W> {
+    /// A session that begins now.
+    pub fn new(out: W, begin: Instant) -> Self {
+        Self { out, begin }
+    }
+
+    /// Writes an event. All but poses are in the file at once.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn write(&mut self, now: Instant, event: Event) -> io::Result<()> {
+        let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
+        let is_pose = matches!(event, Event::Pose { .. });
+        serde_json::to_writer(&mut self.out, &Entry { ms, event })?;
+        self.out.write_all(b"\n")?;
+        if is_pose { Ok(()) } else { self.out.flush() }
+    }
+}
+
+impl From<Said> for Event {
+    fn from(said: Said) -> Self {
+        match said {
+            Said::Sent(line) => Self::Sent(line),
+            Said::Answer(line) => Self::Answer(line),
+            Said::Status(line) => Self::Status(line),
+            Said::Note(line) => match pose(&line) {
+                Some((frame, angles)) => Self::Pose { frame, angles },
+                None => Self::Note(line),
+            },
+        }
+    }
+}
+
+/// `# t=<frame> pose=<angles>`.
+fn pose(line: &str) -> Option<(u64, [f64; 4])> {
+    let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
+    Some((frame.parse().ok()?, angles(pose)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn each_event_is_a_line_of_json_with_its_time() {
+        let begin = Instant::now();
+        let mut out = Vec::new();
+        let mut recorder = Recorder::new(&mut out, begin);
+        let events = [
+            Event::Begin {
+                format: FORMAT.to_owned(),
+                port: "p".to_owned(),
+                banner: None,
+            },
+            Said::Sent("walk".to_owned()).into(),
+            Said::Note("# t=7 pose=1.00,2.00,3.00,4.50".to_owned()).into(),
+            Said::Note("# fault: x".to_owned()).into(),
+            Event::Gone,
+        ];
+        for (n, event) in events.iter().enumerate() {
+            let now = begin + Duration::from_millis(20 * n as u64);
+            recorder
+                .write(now, event.clone())
+                .expect("a vector takes it");
+        }
+        let text = String::from_utf8(out).expect("it is text");
+        assert_eq!(
+            text,
+            "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n\
+             {\"ms\":20,\"sent\":\"walk\"}\n\
+             {\"ms\":40,\"pose\":{\"frame\":7,\"angles\":[1.0,2.0,3.0,4.5]}}\n\
+             {\"ms\":60,\"note\":\"# fault: x\"}\n\
+             {\"ms\":80,\"gone\":null}\n"
+        );
+        let read: Vec<Event> = text
+            .lines()
+            .map(|line| {
+                serde_json::from_str::<Entry>(line)
+                    .expect("it is an entry")
+                    .event
+            })
+            .collect();
+        assert_eq!(read, events);
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_not_overwritten() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let words = create(file.path()).expect_err("it is there").to_string();
+        assert!(words.ends_with("is there already; name a new file for the session"));
+    }
+}

@@ -1,0 +1,83 @@
+//! `lizard replay`: a kept session printed, summed up and drawn.
+
+mod session;
+mod summary;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use crate::sim::analysis::Run;
+use crate::sim::dialogue::Printer;
+use crate::sim::session::{DialogueLine, Sender};
+use crate::sim::timeline::{self, Caption};
+use crate::{Failure, RobotFile};
+
+use super::recorder::Event;
+use session::Session;
+
+/// Draw a session that `lizard record` kept
+///
+/// Prints the dialogue and a summary, and draws servo angles and footfalls over
+/// time.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The session
+    file: PathBuf,
+    /// Where the picture goes
+    #[arg(long, value_name = "FILE", default_value = "out/lizard-replay.svg")]
+    svg: PathBuf,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+const CAPTION: Caption = Caption {
+    title: "Servo angles and footfalls of a session",
+    note: "degrees in the chassis frame, as the robot reported them; dashed: the neutral angle",
+    axis: "time since the session began (s)",
+};
+
+/// Runs it.
+///
+/// # Errors
+/// The file is no session, or the picture cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let name = args.file.display();
+    let text = std::fs::read_to_string(&args.file)
+        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    let session =
+        Session::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+
+    let mut out = io::stdout().lock();
+    let mut printer = Printer::new(true);
+    for entry in &session.entries {
+        let (from, text) = match &entry.event {
+            Event::Sent(line) => (Sender::User, line.clone()),
+            Event::Answer(line) | Event::Note(line) => (Sender::Robot, line.clone()),
+            Event::Gone => (Sender::Robot, "(the port was gone)".to_owned()),
+            Event::Begin { .. } | Event::Status(_) | Event::Pose { .. } => continue,
+        };
+        let ms = entry.ms as f64;
+        printer.print(&DialogueLine { ms, from, text }, &mut out)?;
+    }
+    writeln!(out)?;
+    summary::print(&session, &mut out)?;
+
+    let tables = format!(" tables {:08x}", robot.firmware().hash());
+    if session
+        .banner()
+        .is_some_and(|banner| !banner.contains(&tables))
+    {
+        writeln!(
+            out,
+            "picture     the session's robot is another than this robot.toml: angles are right, \
+             footfalls may not be"
+        )?;
+    }
+    let log = session.frames(&robot);
+    let (robot, log) = (&robot, &log);
+    let picture = timeline::draw(Run { robot, log }, &session.spans(), &CAPTION);
+    crate::sim::write_file(&args.svg, &picture)?;
+    writeln!(out, "picture     {}", args.svg.display())?;
+    Ok(())
+}

@@ -1,0 +1,48 @@
+//! Wires from a row of servos to a row of pins, none of which crosses another.
+//!
+//! A wire goes down, sideways at a height of its own, and down again. Servos stand in
+//! the order of their pins, so only the heights are to be chosen: of wires that go to
+//! the same side, the one ahead turns first.
+
+/// A path on the page, with only horizontal and vertical parts.
+pub type Path = Vec<(f64, f64)>;
+
+/// Pixels between parallel wires.
+pub const GAP: f64 = 13.0;
+
+/// Paths from places in a row to places in a row below, both from left to right. The
+/// highest sideways part is at `height`.
+pub fn between_rows(from: &[(f64, f64)], to: &[(f64, f64)], height: f64) -> Vec<Path> {
+    let goes_right = |wire: usize| to[wire].0 > from[wire].0;
+    (0..from.len())
+        .map(|wire| {
+            let ahead = if goes_right(wire) {
+                (wire + 1..from.len())
+                    .filter(|other| goes_right(*other))
+                    .count()
+            } else {
+                (0..wire).filter(|other| !goes_right(*other)).count()
+            };
+            let level = height + GAP * ahead as f64;
+            vec![
+                from[wire],
+                (from[wire].0, level),
+                (to[wire].0, level),
+                to[wire],
+            ]
+        })
+        .collect()
+}
+
+/// The end of a path that comes down at the right of a board and goes to a pin in its
+/// lower row; `place` counts such wires from the board outwards.
+pub fn below(corner: (f64, f64), place: usize, pin: (f64, f64)) -> Path {
+    let (x, y) = beside(corner, place);
+    vec![(x, y), (pin.0, y), pin]
+}
+
+/// The corner of such a wire: `corner` is the board's, at its lower right.
+pub fn beside(corner: (f64, f64), place: usize) -> (f64, f64) {
+    let off = GAP * (place as f64 + 1.0);
+    (corner.0 + off, corner.1 + off)
+}

@@ -1,0 +1,391 @@
+//! `lizard console` and its kin as a user meets them, with a simulated UNO at a
+//! pseudo terminal. Time is real here, so a test is a few seconds long.
+#![cfg(target_os = "linux")]
+
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
+use rustix::termios::{Winsize, tcsetwinsize};
+
+const ELF: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../target/avr-atmega328p/release/lizard.elf"
+);
+
+/// The longest wait for anything that a program should do at once.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+fn lizard(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .env("XDG_STATE_HOME", folder)
+        .env("TERM", "xterm");
+    command
+}
+
+/// Standard output, standard error, exit code.
+fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
+    let mut child = lizard(folder, arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("it has an input");
+    // A program that refuses its arguments reads nothing.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = child.wait_with_output().expect("it ends");
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    (text(stdout), text(stderr), status.code())
+}
+
+/// `lizard sim --pty`: a board with an EEPROM that lasts as long as it runs.
+struct Uno {
+    child: Child,
+    link: PathBuf,
+}
+
+impl Uno {
+    fn at(folder: &Path) -> Self {
+        let link = folder.join("uno");
+        let name = link.display().to_string();
+        let child = lizard(folder, &["sim", "--elf", ELF, "--pty", &name])
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let begin = Instant::now();
+        while !link.exists() {
+            assert!(begin.elapsed() < PATIENCE, "no board, run `make firmware`");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        Self { child, link }
+    }
+
+    fn port(&self) -> String {
+        self.link.display().to_string()
+    }
+}
+
+impl Drop for Uno {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let _ = fs::remove_file(&self.link);
+    }
+}
+
+/// A pseudo terminal: our end, and the one for a program.
+fn terminal() -> (File, OwnedFd, PathBuf) {
+    let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
+    let ours = ours.expect("a pseudo terminal");
+    unlockpt(&ours).expect("it is ours");
+    let path = ptsname(&ours, Vec::new()).expect("it has a name");
+    let path = PathBuf::from(path.to_string_lossy().into_owned());
+    let theirs = File::options()
+        .read(true)
+        .write(true)
+        .open(&path)
+        .expect("it opens");
+    (File::from(ours), theirs.into(), path)
+}
+
+/// A program at a terminal of its own, 100 columns wide.
+struct AtTerminal {
+    child: Child,
+    keys: File,
+    seen: std::sync::mpsc::Receiver<Vec<u8>>,
+    text: String,
+}
+
+impl AtTerminal {
+    fn start(mut command: Command) -> Self {
+        let (ours, theirs, _) = terminal();
+        let size = Winsize {
+            ws_row: 30,
+            ws_col: 100,
+            ws_xpixel: 0,
+            ws_ypixel: 0,
+        };
+        tcsetwinsize(&theirs, size).expect("it takes a size");
+        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+        let child = command
+            .stdin(end())
+            .stdout(end())
+            .stderr(end())
+            .spawn()
+            .expect("the program starts");
+        let mut screen = ours.try_clone().expect("another of it");
+        let (send, seen) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while let Ok(count @ 1..) = screen.read(&mut bytes) {
+                if send.send(bytes[..count].to_vec()).is_err() {
+                    break;
+                }
+            }
+        });
+        Self {
+            child,
+            keys: ours,
+            seen,
+            text: String::new(),
+        }
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).expect("it takes keys");
+    }
+
+    /// Waits until the screen has shown this, after what was waited for before.
+    fn wait_for(&mut self, words: &str) {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            if let Some(at) = self.text.find(words) {
+                self.text.drain(..at + words.len());
+                return;
+            }
+            let left = end.saturating_duration_since(Instant::now());
+            match self.seen.recv_timeout(left) {
+                Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
+                Err(_) => panic!("never `{words}`, but {:?}", self.text),
+            }
+        }
+    }
+
+    fn exit_code(mut self) -> Option<i32> {
+        self.child.wait().expect("it ends").code()
+    }
+}
+
+#[test]
+fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["console", "--sim", "--elf", ELF];
+    let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(out.starts_with("# lizard "), "{out}");
+    let answers: Vec<&str> = out.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(
+        answers,
+        [
+            "ok cal",
+            "err 1 unknown command, send help for the list",
+            "ok stop"
+        ]
+    );
+    assert!(out.contains("\n# A4 trim 0.00 limit "), "{out}");
+    assert!(error.contains("(a simulated UNO)"), "which port: {error}");
+}
+
+#[test]
+fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let uno = Uno::at(here);
+    let port = uno.port();
+    let (_, error, code) = run(here, &["backup", "a.toml", &port], "");
+    assert_eq!(code, Some(0), "{error}");
+    let first = fs::read_to_string(here.join("a.toml")).expect("it was written");
+
+    let changed = first.replacen("trim = 0.0", "trim = -1.75", 1);
+    fs::write(here.join("b.toml"), &changed).expect("it is written");
+    let (out, error, code) = run(here, &["restore", "b.toml", &port], "");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(
+        out.ends_with("has the calibration of b.toml and has saved it\n"),
+        "{out}"
+    );
+
+    let refused = changed.replace("scale = 10.0", "scale = 99.0");
+    fs::write(here.join("c.toml"), refused).expect("it is written");
+    let (out, error, code) = run(here, &["restore", "c.toml", &port], "");
+    assert_eq!(code, Some(1), "{error}");
+    assert!(
+        error.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
+        "{error}"
+    );
+    assert_eq!(out, "");
+
+    let (_, error, code) = run(here, &["backup", "d.toml", &port], "");
+    assert_eq!(code, Some(0), "{error}");
+    let last = fs::read_to_string(here.join("d.toml")).expect("it was written");
+    assert_eq!(last, changed, "what was saved last, after a reset");
+}
+
+#[test]
+fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let mut person = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
+    person.wait_for("# lizard ");
+    person.wait_for("no fault");
+    // Ctrl-A, and a letter that was forgotten.
+    person.press("top\x01s\r");
+    person.wait_for("> stop");
+    person.wait_for("ok stop");
+    person.wait_for("stop  A1..A4");
+    person.press("\x1b[A\r");
+    person.wait_for("ok stop");
+    drop(uno);
+    person.wait_for("the port is gone: the board was unplugged, or its cable is loose");
+    person.wait_for("waiting for the board");
+    let _uno = Uno::at(folder.path());
+    person.wait_for("is there again: # lizard ");
+    person.press("stand\r");
+    person.wait_for("ok stand");
+    person.press("\x04");
+    assert_eq!(person.exit_code(), Some(0));
+    let history = fs::read_to_string(folder.path().join("lizard/history"));
+    assert_eq!(history.expect("it is kept"), "stop\nstand\n");
+}
+
+#[test]
+fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["calibrate", "--sim", "--elf", ELF];
+    let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
+    person.wait_for("before you begin");
+    person.press("\r");
+    person.wait_for("fit the horns");
+    person.press("\r");
+    person.wait_for("which way does A1");
+    person.press(" ");
+    person.wait_for("A1 has moved");
+    person.press("n");
+    person.wait_for("The sign of A1 is `");
+    person.press("q");
+    person.wait_for("left: the robot has what it had before");
+    assert_eq!(person.exit_code(), Some(0));
+}
+
+#[test]
+fn a_kept_session_is_drawn_and_summed_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let mut child = lizard(here, &["record", "a.jsonl", "--sim", "--elf", ELF])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("it has an input");
+    stdin.write_all(b"speed 50\nfly\n").expect("it is read");
+    std::thread::sleep(Duration::from_millis(1500));
+    drop(stdin);
+    assert!(child.wait().expect("it ends").success());
+
+    let (out, error, code) = run(here, &["replay", "a.jsonl", "--svg", "a.svg"], "");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(
+        out.contains(" >  speed 50\n") || out.contains(" > speed 50\n"),
+        "{out}"
+    );
+    assert!(
+        out.contains("commands    2, of these refused: 1\n"),
+        "{out}"
+    );
+    assert!(out.contains("trouble     none\n"), "{out}");
+    let picture = fs::read_to_string(here.join("a.svg")).expect("it was drawn");
+    assert_eq!(
+        picture.matches("<polyline").count(),
+        4,
+        "a curve for each servo"
+    );
+
+    let (_, error, code) = run(here, &["record", "a.jsonl", "--sim", "--elf", ELF], "");
+    assert_eq!(code, Some(2));
+    assert!(error.contains("a.jsonl is there already"), "{error}");
+}
+
+#[test]
+fn a_port_that_another_program_has_open_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let other = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
+    let mut other = other;
+    other.wait_for("# lizard ");
+    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &uno.port()], "");
+    let who = format!("is open in lizard (process {})", other.child.id());
+    other.press("\x03");
+    assert_eq!(code, Some(1));
+    assert!(error.contains(&who), "{error}");
+    assert!(!folder.path().join("a.toml").exists());
+}
+
+#[test]
+fn what_is_no_lizard_is_named_by_what_it_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut ours, theirs, path) = terminal();
+    // Else this test would be the program that has the port open.
+    drop(theirs);
+    let talks = std::thread::spawn(move || {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(5) {
+            // Nobody may have it open.
+            let _ = ours.write_all(b"Grbl 1.1h ['$' for help]\r\n");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    });
+    let port = path.display().to_string();
+    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &port], "");
+    talks.join().expect("it has ended");
+    assert_eq!(code, Some(1), "{error}");
+    let words = "this is no lizard: it says `Grbl 1.1h ['$' for help]`";
+    assert!(error.contains(words), "{error}");
+    assert!(
+        !folder.path().join("a.toml").exists(),
+        "nothing half written"
+    );
+}
+
+#[test]
+fn wrong_input_is_a_sentence_and_starts_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    fs::write(here.join("no.toml"), "trim: 5\n").expect("it is written");
+    fs::write(here.join("other.toml"), "[links]\nl0 = 20.0\n").expect("it is written");
+    let complaint = |arguments: &[&str]| {
+        let (out, error, code) = run(here, arguments, "");
+        assert_eq!(out, "");
+        (error.trim().to_owned(), code)
+    };
+    for (arguments, words) in [
+        (
+            ["console", "/dev/no-such-port"],
+            "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ",
+        ),
+        (
+            ["restore", "no.toml"],
+            "lizard: no.toml: line 1: this is not TOML: ",
+        ),
+        (
+            ["restore", "other.toml"],
+            "lizard: other.toml: the key format = \"lizard calibration 1\" is missing",
+        ),
+        (["restore", "none.toml"], "lizard: cannot read none.toml: "),
+        (
+            ["replay", "other.toml"],
+            "lizard: other.toml: this is no session of `lizard record`: its first line has no",
+        ),
+        (
+            ["calibrate", "/dev/no-such-port"],
+            "lizard: calibrate asks for single keys; run it in a terminal",
+        ),
+    ] {
+        let (error, code) = complaint(&arguments);
+        assert!(error.starts_with(words), "{error}");
+        assert_eq!(code, Some(2), "{error}");
+    }
+}

@@ -1,0 +1,101 @@
+//! Reads a drawing.
+
+use std::collections::HashMap;
+
+use svg::parser::Event;
+
+pub type Point = (f64, f64);
+
+/// An element of a drawing: its tag, its attributes, the words in it.
+#[derive(Debug)]
+pub struct Element {
+    pub tag: String,
+    attributes: HashMap<String, String>,
+    pub words: String,
+}
+
+impl Element {
+    pub fn text(&self, key: &str) -> &str {
+        self.attributes.get(key).map_or("", String::as_str)
+    }
+
+    pub fn number(&self, key: &str) -> f64 {
+        let text = self.text(key);
+        let number = text
+            .parse()
+            .unwrap_or_else(|_| panic!("{key}={text} of {self:?}"));
+        assert!(f64::is_finite(number), "{self:?}");
+        number
+    }
+
+    /// The places that it is drawn through.
+    pub fn points(&self) -> Vec<Point> {
+        let at = |x, y| (self.number(x), self.number(y));
+        match self.tag.as_str() {
+            "line" => vec![at("x1", "y1"), at("x2", "y2")],
+            "circle" => vec![at("cx", "cy")],
+            "text" => vec![at("x", "y")],
+            "rect" => {
+                let (x, y) = at("x", "y");
+                let (width, height) = at("width", "height");
+                vec![(x, y), (x + width, y + height)]
+            }
+            "polyline" | "polygon" => self
+                .text("points")
+                .split(' ')
+                .map(|pair| {
+                    let (x, y) = pair.split_once(',').expect("x,y");
+                    (x.parse().expect("x"), y.parse().expect("y"))
+                })
+                .collect(),
+            _ => vec![],
+        }
+    }
+}
+
+/// The elements of a drawing.
+pub struct Drawing(pub Vec<Element>);
+
+impl Drawing {
+    pub fn of(svg: &str) -> Self {
+        let mut elements: Vec<Element> = Vec::new();
+        for event in svg::read(svg).expect("SVG") {
+            match event {
+                Event::Tag(tag, kind, attributes) if kind != svg::node::element::tag::Type::End => {
+                    elements.push(Element {
+                        tag: tag.into(),
+                        attributes: attributes
+                            .iter()
+                            .map(|(key, value)| (key.clone(), value.to_string()))
+                            .collect(),
+                        words: String::new(),
+                    });
+                }
+                Event::Text(words) => elements.last_mut().expect("a tag").words += words,
+                Event::Error(error) => panic!("{error}"),
+                _ => {}
+            }
+        }
+        Self(elements)
+    }
+
+    pub fn named(&self, id: &str) -> &Element {
+        let mut found = self.0.iter().filter(|element| element.text("id") == id);
+        let element = found.next().unwrap_or_else(|| panic!("no {id}"));
+        assert!(found.next().is_none(), "{id} twice");
+        element
+    }
+
+    pub fn path(&self, id: &str) -> Vec<Point> {
+        self.named(id).points()
+    }
+
+    /// Every wire and rail by its name.
+    pub fn wires(&self) -> Vec<(&str, Vec<Point>)> {
+        self.0
+            .iter()
+            .filter(|element| element.tag == "polyline" && !element.text("id").is_empty())
+            .map(|element| (element.text("id"), element.points()))
+            .collect()
+    }
+}
