@@ -15,6 +15,7 @@ use lizard_host::sim::tour;
 use lizard_host_tests::{FirmwareBench, Frame, robot};
 use simulated_uno::Fidelity;
 
+mod bad_input;
 mod calibration;
 mod console;
 mod costs;
@@ -28,6 +29,7 @@ mod image;
 mod kept;
 mod led;
 mod line;
+mod lines;
 mod no_pulse;
 mod power_cut;
 mod power_up;

@@ -54,6 +54,22 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
 }
 
 #[test]
+fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        wait_for(&mut bench, "stand");
+        let said = bench.bytes().len();
+        wait_for(&mut bench, "help");
+        let bytes = &bench.bytes()[said..];
+        let took = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
+        // A byte takes 1360 cycles, in stock simavr 1496; a frame now and then, and a
+        // line to be put together.
+        let rate = took / bytes.len() as u64;
+        assert!(bytes.len() > 700 && rate < 2_000, "{rate} cycles a byte");
+    });
+}
+
+#[test]
 fn what_a_flood_loses_is_counted() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);

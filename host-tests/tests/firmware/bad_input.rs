@@ -1,0 +1,93 @@
+//! Random bytes, and lines that are nearly right, into the running image as fast as the
+//! line carries them: a minute of each, or as many as `LIZARD_FUZZ_MINUTES` says.
+
+use fastrand::Rng;
+use lizard_core::memory::Bytes;
+use lizard_core::record::{self, Outcome};
+use lizard_core::settings::Settings;
+use lizard_host_tests::{FirmwareBench, robot};
+use simulated_uno::Fidelity;
+
+use crate::kept::pulses;
+use crate::{awake, end_flood, lines};
+
+/// Bytes that the line carries in a second.
+const PER_SECOND: usize = 11_520;
+
+fn minutes() -> u64 {
+    let given = std::env::var("LIZARD_FUZZ_MINUTES").ok();
+    given.and_then(|given| given.parse().ok()).unwrap_or(1)
+}
+
+/// Sends bytes for all that time, and looks every second.
+fn endure(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
+    let mut bench = awake(Fidelity::DataSheet);
+    let mut rng = lizard_host_tests::rng(77);
+    bench.uno.take_edges();
+    for second in 0..60 * minutes() {
+        let mut sent = Vec::new();
+        while sent.len() < PER_SECOND {
+            sent.extend(bytes(&mut rng));
+        }
+        bench.uno.send(&sent);
+        bench.run_ms(1000);
+        for (pulses, servo) in pulses(&bench).iter().zip(robot().servos()) {
+            let cycles = |us: f64| (us * 16.0).round() as u64;
+            let within = cycles(servo.min_us) - 2..=cycles(servo.max_us) + 2;
+            for pulse in pulses {
+                assert!(
+                    within.contains(&pulse.width),
+                    "{pulse:?} in second {second}"
+                );
+            }
+        }
+        bench.uno.take_edges();
+    }
+    assert_eq!(bench.uno.reset_events().len(), 1, "no reset");
+    // What is queued yet, and what waits in the robot.
+    while bench.uno.unsent() > 0 {
+        bench.run_ms(1000);
+    }
+    end_flood(&mut bench);
+    bench
+}
+
+/// The console answers, and the memory is right.
+fn assert_well(mut bench: FirmwareBench) {
+    assert_eq!(bench.say("watch 0"), "ok watch 0");
+    bench.run_ms(300);
+    assert_eq!(bench.say("stand"), "ok stand");
+    assert!(bench.say("status").starts_with("ok gait=stand "));
+    let firmware = robot().firmware();
+    let contents = bench.uno.eeprom();
+    let mut settings = Settings::of(firmware);
+    let outcome = record::load(firmware, &Bytes(contents), &mut settings);
+    assert!(
+        matches!(outcome, Outcome::Latest | Outcome::Blank),
+        "{outcome:?}"
+    );
+    assert!(contents[192..].iter().all(|byte| *byte == 0xff));
+    let operations = bench.uno.eeprom_operations();
+    println!("{} operations of the EEPROM", operations.len());
+    let apart = operations.windows(2).map(|two| two[1].cycle - two[0].cycle);
+    assert!(apart.min().is_none_or(|apart| apart > 3 * 16_000));
+}
+
+#[test]
+fn random_bytes_at_full_rate_do_no_harm_to_the_running_image() {
+    let bench = endure(|rng| {
+        let byte = |rng: &mut Rng| if rng.u8(..24) == 0 { b'\n' } else { rng.u8(..) };
+        (0..256).map(|_| byte(rng)).collect()
+    });
+    assert_well(bench);
+}
+
+#[test]
+fn lines_that_are_nearly_right_at_full_rate_do_no_harm_to_the_running_image() {
+    let bench = endure(|rng| {
+        let mut line = lines::mutated(rng);
+        line.push(b'\n');
+        line
+    });
+    assert_well(bench);
+}

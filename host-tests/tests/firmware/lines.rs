@@ -1,0 +1,85 @@
+//! Lines that are nearly right: every command with arguments near what it takes, and
+//! then perhaps a byte or two changed.
+
+use fastrand::Rng;
+use lizard_host_tests::robot;
+
+/// A number as a person would type it, within some range and sometimes beyond.
+fn number(rng: &mut Rng, least: f64, most: f64) -> String {
+    let beyond = (most - least) * 0.2;
+    let number = least - beyond + rng.f64() * (most - least + 2.0 * beyond);
+    match rng.u8(..4) {
+        0 => format!("{number:.0}"),
+        1 => format!("{number:.1}"),
+        _ => format!("{number:.2}"),
+    }
+}
+
+/// An angle near the neutral one of a servo.
+fn angle(rng: &mut Rng, servo: usize) -> String {
+    let neutral = robot().servos()[servo].neutral;
+    let within = [5.0, 30.0, 100.0][rng.usize(..3)];
+    number(rng, neutral - within, neutral + within)
+}
+
+/// A valid line, but for numbers out of their range.
+fn line(rng: &mut Rng) -> String {
+    let gait = |rng: &mut Rng| {
+        let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
+        gait.name().replace('-', " ")
+    };
+    let place = rng.usize(..4);
+    let servo = place + 1;
+    match rng.u8(..24) {
+        0..5 => gait(rng),
+        5 => "stop".into(),
+        6 => "rest".into(),
+        7 => "stand".into(),
+        8 => format!("speed {}", number(rng, 10.0, 100.0)),
+        9 | 10 => {
+            let angles: Vec<String> = (0..4).map(|servo| angle(rng, servo)).collect();
+            format!("pose {}", angles.join(" "))
+        }
+        11 => format!("speed {}", rng.u8(..)),
+        12 => format!("watch {}", rng.u16(..300)),
+        // Long answers seldom.
+        13 => match rng.u8(..16) {
+            0 => ["help", "?"][rng.usize(..2)].into(),
+            1 => "cal".into(),
+            _ => "status".into(),
+        },
+        14 | 15 => format!("trim {servo} {}", number(rng, -20.0, 20.0)),
+        16 => {
+            let least = angle(rng, place);
+            format!("limit {servo} {least} {}", angle(rng, place))
+        }
+        17 => format!("dir {servo} {}", ['+', '-'][rng.usize(..2)]),
+        18 => format!("scale {servo} {}", number(rng, 5.0, 20.0)),
+        19 => "center".into(),
+        20 if rng.u8(..4) == 0 => "save".into(),
+        20 | 21 => ["load", "factory"][rng.usize(..2)].into(),
+        22 => format!(
+            "boot {}",
+            if rng.bool() { gait(rng) } else { "rest".into() }
+        ),
+        _ => format!("deadman {}", number(rng, 0.0, 60_000.0)),
+    }
+}
+
+/// A line that is nearly right, without its end.
+pub fn mutated(rng: &mut Rng) -> Vec<u8> {
+    let mut bytes = line(rng).into_bytes();
+    for _ in 0..[0, 0, 0, 1, 1, 2, 3][rng.usize(..7)] {
+        let at = rng.usize(..=bytes.len());
+        match rng.u8(..5) {
+            0 => bytes.insert(at, rng.u8(..)),
+            1 => bytes.insert(at, b" .-+0159\x08\t"[rng.usize(..10)]),
+            2 if at < bytes.len() => _ = bytes.remove(at),
+            3 if at < bytes.len() => bytes[at] ^= 1 << rng.u8(..8),
+            _ => bytes.truncate(at),
+        }
+    }
+    // An end of line in the middle makes two lines.
+    bytes.retain(|byte| !matches!(byte, b'\r' | b'\n'));
+    bytes
+}
