@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     fn refusal(name: &str) -> PortError {
-        open(name).err().expect("it does not open")
+        open(name).expect_err("it does not open")
     }
 
     #[test]

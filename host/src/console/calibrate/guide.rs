@@ -362,12 +362,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                         place + 1,
                         self.neutral[place]
                     ),
-                    "or until it mirrors the one on the other side.".to_owned(),
+                    "or until it mirrors the one on the other side. Left and up turn it".to_owned(),
+                    "counter-clockwise, seen from above; right and down clockwise.".to_owned(),
                     String::new(),
                     format!("    trim {:+.2} deg", self.now.servo.all()[place].trim),
                 ],
-                "left, right: 0.5 deg counter-clockwise, clockwise    up, down: 0.1 deg    \
-                 Enter: next    b: back    q: leave",
+                "left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
             ),
             Step::Walk => (
                 step("a test walk"),

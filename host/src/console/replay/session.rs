@@ -13,6 +13,9 @@ use crate::sim::spans::{self, Span};
 const FRAME_MS: u64 = 20;
 /// Frames without a report for which the pose is taken to be the last one.
 const HELD: usize = 50;
+/// Frames by which the robot's count and this machine's clock may differ. A line may
+/// come late; a simulated robot falls behind where the machine is too slow.
+const APART: usize = 10;
 /// The longest session that is drawn, a day.
 const LONGEST_MS: u64 = 86_400_000;
 
@@ -91,9 +94,10 @@ impl Session {
     pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut resting = false;
-        // The robot's count of frames and our own, where a stretch began; and the
-        // last one of it.
+        // The robot's count of frames and our own, where they were compared last.
         let mut begin: Option<(u64, usize)> = None;
+        let mut count = 0;
+        // Our count of the last pose, unless the robot has rested or was reset since.
         let mut last: Option<usize> = None;
         for entry in &self.entries {
             match &entry.event {
@@ -106,17 +110,20 @@ impl Session {
                 }
                 Event::Pose { frame, angles } => {
                     let now = (entry.ms / FRAME_MS) as usize;
-                    // The robot's count is steadier than the time at which a line
-                    // came; after a reset it begins anew.
-                    let place = begin.and_then(|(first, at)| {
-                        let place = at + usize::try_from(frame.checked_sub(first)?).ok()?;
-                        (place.abs_diff(now) <= HELD).then_some(place)
+                    if *frame < count {
+                        (begin, last) = (None, None);
+                    }
+                    count = *frame;
+                    // The robot's count is steadier than the time at which a line came.
+                    let counted = begin.and_then(|(first, at)| {
+                        at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
                     });
-                    let place = place.unwrap_or_else(|| {
-                        begin = Some((*frame, now));
-                        last = None;
-                        now
-                    });
+                    let place = counted
+                        .filter(|place| place.abs_diff(now) <= APART)
+                        .unwrap_or(now);
+                    if counted != Some(place) {
+                        begin = Some((*frame, place));
+                    }
                     let Some(slot) = widths.get_mut(place) else {
                         continue;
                     };
@@ -216,6 +223,15 @@ mod tests {
     }
 
     #[test]
+    fn a_robot_that_falls_behind_the_clock_has_no_gap() {
+        let slow = (0..100).map(|n| pose(20 + 30 * n, n, 138.590378));
+        let log = session(&slow.collect::<Vec<_>>()).frames(&paper());
+        let first = log.widths.iter().position(|widths| widths[0] > 0);
+        assert_eq!(first, Some(1));
+        assert!(log.widths[1..140].iter().all(|widths| widths[0] == 24_000));
+    }
+
+    #[test]
     fn a_robot_that_rests_or_was_reset_has_no_pulses() {
         let session = session(&[
             pose(20, 1, 138.590378),
@@ -227,6 +243,8 @@ mod tests {
             // A reset.
             pose(160, 0, 138.590378),
             pose(180, 1, 138.590378),
+            // No robot counts so far.
+            pose(190, u64::MAX, 138.590378),
         ]);
         let log = session.frames(&paper());
         let lit: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
