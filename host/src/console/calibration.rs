@@ -207,10 +207,10 @@ impl Calibration {
     /// turn.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
-        let near = |a: f64, b: f64| (a - b).abs() < 0.0051;
+        let near = |a: f64, b: f64| (a - b).abs() < 0.0049;
         let turned = |a: f64, b: f64| {
             let turn = (a - b).rem_euclid(360.0);
-            turn.min(360.0 - turn) < 0.0051
+            turn.min(360.0 - turn) < 0.0049
         };
         let servos = self.servo.all().into_iter().zip(other.servo.all());
         self.boot == other.boot
@@ -233,7 +233,7 @@ pub(super) fn is_name(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::robot;
+    use super::super::double::{PAPER, robot, robot_of};
     use super::*;
 
     /// What the simulated robot has at first.
@@ -279,17 +279,35 @@ mod tests {
 
     #[test]
     fn a_setting_that_the_present_ones_forbid_is_tried_again_after_the_others() {
-        // With a travel this narrow, a trim of 20 degrees fits one way round only.
-        let mut link = robot();
-        let [mut one, mut other] = [factory(), factory()];
-        one.servo.at(0).scale = 19.0;
-        one.servo.at(0).trim = 8.0;
-        other.servo.at(0).scale = 5.0;
-        other.servo.at(0).trim = -20.0;
-        for set in [&one, &other, &one] {
+        // With 400 us either way a large trim and a large scale exclude each other.
+        let narrow = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
+        let narrow = narrow.replace("max_us = 2400.0", "max_us = 1900.0");
+        let mut link = robot_of(&narrow);
+        let first = Calibration::ask(&mut link).expect("it answers");
+        let [mut scaled, mut trimmed] = [first.clone(), first];
+        scaled.servo.at(0).scale = 16.0;
+        trimmed.servo.at(0).trim = 15.0;
+        for set in [&trimmed, &scaled, &trimmed] {
             set.apply(&mut link).expect("it takes them");
             let now = Calibration::ask(&mut link).expect("it answers");
             assert!(set.is_same(&now), "{now:?}");
+        }
+    }
+
+    #[test]
+    fn two_calibrations_that_differ_in_anything_are_not_the_same() {
+        let changes: [fn(&mut Calibration); 6] = [
+            |set| set.servo.a1.trim = 0.01,
+            |set| set.servo.a2.limit[1] += 0.01,
+            |set| set.servo.a3.dir = Direction::Minus,
+            |set| set.servo.a4.scale = 10.01,
+            |set| set.boot = "walk".to_owned(),
+            |set| set.deadman = 1,
+        ];
+        for (n, change) in changes.into_iter().enumerate() {
+            let mut set = factory();
+            change(&mut set);
+            assert!(!set.is_same(&factory()), "change {n}");
         }
     }
 

@@ -23,8 +23,15 @@ pub struct Double {
 
 /// A connection to the paper's robot, its banner already read.
 pub fn robot() -> Link<Double> {
-    let text = include_str!("../../../robots/paper.toml");
-    let robot = Robot::parse(text).expect("paper.toml is right");
+    robot_of(PAPER)
+}
+
+/// The paper's robot.
+pub const PAPER: &str = include_str!("../../../robots/paper.toml");
+
+/// A connection to the robot of this robot.toml.
+pub fn robot_of(text: &str) -> Link<Double> {
+    let robot = Robot::parse(text).expect("its robot.toml is right");
     // The console holds it for as long as the test lasts.
     let robot = Box::leak(Box::new(robot));
     let mut link = Link::new(Double::of(robot), Patience::default());

@@ -497,7 +497,10 @@ mod tests {
         );
         assert!(!press(&mut guide, &[Key::Next]));
         assert!(guide.view().title.ends_with("done"), "{:?}", guide.view());
-        assert!(press(&mut guide, &[Key::Next]));
+        press(&mut guide, &[Key::Back]);
+        assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
+        let left = Calibration::ask(&mut link).expect("it answers");
+        assert_eq!(left.servo.a1.trim, 0.9);
         link.tell("factory").expect("it is taken");
         link.tell("load").expect("it was saved");
         let kept = Calibration::ask(&mut link).expect("it answers");
@@ -522,7 +525,7 @@ mod tests {
                 Key::Act,
             ])
             .collect();
-        for length in [1, 2, 3, 4, 6, 13, 17, 18] {
+        for length in [1, 4, 13, 18] {
             let mut link = robot();
             link.tell("trim 1 2.50").expect("it is taken");
             link.tell("boot walk").expect("it is taken");
