@@ -1,7 +1,7 @@
 # Sourced by the set-up scripts: Debian packages, installed if they are missing.
 
 say() { printf 'setup: %s\n' "$*"; }
-has() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'; }
+has() { [ "$(dpkg-query -W -f='${Status}' "$1" 2>/dev/null)" = 'install ok installed' ]; }
 
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"

@@ -53,8 +53,10 @@ impl Board {
             },
             ..Health::default()
         };
+        let mut console = Console::new(robot().firmware());
+        console.begin(&memory, &Restart::default());
         let mut board = Self {
-            console: Console::new(robot().firmware(), &memory, Restart::default()),
+            console,
             memory,
             health,
             said: String::new(),
