@@ -7,7 +7,7 @@
 //! that power was not lost; and they hold what the program did until then. Where no boot loader
 //! is in the way, the register itself tells.
 
-use core::mem::MaybeUninit;
+use core::arch::global_asm;
 
 use avr_device::atmega328p::CPU;
 use lizard_core::pose::Pose;
@@ -41,14 +41,26 @@ struct Kept {
     pose_check: Byte,
 }
 
-/// The section is not cleared by the start-up code.
-#[unsafe(link_section = ".noinit")]
-static KEPT: MaybeUninit<Kept> = MaybeUninit::uninit();
+// The start-up code does not clear the section, and the image holds nothing for it;
+// the compiler's own statics would be written into the image.
+global_asm!(
+    ".pushsection .noinit,\"aw\",@nobits",
+    ".global lizard_kept",
+    "lizard_kept: .skip {size}",
+    ".popsection",
+    size = const size_of::<Kept>(),
+);
+
+unsafe extern "C" {
+    #[link_name = "lizard_kept"]
+    #[allow(improper_ctypes, reason = "no other language sees it")]
+    static KEPT: Kept;
+}
 
 fn kept() -> &'static Kept {
     // SAFETY: every byte of RAM has some value, and each is one that a `Byte` may
     // have; nothing is believed of them before the checks.
-    unsafe { KEPT.assume_init_ref() }
+    unsafe { &KEPT }
 }
 
 /// Why the program begins, and what it did until then; from now on it runs. Once,

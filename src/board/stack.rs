@@ -4,22 +4,32 @@
 //! chip stops it there. `make bench` computes how deep it can get; the word between
 //! the two is there for what nobody has thought of. It is looked at every frame.
 
-use core::mem::MaybeUninit;
+use core::arch::global_asm;
 
 use super::shared::Byte;
 
 /// What nobody would push by chance.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
-/// The last of the data: the section comes after all others, and the start-up code
-/// does not clear it.
-#[unsafe(link_section = ".noinit.zz_guard")]
-static WORD: MaybeUninit<[Byte; 4]> = MaybeUninit::uninit();
+// The last of the data: the section comes after all others. The start-up code does
+// not clear it, and the image holds nothing for it.
+global_asm!(
+    ".pushsection .noinit.zz_guard,\"aw\",@nobits",
+    ".global lizard_stack_guard",
+    "lizard_stack_guard: .skip 4",
+    ".popsection",
+);
+
+unsafe extern "C" {
+    #[link_name = "lizard_stack_guard"]
+    #[allow(improper_ctypes, reason = "no other language sees it")]
+    static WORD: [Byte; 4];
+}
 
 fn word() -> &'static [Byte; 4] {
     // SAFETY: every byte of RAM has some value, and each is one that a `Byte` may
     // have.
-    unsafe { WORD.assume_init_ref() }
+    unsafe { &WORD }
 }
 
 /// Sets the guard. Once.

@@ -92,7 +92,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
 fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
     for byte in 0..4 {
         let mut walk = Walk::begin(Fidelity::DataSheet);
-        let guard = walk.address("stack::WORD") + byte;
+        let guard = walk.address("lizard_stack_guard") + byte;
         let was = walk.bench.uno.peek(guard);
         walk.bench.uno.poke(guard, was ^ 0x10);
         walk.bench.run_ms(100);

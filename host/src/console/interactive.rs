@@ -215,6 +215,10 @@ impl Talk {
 
     /// Takes the keys that have been pressed; true if the person leaves.
     fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
+        // A terminal that has been closed is none; it would be read for ever.
+        if !std::io::stdin().is_terminal() {
+            return Ok(true);
+        }
         while event::poll(Duration::ZERO)? {
             let outcomes = match event::read()? {
                 TerminalEvent::Key(key) => vec![prompt.key(key)],
