@@ -72,6 +72,7 @@ fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
         // Main takes no input while it keeps the pose of a rest, or forgets it.
         written = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
+    bench.run_ms(250);
     said
 }
 
