@@ -137,8 +137,9 @@ fn the_chip_keeps_time_with_the_wall_clock() {
         .expect("it is served");
     let wall = begin.elapsed().as_secs_f64();
     let chip = uno.cycle() as f64 / FREQUENCY as f64;
-    // Never ahead; behind only where this test was held up.
-    assert!(chip <= wall, "{chip} s in {wall} s");
+    // Never ahead by more than the slice under way; behind only where this test was
+    // held up.
+    assert!(chip <= wall + 0.01, "{chip} s in {wall} s");
     assert!(chip > 0.05, "{chip} s in {wall} s");
 }
 
