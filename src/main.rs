@@ -23,8 +23,9 @@ static mut MAIN: MaybeUninit<Main<robot::Lizard>> = MaybeUninit::uninit();
 #[avr_device::entry]
 fn main() -> ! {
     let mut uno = Uno::start();
+    let place = &raw mut MAIN;
     // SAFETY: this function is entered once, and nobody else names `MAIN`.
-    let main = unsafe { (*(&raw mut MAIN)).write(Main::new(robot::Lizard, &mut uno)) };
+    let main = unsafe { (*place).write(Main::new(robot::Lizard, &mut uno)) };
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {
             sleep::until_tick_or_byte(ticks);
