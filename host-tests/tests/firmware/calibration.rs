@@ -50,9 +50,8 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         );
         let last = pulses[0].last().expect("a pulse").width;
         assert_near(last, width(trim.into(), gain(), 0.0), "trimmed");
-        for servo in 1..4 {
-            let neutral = neutral_widths()[servo];
-            assert!(pulses[servo].iter().all(|pulse| pulse.width == neutral));
+        for (pulses, neutral) in pulses.iter().zip(neutral_widths()).skip(1) {
+            assert!(pulses.iter().all(|pulse| pulse.width == neutral));
         }
         // What the guard and `status` see is the true angle.
         assert!((Status::of(&mut bench).pose()[0] - robot().servos()[0].neutral).abs() < 0.01);
