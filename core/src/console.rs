@@ -172,15 +172,9 @@ impl<R: Robot> Console<R> {
         let ended = match &mut self.job {
             None => return,
             Some(Job::Load) => {
-                let before = self.settings;
-                match record::load(robot, memory, &mut self.settings) {
-                    Outcome::Latest | Outcome::Other => {
-                        let adjusted = self.adjust();
-                        if adjusted.is_err() {
-                            self.settings = before;
-                        }
-                        adjusted
-                    }
+                let mut kept = self.settings;
+                match record::load(robot, memory, &mut kept) {
+                    Outcome::Latest | Outcome::Other => self.replace(&kept),
                     _ => Err(Refusal::NothingSaved),
                 }
             }
@@ -375,10 +369,7 @@ impl<R: Robot> Console<R> {
                     return Err(refusal);
                 }
             }
-            Command::Factory => {
-                self.settings = Settings::of(self.motion.robot());
-                self.adjust()?;
-            }
+            Command::Factory => self.replace(&Settings::of(self.motion.robot()))?,
             Command::Boot(boot) => self.settings.set_boot(boot, self.motion.robot()),
             Command::Deadman(ms) => self.settings.set_deadman(ms),
             Command::Load => {
@@ -428,6 +419,18 @@ impl<R: Robot> Console<R> {
         if self.safety.allows_writing() {
             self.job = Some(Job::Pose(RESTED.write()));
         }
+    }
+
+    /// Takes other settings, or keeps those that there are.
+    #[inline(never)]
+    fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
+        let before = self.settings;
+        self.settings = *settings;
+        let adjusted = self.adjust();
+        if adjusted.is_err() {
+            self.settings = before;
+        }
+        adjusted
     }
 
     /// Puts the settings into effect at once, if the robot can do with them what it

@@ -277,7 +277,7 @@ impl<R: Robot> Motion<R> {
         }
         let mut pulses = self.pose.pulses(&self.calibration);
         if self.settling {
-            self.settling = self.slow_down(&mut pulses);
+            self.settling = self.limit_slew(&mut pulses);
         }
         self.sent = pulses;
         if self.awake < AWAKE {
@@ -351,7 +351,7 @@ impl<R: Robot> Motion<R> {
     /// Keeps the pulses within a frame's way of the last ones; true while they are
     /// not yet those that are wanted.
     #[inline(never)]
-    fn slow_down(&self, pulses: &mut Pulses) -> bool {
+    fn limit_slew(&self, pulses: &mut Pulses) -> bool {
         let mut under_way = false;
         let per_frame = self.robot.slew().per_frame;
         for (place, width) in pulses.0.iter_mut().enumerate() {

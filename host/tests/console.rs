@@ -7,6 +7,7 @@ use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
@@ -330,16 +331,17 @@ fn what_is_no_lizard_is_named_by_what_it_says() {
     let (mut ours, theirs, path) = terminal();
     // Else this test would be the program that has the port open.
     drop(theirs);
+    let (heard, until) = mpsc::channel::<()>();
     let talks = std::thread::spawn(move || {
-        let begin = Instant::now();
-        while begin.elapsed() < Duration::from_secs(5) {
+        let pause = Duration::from_millis(50);
+        while until.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
             // Nobody may have it open.
             let _ = ours.write_all(b"Grbl 1.1h ['$' for help]\r\n");
-            std::thread::sleep(Duration::from_millis(50));
         }
     });
     let port = path.display().to_string();
     let (_, error, code) = run(folder.path(), &["backup", "a.toml", &port], "");
+    drop(heard);
     talks.join().expect("it has ended");
     assert_eq!(code, Some(1), "{error}");
     let words = "this is no lizard: it says `Grbl 1.1h ['$' for help]`";

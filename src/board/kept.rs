@@ -4,8 +4,8 @@
 //! The boot loader of the UNO clears the register that says why the chip was reset,
 //! and passes it on nowhere. But RAM keeps its contents as long as there is power. So
 //! these bytes say, by a mark and a check sum that chance makes once in 32 768 times,
-//! that power was not lost; and they hold what the program did until then. Where no boot loader
-//! is in the way, the register itself tells.
+//! that power was not lost; and they hold what the program did until then. Where no
+//! boot loader is in the way, the register itself tells.
 
 use core::arch::global_asm;
 

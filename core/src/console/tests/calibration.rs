@@ -158,6 +158,61 @@ fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothi
 }
 
 #[test]
+fn a_factory_or_a_load_that_is_refused_changes_nothing() {
+    let mut dialogue = Dialogue::standing();
+    for line in [
+        "trim 1 10",
+        "limit 1 61.37 149",
+        "save",
+        "limit 1 61.37 215.36",
+    ] {
+        assert_eq!(dialogue.say(line), format!("ok {line}"));
+    }
+    dialogue.say("pose 155 47.91 309.64 226.18");
+    dialogue.run(150);
+    let before = cal(&mut dialogue);
+    assert!(
+        dialogue
+            .say("load")
+            .starts_with("err 3 A1 would not reach where it is")
+    );
+    assert_eq!(cal(&mut dialogue), before);
+    let mut other = Dialogue::standing();
+    other.say("trim 3 4");
+    let before = cal(&mut other);
+    other.chip.bytes[0] = 0;
+    assert_eq!(
+        other.say("load"),
+        "err 9 nothing is saved that could be loaded"
+    );
+    assert_eq!(cal(&mut other), before);
+    // Saved for other servos: not loaded, and what is set stays.
+    let mut chip = Dialogue::standing();
+    chip.say("save");
+    other.chip = chip.chip.clone();
+    other.chip.bytes[44] ^= 1;
+    assert!(other.say("load").starts_with("err 9 "));
+    assert_eq!(cal(&mut other), before);
+    // A trim moves the travel: this pose is within it, but not within robot.toml's.
+    let mut robot = Sample::odd();
+    robot.calibration[0].max = crate::units::Sweep(2200);
+    let mut narrow = Dialogue::awake(robot);
+    assert_eq!(narrow.say("trim 1 -5"), "ok trim 1 -5");
+    assert_eq!(narrow.say("limit 1 67 149"), "ok limit 1 67 149");
+    narrow.run(100);
+    let pose = "pose 146 47.91 309.64 226.18";
+    assert_eq!(narrow.say(pose), format!("ok {pose}"));
+    narrow.run(150);
+    let before = cal(&mut narrow);
+    assert!(
+        narrow
+            .say("factory")
+            .starts_with("err 3 A1 would not reach where it is")
+    );
+    assert_eq!(cal(&mut narrow), before);
+}
+
+#[test]
 fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     let mut dialogue = Dialogue::standing();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
