@@ -19,7 +19,8 @@ const hex = (byte) => byte.toString(16).padStart(2, '0');
 function run(file, script) {
   const uno = new Uno(corrections);
   load(readFileSync(file, 'utf8'), uno.flash);
-  const { bytes, end } = read(script);
+  const { analogue, bytes, end } = read(script);
+  for (const { channel, volts } of analogue) uno.adc.channelValues[channel] = volts;
   const lines = [];
   new Scope(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
   uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${hex(byte)}`);

@@ -16,7 +16,7 @@ use lizard_core::part::{End, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
-use lizard_core::supply::{Supplies, Thresholds};
+use lizard_core::supply::{Rail, Supplies, Thresholds};
 use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
 
 include!(concat!(env!("OUT_DIR"), "/robot.rs"));

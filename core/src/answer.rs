@@ -57,8 +57,10 @@ pub enum Answer {
     Hint,
     /// The end of help, `ok help`.
     Helped,
-    /// `ok` and the state.
+    /// `ok` and the state of the motion; the line goes on with the next.
     Status,
+    /// Faults, restarts and supplies: apart, so that a frame need not wait for both.
+    Health,
     /// A line of what is set, by its number; after the last one `ok cal`.
     Settings(u8),
     /// `err`; nothing was changed.

@@ -229,7 +229,8 @@ impl<R: Robot> Console<R> {
         };
     }
 
-    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes.
+    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes; or the first part
+    /// of one, which the next call ends.
     ///
     /// # Errors
     /// Those of `out`.
@@ -246,6 +247,9 @@ impl<R: Robot> Console<R> {
             }
             Some(Output::Answer(answer)) => {
                 self.answer = self.print_answer(out, answer, counters)?;
+                if answer == Answer::Status {
+                    return Ok(());
+                }
             }
             Some(Output::Notice(notice)) => {
                 self.safety.written(notice);

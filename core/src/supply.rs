@@ -86,8 +86,9 @@ pub struct Supply {
 }
 
 /// A level is left for a worse one after as many frames: a servo's start pulls
-/// the supply down for a few milliseconds.
-const TO_WORSE: u8 = 3;
+/// the supply down for a few milliseconds. A reading stands for four frames where the
+/// rail is measured, too, so one that has met such a dip changes nothing.
+const TO_WORSE: u8 = 6;
 
 /// And for a better one after a second of a voltage that much above the threshold.
 const TO_BETTER: u8 = 50;
@@ -302,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_falling_supply_slows_then_stops_then_ends_the_pulses_each_after_three_frames() {
+    fn a_falling_supply_slows_then_stops_then_ends_the_pulses_each_after_six_frames() {
         let mut supply = Supply::default();
         assert_eq!(until_change(&mut supply, reading(5.0, 0.0), &SUPPLIES).0, 0);
         for (volts, level) in [
@@ -312,19 +313,19 @@ mod tests {
         ] {
             assert_eq!(
                 until_change(&mut supply, reading(volts, 0.0), &SUPPLIES),
-                (3, level)
+                (6, level)
             );
         }
         let mut supply = Supply::default();
         let change = until_change(&mut supply, reading(3.9, 0.0), &SUPPLIES);
-        assert_eq!(change, (3, Level::Rest), "all at once, if it falls at once");
+        assert_eq!(change, (6, Level::Rest), "all at once, if it falls at once");
     }
 
     #[test]
     fn a_short_dip_changes_nothing() {
         let mut supply = Supply::default();
         for _ in 0..100 {
-            for volts in [4.0, 4.0, 5.0] {
+            for volts in [4.0, 4.0, 4.0, 4.0, 4.0, 5.0] {
                 assert!(!supply.measure(reading(volts, 0.0), &SUPPLIES));
             }
         }
@@ -353,7 +354,7 @@ mod tests {
         let mut supply = Supply::default();
         let mut levels = Vec::new();
         for frame in 0..2000 {
-            let volts = if frame % 10 < 5 { 4.47 } else { 4.60 };
+            let volts = if frame % 20 < 10 { 4.47 } else { 4.60 };
             if supply.measure(reading(volts, 0.0), &SUPPLIES) {
                 levels.push(supply.level());
             }

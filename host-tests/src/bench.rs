@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use lizard_host::board::{Board, BoardError};
-use lizard_host::sim::frame::{Frame, servo_pins};
+use lizard_host::sim::frame::Frame;
 use simulated_uno::{Call, Fidelity, Uno};
 
 use crate::robots::{robot, root};
@@ -48,7 +48,7 @@ impl FirmwareBench {
     /// See [`FirmwareBench::boot`].
     #[must_use]
     pub fn boot_with(fidelity: Fidelity) -> Self {
-        let board = Board::boot(&Self::elf(), fidelity, servo_pins(robot()));
+        let board = Board::boot(&Self::elf(), fidelity, robot());
         Self(done(board))
     }
 
@@ -58,7 +58,7 @@ impl FirmwareBench {
     /// If there is no firmware.
     #[must_use]
     pub fn power_on(fidelity: Fidelity) -> Self {
-        let board = Board::power_on(&Self::elf(), fidelity, servo_pins(robot()));
+        let board = Board::power_on(&Self::elf(), fidelity, robot());
         Self(done(board))
     }
 
@@ -130,7 +130,7 @@ fn done<T>(result: Result<T, BoardError>) -> T {
 /// Ends the test run if the firmware's banner names other tables than the robot
 /// under test has: every test would fail for that one reason.
 fn is_of_this_robot(elf: &Path) {
-    let mut board = done(Board::boot(elf, Fidelity::Stock, servo_pins(robot())));
+    let mut board = done(Board::boot(elf, Fidelity::Stock, robot()));
     let hash = format!("tables {:08x}", robot().firmware().hash());
     let banner = board.lines()[0].text.clone();
     assert!(

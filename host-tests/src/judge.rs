@@ -10,6 +10,8 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use lizard_host::sim::supplies;
+use lizard_robot::Robot;
 use simulated_uno::{Edge, Pin, SerialByte};
 
 use crate::robots::root;
@@ -96,13 +98,21 @@ pub struct Verdict {
 ///
 /// # Errors
 /// A sentence: what is missing, or what avr8js cannot simulate.
-pub fn judge(elf: &Path, received: &[SerialByte], end: u64) -> Result<Verdict, String> {
+pub fn judge(
+    elf: &Path,
+    received: &[SerialByte],
+    end: u64,
+    robot: &Robot,
+) -> Result<Verdict, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let hex = folder.path().join("firmware.hex");
     let mut objcopy = Command::new("avr-objcopy");
     objcopy.args(["-O", "ihex", "-R", ".eeprom"]);
     done(objcopy.args([elf, &hex]), "binutils-avr", "")?;
     let mut script = String::new();
+    if let Some((pin, mv)) = supplies::at_pin(robot) {
+        script += &format!("analogue {} {mv}\n", pin.number());
+    }
     for SerialByte { cycle, byte } in received {
         script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(LATER));
     }

@@ -155,6 +155,28 @@ fn an_upload_keeps_the_eeprom() {
 
 #[test]
 #[ignore = "needs ravedude and avrdude: make flash-test"]
+fn a_saved_calibration_is_in_effect_after_the_next_upload() {
+    let mut desk = Desk::with_a_new_board();
+    let mut shell = desk.make_flash();
+    desk.see(&shell, "# lizard");
+    for line in ["trim 1 3", "deadman 700", "save"] {
+        shell.say(line);
+        desk.see(&shell, &format!("ok {line}"));
+    }
+    shell.interrupt();
+    assert!(desk.until(|_| shell.has_ended()));
+    let mut shell = desk.make_flash();
+    desk.see(&shell, "# lizard");
+    shell.say("cal");
+    desk.see(&shell, "ok cal");
+    let screen = shell.screen();
+    assert!(screen.contains("# A1 trim 3.00 "), "{screen}");
+    assert!(screen.contains("# deadman 700"), "{screen}");
+    shell.interrupt();
+}
+
+#[test]
+#[ignore = "needs ravedude and avrdude: make flash-test"]
 fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let mut desk = Desk::with_a_new_board();
     let shell = desk.make_flash();

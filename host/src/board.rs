@@ -3,11 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
+use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, LoadError, Pin, SerialByte, State, Uno};
 
 use crate::Failure;
-use crate::sim::frame::{FRAME, Frame, frames, latest_start, next_start, opens};
+use crate::sim::frame::{FRAME, Frame, frames, latest_start, next_start, opens, servo_pins};
 use crate::sim::lines::{Line, LineReader};
+use crate::sim::supplies;
 
 /// The longest wait for an answer after its command has been sent, ms. The
 /// console promises much less.
@@ -91,14 +93,16 @@ pub struct Board {
 }
 
 impl Board {
-    /// Powers a board on; not a cycle has passed. `pins` are those of the servos
-    /// A1 to A4.
+    /// Powers a robot's board on, its supplies in good order; not a cycle has passed.
     ///
     /// # Errors
     /// The ELF file is missing or wrong.
-    pub fn power_on(elf: &Path, fidelity: Fidelity, pins: [Pin; 4]) -> Result<Self, BoardError> {
+    pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
         match Uno::load(elf, fidelity) {
-            Ok(uno) => Ok(Self::with_uno(uno, pins)),
+            Ok(mut uno) => {
+                supplies::connect(&mut uno, robot);
+                Ok(Self::with_uno(uno, servo_pins(robot)))
+            }
             Err(error) => Err(BoardError::Load {
                 elf: elf.to_owned(),
                 error,
@@ -110,15 +114,15 @@ impl Board {
     ///
     /// # Errors
     /// See [`Board::power_on`]; another first line, or none within 500 ms.
-    pub fn boot(elf: &Path, fidelity: Fidelity, pins: [Pin; 4]) -> Result<Self, BoardError> {
-        let mut board = Self::power_on(elf, fidelity, pins)?;
+    pub fn boot(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
+        let mut board = Self::power_on(elf, fidelity, robot)?;
         match board.next_line(BANNER_MS) {
             Some(line) if line.starts_with("# lizard") => Ok(board),
             other => Err(BoardError::Banner(other)),
         }
     }
 
-    /// A board around any simulated UNO.
+    /// A board around any simulated UNO. `pins` are those of the servos A1 to A4.
     #[must_use]
     pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
         Self {

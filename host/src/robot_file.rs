@@ -19,6 +19,12 @@ pub struct RobotFile {
 }
 
 impl RobotFile {
+    /// The one at a path, or else as [`RobotFile::load`] finds it.
+    #[must_use]
+    pub fn at(path: Option<PathBuf>) -> Self {
+        Self { path }
+    }
+
     /// Reads and checks the robot.
     ///
     /// # Errors

@@ -1,18 +1,25 @@
 // What a run is given: bytes for the serial line, each with its cycle.
 
 /**
- * Reads a script: lines `<cycle> <two hex digits>`, a byte that is complete at the UNO at that cycle,
- * in the order of time, and last `end <cycle>`. Throws a sentence that names the line.
+ * Reads a script: lines `analogue <pin, 14 to 19> <mV>`, what A0 to A5 measure from the beginning; lines
+ * `<cycle> <two hex digits>`, a byte that is complete at the UNO at that cycle, in the order of time;
+ * and last `end <cycle>`. Throws a sentence that names the line.
  */
 export function read(text) {
+  const analogue = [];
   const bytes = [];
   let end;
   text.split('\n').forEach((line, index) => {
     if (line === '') return;
     const wrong = (what) => new Error(`line ${index + 1} of the script ${what}: ${JSON.stringify(line)}`);
     if (end !== undefined) throw wrong('comes after the end');
+    const [, pin, mv] = /^analogue (1[4-9]) (\d+)$/.exec(line) ?? [];
+    if (pin !== undefined) {
+      analogue.push({ channel: pin - 14, volts: mv / 1000 });
+      return;
+    }
     const match = /^(\d+) ([0-9a-f]{2})$|^end (\d+)$/.exec(line);
-    if (!match) throw wrong('is neither `<cycle> <hex byte>` nor `end <cycle>`');
+    if (!match) throw wrong('is none of `analogue <pin> <mV>`, `<cycle> <hex byte>` and `end <cycle>`');
     if (match[3] !== undefined) {
       end = Number(match[3]);
       return;
@@ -22,5 +29,5 @@ export function read(text) {
     bytes.push({ cycle, byte: parseInt(match[2], 16) });
   });
   if (end === undefined) throw new Error('the script has no `end <cycle>`');
-  return { bytes, end };
+  return { analogue, bytes, end };
 }

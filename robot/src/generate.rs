@@ -119,9 +119,17 @@ impl Body<'_> {
                 format!("{:?}", robot.reach),
             ),
             (
+                "The servos' supply, where it is measured, mV.",
+                "RAIL: Option<Rail>",
+                format!("{:?}", robot.supplies.rail),
+            ),
+            (
                 "The supplies, mV.",
                 "SUPPLIES: Supplies",
-                format!("{:?}", robot.supplies),
+                format!(
+                    "Supplies {{ reference: {}, board: {:?}, rail: RAIL }}",
+                    robot.supplies.reference, robot.supplies.board
+                ),
             ),
             (
                 "Arduino number of the pin of the servos' rail, where that is measured.",
@@ -249,6 +257,7 @@ mod tests {
     use lizard_avr::Flash;
     use lizard_core::part::{End, Side};
     use lizard_core::robot::Robot as _;
+    use lizard_core::supply::Thresholds;
 
     /// The whole numbers in a text, outside of words.
     fn numbers(text: &str) -> Vec<i64> {
@@ -303,7 +312,13 @@ mod tests {
                 of("SUPPLIES"),
                 [supplies.reference, board.slow, board.stop, board.rest].map(i64::from)
             );
-            assert_eq!(value(&source, "RAIL_PIN").trim(), "None");
+            let rail = supplies.rail.map_or(Vec::new(), |rail| {
+                let Thresholds { slow, stop, rest } = rail.thresholds;
+                [rail.reference, slow, stop, rest].map(i64::from).to_vec()
+            });
+            assert_eq!(of("RAIL"), rail, "{name}");
+            let pin = firmware.rail_pin().map(i64::from);
+            assert_eq!(of("RAIL_PIN"), pin.as_slice(), "{name}");
             assert_eq!(
                 value(&source, "SERVO_HASH").trim(),
                 format!("{:#010x}", firmware.servo_hash())

@@ -37,6 +37,9 @@ pub(crate) struct Pty {
     opens: OwnedFd,
     path: PathBuf,
     was_open: bool,
+    /// A program has closed it, and yet it is open: if another has opened it in the
+    /// meantime, the system says so only at the next look.
+    in_doubt: bool,
 }
 
 impl Pty {
@@ -66,6 +69,7 @@ impl Pty {
             opens,
             path,
             was_open: false,
+            in_doubt: false,
         })
     }
 
@@ -81,12 +85,14 @@ impl Pty {
     /// Only those of a system that is out of memory.
     pub(crate) fn look(&mut self) -> io::Result<Look> {
         let was_open = self.was_open;
-        let (mut closed, mut opened) = (!was_open, false);
+        let (mut closed, mut opened) = (!was_open || self.in_doubt, false);
+        let mut closing = false;
         self.events(|event| {
             if event.contains(ReadFlags::OPEN) {
                 opened |= closed;
             } else {
                 closed = true;
+                closing = true;
             }
         })?;
         let mut open = self.is_open()?;
@@ -99,6 +105,7 @@ impl Pty {
             open = now;
         }
         self.was_open = open;
+        self.in_doubt = closing && open && !opened;
         Ok(Look { open, opened })
     }
 

@@ -62,7 +62,11 @@ impl<R: Robot> Console<R> {
                 Text::Ok.print(out)?;
                 answer::ascii(out, self.line.text().iter().copied())?;
             }
-            Answer::Status => self.print_status(out, counters)?,
+            Answer::Status => {
+                self.print_status(out, counters)?;
+                return Ok(Some(Answer::Health));
+            }
+            Answer::Health => self.print_health(out)?,
             Answer::Settings(line) => {
                 if self.print_settings(out, line)? {
                     return Ok(Some(Answer::Settings(line + 1)));
@@ -127,7 +131,13 @@ impl<R: Robot> Console<R> {
             None => Text::GuardClear,
             Some(_) => Text::GuardHeld,
         }
-        .print(out)?;
+        .print(out)
+    }
+
+    /// ` fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
+    /// measured.
+    #[inline(never)]
+    fn print_health<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         Text::StatusFault.print(out)?;
         self.fault()
             .map_or(Text::FaultNone, Fault::word)
@@ -135,12 +145,6 @@ impl<R: Robot> Console<R> {
         Text::StatusReset.print(out)?;
         self.cause.word().print(out)?;
         answer::count(out, Text::StatusResets, self.restarts.into())?;
-        self.print_supplies(out)
-    }
-
-    /// ` vcc=5.02 rail=5.91`, the rail where it is measured.
-    #[inline(never)]
-    fn print_supplies<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         let supplies = self.motion.robot().supplies();
         let reading = self.safety.supply().reading();
         let board = Voltage::of_board(reading, &supplies);

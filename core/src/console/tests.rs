@@ -71,7 +71,9 @@ impl Dialogue {
                 continue;
             }
             let mut text = String::new();
-            let Ok(()) = self.console.write_line(&mut text, self.counters);
+            while !text.ends_with("\r\n") && self.console.has_output() {
+                let Ok(()) = self.console.write_line(&mut text, self.counters);
+            }
             assert!(text.len() <= usize::from(LONGEST_LINE), "{text}");
             let line = text.strip_suffix("\r\n").expect("a whole line");
             let plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();

@@ -82,7 +82,7 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
     assert!(!boots(Safety::byte_came));
     assert!(!boots(|safety| _ = safety.fail(Fault::Late)));
     assert!(!boots(|safety| {
-        for _ in 0..3 {
+        for _ in 0..6 {
             frame(safety, &at(4.2));
         }
         safety.clear();
@@ -119,9 +119,9 @@ fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
 fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
     let mut safety = without_boot();
     let mut run = |volts| {
-        let orders = [(); 3].map(|()| frame(&mut safety, &at(volts)));
+        let orders = [(); 6].map(|()| frame(&mut safety, &at(volts)));
         (
-            orders[2],
+            orders[5],
             safety.fault(),
             safety.allows_motion(),
             safety.allows_writing(),
@@ -166,8 +166,9 @@ fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
 #[test]
 fn of_two_orders_at_once_the_stronger_one_counts() {
     let mut safety = without_boot();
-    frame(&mut safety, &at(4.0));
-    frame(&mut safety, &at(4.0));
+    for _ in 0..5 {
+        frame(&mut safety, &at(4.0));
+    }
     let health = Health { late: 1, ..at(4.0) };
     assert_eq!(frame(&mut safety, &health), Order::Rest);
 }

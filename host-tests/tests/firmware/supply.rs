@@ -1,7 +1,8 @@
 //! The chip's supply swept down and up: what is measured, and what the robot does.
 
 use lizard_host_tests::{FirmwareBench, robot};
-use simulated_uno::Fidelity;
+use lizard_robot::Rail;
+use simulated_uno::{Fidelity, Pin};
 
 use crate::kept::{flashes, pulses_in, widths_now};
 use crate::{Status, awake, doing, moving};
@@ -174,12 +175,80 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
     assert!(notes(&mut bench, from).is_empty());
     // Around the threshold, for half a minute.
     let slow = robot().supplies().board[0] * 1000.0;
-    for n in 0..300 {
+    for n in 0..100 {
         bench
             .uno
             .set_supply_mv(slow + if n % 2 == 0 { -40.0 } else { 90.0 });
-        bench.run_ms(100);
+        bench.run_ms(300);
     }
     let said = notes(&mut bench, from);
     assert_eq!(said.len(), 1, "{said:?}");
+}
+
+/// A robot whose rail has so many volts.
+fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
+    let mv = (1000.0 * volts / rail.ratio).round() as u16;
+    bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);
+}
+
+/// A robot in motion whose servos' rail is measured; none if robot.toml names no pin.
+fn with_rail() -> Option<(FirmwareBench, Rail)> {
+    let rail = robot().supplies().rail;
+    if rail.is_none() {
+        let mut bench = awake(Fidelity::DataSheet);
+        assert!(!bench.say("status").contains("rail="), "there is no rail");
+    }
+    Some((doing(&moving(), Fidelity::DataSheet), rail?))
+}
+
+#[test]
+fn status_tells_the_servos_rail_where_robot_toml_names_its_pin() {
+    let Some((mut bench, rail)) = with_rail() else {
+        return;
+    };
+    let highest = 5.0 * rail.ratio;
+    for step in 1..=40 {
+        let volts = highest * f64::from(step) / 41.0;
+        set_rail(&mut bench, &rail, volts);
+        bench.run_ms(120);
+        let told = Status::of(&mut bench).number("rail");
+        // A step of the converter either way for the rail and for the reference.
+        let limit = 0.01 + rail.ratio * 5.0 / 1024.0 + volts / 225.0;
+        assert!((told - volts).abs() <= limit, "{told}, {volts}");
+    }
+}
+
+#[test]
+fn a_sinking_rail_slows_stops_and_rests_whatever_the_boards_supply() {
+    let Some((mut bench, rail)) = with_rail() else {
+        return;
+    };
+    let from = bench.lines().len();
+    let [slow, _, rest] = rail.thresholds;
+    let mut true_at = Vec::new();
+    let mut mv = 1000.0 * slow + 200.0;
+    while mv > 1000.0 * rest - 200.0 {
+        set_rail(&mut bench, &rail, mv / 1000.0);
+        bench.run_ms(160);
+        while true_at.len() < notes(&mut bench, from).len() {
+            true_at.push(mv / 1000.0);
+        }
+        mv -= 10.0;
+    }
+    let told = notes(&mut bench, from);
+    let words: Vec<&str> = told.iter().map(|(what, _)| what.as_str()).collect();
+    assert_eq!(
+        words,
+        [
+            "low: half speed, no saving",
+            "too low to move: stopped",
+            "too low to hold: pulses ended"
+        ]
+    );
+    for ((truth, (_, told)), threshold) in true_at.iter().zip(&told).zip(rail.thresholds) {
+        assert!((truth - threshold).abs() <= STEP, "{truth}, {threshold}");
+        assert!((told - truth).abs() <= STEP, "{told}, {truth}");
+    }
+    assert!(pulses_in(&mut bench, 200).iter().all(Vec::is_empty));
+    assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= STEP);
 }

@@ -10,7 +10,7 @@ use super::exactness::Exactness;
 use super::stack::StackDepth;
 use crate::Failure;
 use crate::board::{Board, BoardError};
-use crate::sim::frame::{FRAME, servo_pins};
+use crate::sim::frame::FRAME;
 use crate::sim::tour;
 
 /// What the firmware costs and how exact it is. Cycles are of 62.5 ns. What is
@@ -97,7 +97,7 @@ impl Figures {
         let turn = gaits.last().map_or("stand", String::as_str);
         let moves = !gaits.is_empty();
         let awake = || -> Result<Board, BoardError> {
-            let mut board = Board::power_on(elf, Fidelity::DataSheet, servo_pins(robot))?;
+            let mut board = Board::power_on(elf, Fidelity::DataSheet, robot)?;
             board.run_ms(1000)?;
             Ok(board)
         };

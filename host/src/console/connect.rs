@@ -7,7 +7,7 @@ use serialport::SerialPort;
 use super::find;
 use super::link::{Link, LinkError, Patience};
 use super::port;
-use crate::Failure;
+use crate::{Failure, RobotFile};
 
 /// Which board a subcommand is about.
 #[derive(clap::Args, Debug)]
@@ -21,6 +21,10 @@ pub struct Connect {
     /// in this folder or one above it]
     #[arg(long, value_name = "FILE", requires = "sim")]
     elf: Option<PathBuf>,
+    /// With --sim: the robot whose firmware that is [default: robot.toml in this
+    /// folder or one above it]
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    robot: Option<PathBuf>,
 }
 
 /// Where the board is looked for, each time anew: a board that is plugged in
@@ -48,7 +52,8 @@ impl Connect {
     /// No firmware for it, or no pseudo terminal.
     pub fn place(self, command: &'static str) -> Result<Place, Failure> {
         if self.sim {
-            return simulated(self.elf.as_deref(), command);
+            let robot = RobotFile::at(self.robot);
+            return simulated(self.elf.as_deref(), &robot, command);
         }
         Ok(Place {
             port: self.port,
@@ -60,11 +65,17 @@ impl Connect {
 }
 
 #[cfg(all(feature = "simulator", target_os = "linux"))]
-fn simulated(elf: Option<&std::path::Path>, command: &'static str) -> Result<Place, Failure> {
+fn simulated(
+    elf: Option<&std::path::Path>,
+    robot: &RobotFile,
+    command: &'static str,
+) -> Result<Place, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
+    let robot = robot.load()?;
     let elf = crate::sim::elf(elf)?;
-    let uno = Uno::load(&elf, Fidelity::DataSheet)
+    let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    crate::sim::supplies::connect(&mut uno, &robot);
     let port = Port::new().map_err(|error| {
         Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
     })?;
@@ -80,7 +91,11 @@ fn simulated(elf: Option<&std::path::Path>, command: &'static str) -> Result<Pla
 }
 
 #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-fn simulated(_: Option<&std::path::Path>, _: &'static str) -> Result<Place, Failure> {
+fn simulated(
+    _: Option<&std::path::Path>,
+    _: &RobotFile,
+    _: &'static str,
+) -> Result<Place, Failure> {
     Err(Failure::Input(
         "--sim is missing: this program was built without the simulator, or not for Linux"
             .to_owned(),

@@ -13,6 +13,7 @@ pub mod script;
 mod served;
 pub mod session;
 pub mod spans;
+pub mod supplies;
 pub(crate) mod timeline;
 pub mod tour;
 pub mod twin;
@@ -112,18 +113,20 @@ pub fn run(args: Args) -> Result<(), Failure> {
         FidelityArg::DataSheet => Fidelity::DataSheet,
         FidelityArg::Stock => Fidelity::Stock,
     };
+    let robot = args.robot.load()?;
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
-        let uno = match &args.boot_loader {
+        let mut uno = match &args.boot_loader {
             Some(loader) => served::as_sold(loader, fidelity)?,
             None => load(&elf(args.elf.as_deref())?, fidelity)?,
         };
+        supplies::connect(&mut uno, &robot);
         return served::until_interrupted(uno, link.as_deref());
     }
-    let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
     let elf = elf(args.elf.as_deref())?;
     let mut uno = load(&elf, fidelity)?;
+    supplies::connect(&mut uno, &robot);
     let mut kept = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
 

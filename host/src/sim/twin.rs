@@ -23,6 +23,7 @@ use lizard_core::supply::Reading;
 use simulated_uno::SerialByte;
 
 use super::frame::{FRAME, SLOT};
+use super::supplies;
 
 /// Cycles that the UNO takes to send a byte: 10 bits, 17 * 8 cycles each.
 const BYTE: u64 = 1360;
@@ -49,12 +50,11 @@ struct Line {
     free: u64,
     pulses: Pulses,
     memory: Bytes,
+    /// What the converter reads.
+    reading: Reading,
     /// Frames whose supply has been asked for.
     measured: u32,
 }
-
-/// What the converter of a simulated UNO reads: the reference of 1.1 V at 5 V.
-const REFERENCE: u16 = 225;
 
 impl Board for Line {
     type Writer = String;
@@ -68,8 +68,12 @@ impl Board for Line {
 
     fn supply(&mut self) -> Reading {
         self.measured += 1;
-        let reference = if self.measured > 1 { REFERENCE } else { 0 };
-        Reading { reference, rail: 0 }
+        // The first conversion is not complete then.
+        if self.measured > 1 {
+            self.reading
+        } else {
+            Reading::default()
+        }
     }
 
     fn stack_is_intact(&self) -> bool {
@@ -116,7 +120,10 @@ struct Twin<R> {
 
 impl<R: Robot> Twin<R> {
     fn new(robot: R) -> Self {
-        let mut line = Line::default();
+        let mut line = Line {
+            reading: supplies::reading(&robot.supplies()),
+            ..Line::default()
+        };
         Self {
             main: Main::new(robot, &mut line),
             line,
