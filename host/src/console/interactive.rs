@@ -16,6 +16,7 @@ use super::prompt::{Outcome, Prompt};
 use super::recorder::{self, Event, FORMAT, Recorder};
 use super::screen::Screen;
 use super::session::Session;
+use super::turn_error::TurnError;
 use crate::Failure;
 
 /// Talk to the robot
@@ -120,7 +121,7 @@ impl Talk {
             let Some(line) = board.link.line(wait)? else {
                 break;
             };
-            if let Some(line) = self.session.hear(&line) {
+            if let Some(line) = self.session.receive(&line) {
                 show(&line)?;
             }
         }
@@ -163,7 +164,7 @@ impl Talk {
                 }
             }
             let shown = self.turn(&mut board, |line| writeln!(out, "{line}"));
-            shown.map_err(|error| error.failure(&board))?;
+            shown.map_err(|error| failure(error, &board))?;
         }
         Ok(())
     }
@@ -193,7 +194,7 @@ impl Talk {
                     continue;
                 }
                 Err(error) => {
-                    failed = Some(error.failure(present));
+                    failed = Some(failure(error, present));
                     break;
                 }
             }
@@ -258,6 +259,14 @@ impl Talk {
     }
 }
 
+/// What the person reads when the dialogue does not go on.
+fn failure(error: TurnError, board: &Board) -> Failure {
+    match error {
+        TurnError::Link(error) => board.failure(&error),
+        TurnError::Io(error) => error.into(),
+    }
+}
+
 /// The lines of standard input as they come; disconnected at its end.
 fn lines_of_stdin() -> Receiver<String> {
     let (send, receive) = mpsc::channel();
@@ -272,32 +281,4 @@ fn lines_of_stdin() -> Receiver<String> {
         }
     });
     receive
-}
-
-/// Why the dialogue does not go on.
-#[derive(Debug)]
-enum TurnError {
-    Link(LinkError),
-    Io(io::Error),
-}
-
-impl From<LinkError> for TurnError {
-    fn from(error: LinkError) -> Self {
-        Self::Link(error)
-    }
-}
-
-impl From<io::Error> for TurnError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
-impl TurnError {
-    fn failure(self, board: &Board) -> Failure {
-        match self {
-            Self::Link(error) => board.failure(&error),
-            Self::Io(error) => error.into(),
-        }
-    }
 }

@@ -24,3 +24,4 @@ pub mod replay;
 mod screen;
 pub mod session;
 pub mod status;
+mod turn_error;

@@ -97,7 +97,7 @@ impl Session {
     }
 
     /// Takes a line of the robot; returns it if it is to be shown.
-    pub fn hear(&mut self, line: &str) -> Option<String> {
+    pub fn receive(&mut self, line: &str) -> Option<String> {
         let shown = Some(line.to_owned());
         if line.starts_with('#') {
             self.said.push(Said::Note(line.to_owned()));
@@ -167,13 +167,16 @@ mod tests {
         session.say("walk");
         session.say("speed 50");
         assert_eq!(session.due(now), None, "the status has not come");
-        assert_eq!(session.hear(STATUS), None, "nobody asked for it");
+        assert_eq!(session.receive(STATUS), None, "nobody asked for it");
         assert_eq!(session.due(now).as_deref(), Some("walk"));
-        assert_eq!(session.hear("# fault: x").as_deref(), Some("# fault: x"));
+        assert_eq!(session.receive("# fault: x").as_deref(), Some("# fault: x"));
         assert_eq!(session.due(now), None);
-        assert_eq!(session.hear("ok walk").as_deref(), Some("ok walk"));
+        assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
         assert_eq!(session.due(now).as_deref(), Some("speed 50"));
-        assert_eq!(session.hear("ok speed 50").as_deref(), Some("ok speed 50"));
+        assert_eq!(
+            session.receive("ok speed 50").as_deref(),
+            Some("ok speed 50")
+        );
         assert!(session.is_idle());
         assert_eq!(session.due(now), None, "the next status is not due");
         assert_eq!(session.due(now + POLL).as_deref(), Some("status"));
@@ -186,7 +189,7 @@ mod tests {
         let mut session = Session::new(now, false, false);
         session.say("status");
         session.due(now);
-        assert_eq!(session.hear(STATUS).as_deref(), Some(STATUS));
+        assert_eq!(session.receive(STATUS).as_deref(), Some(STATUS));
     }
 
     #[test]
@@ -194,10 +197,10 @@ mod tests {
         let now = Instant::now();
         let mut session = Session::new(now, false, true);
         assert_eq!(session.due(now).as_deref(), Some("watch 1"));
-        session.hear("ok watch 1");
+        session.receive("ok watch 1");
         session.say("walk");
         session.due(now);
-        session.hear("# lizard 0.1.0");
+        session.receive("# lizard 0.1.0");
         assert_eq!(
             session.due(now).as_deref(),
             Some("watch 1"),
@@ -210,12 +213,12 @@ mod tests {
         let now = Instant::now();
         let mut session = Session::new(now, false, true);
         session.due(now);
-        session.hear("ok watch 1");
-        assert_eq!(session.hear("# t=1 pose=1,2,3,4"), None);
+        session.receive("ok watch 1");
+        assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
         session.say("watch 50");
         session.due(now);
-        session.hear("ok watch 50");
-        assert!(session.hear("# t=50 pose=1,2,3,4").is_some());
+        session.receive("ok watch 50");
+        assert!(session.receive("# t=50 pose=1,2,3,4").is_some());
     }
 
     #[test]
@@ -241,10 +244,10 @@ mod tests {
         let mut session = Session::new(now, true, false);
         session.say("walk");
         session.due(now);
-        session.hear("# note");
-        session.hear("err 1 no");
+        session.receive("# note");
+        session.receive("err 1 no");
         session.due(now);
-        session.hear(STATUS);
+        session.receive(STATUS);
         let said = session.take_said();
         assert_eq!(
             said,

@@ -126,6 +126,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         STEPS[self.at]
     }
 
+    /// Whether the robot keeps what it has.
+    pub fn is_saved(&self) -> bool {
+        self.step() == Step::Saved
+    }
+
     /// Takes a key; true when the person is done or has left.
     ///
     /// # Errors
@@ -442,155 +447,4 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::super::calibration::Direction;
-    use super::super::super::double::robot;
-    use super::*;
-
-    fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
-        let mut done = false;
-        for key in keys {
-            done = guide.key(*key).expect("the robot answers");
-        }
-        done
-    }
-
-    const PROVE: [Key; 2] = [Key::Act, Key::Yes];
-
-    #[test]
-    fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
-        let mut link = robot();
-        let mut guide = Guide::new(&mut link).expect("it answers");
-        press(&mut guide, &[Key::Next, Key::Next]);
-        press(&mut guide, &PROVE);
-        assert!(
-            guide
-                .view()
-                .title
-                .contains("which way does A2, front right turn")
-        );
-        press(&mut guide, &[Key::Act, Key::No, Key::Act, Key::Yes]);
-        press(&mut guide, &PROVE);
-        press(&mut guide, &PROVE);
-        assert!(
-            guide.view().title.contains("straighten A1"),
-            "{:?}",
-            guide.view()
-        );
-        press(
-            &mut guide,
-            &[Key::Turn(0.5), Key::Turn(0.5), Key::Turn(-0.1), Key::Next],
-        );
-        press(
-            &mut guide,
-            &[Key::Turn(-0.5), Key::Next, Key::Next, Key::Next],
-        );
-        press(&mut guide, &[Key::Act]);
-        guide.idle().expect("it answers");
-        assert!(guide.view().text[1].starts_with("It walks"));
-        press(&mut guide, &[Key::Next]);
-        assert!(
-            guide
-                .view()
-                .text
-                .contains(&"    A1, front left   sign +   trim +0.90 deg".to_owned())
-        );
-        assert!(!press(&mut guide, &[Key::Next]));
-        assert!(guide.view().title.ends_with("done"), "{:?}", guide.view());
-        press(&mut guide, &[Key::Back]);
-        assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
-        let left = Calibration::ask(&mut link).expect("it answers");
-        assert_eq!(left.servo.a1.trim, 0.9);
-        link.tell("factory").expect("it is taken");
-        link.tell("load").expect("it was saved");
-        let kept = Calibration::ask(&mut link).expect("it answers");
-        assert_eq!(kept.servo.a1.trim, 0.9);
-        assert_eq!(kept.servo.a2.trim, -0.5);
-        assert_eq!(kept.servo.a2.dir, Direction::Minus);
-        assert_eq!(kept.servo.a3.dir, Direction::Plus);
-    }
-
-    #[test]
-    fn who_leaves_at_any_step_leaves_everything_as_it_was() {
-        let way: Vec<Key> = [Key::Next, Key::Next]
-            .into_iter()
-            .chain([Key::Act, Key::No, Key::Act, Key::Yes])
-            .chain(PROVE.repeat(3))
-            .chain([
-                Key::Turn(4.0),
-                Key::Next,
-                Key::Next,
-                Key::Next,
-                Key::Next,
-                Key::Act,
-            ])
-            .collect();
-        for length in [1, 4, 13, 18] {
-            let mut link = robot();
-            link.tell("trim 1 2.50").expect("it is taken");
-            link.tell("boot walk").expect("it is taken");
-            let before = Calibration::ask(&mut link).expect("it answers");
-            let mut guide = Guide::new(&mut link).expect("it answers");
-            press(&mut guide, &way[..length]);
-            assert!(press(&mut guide, &[Key::Leave]), "after {length} keys");
-            let after = Calibration::ask(&mut link).expect("it answers");
-            assert_eq!(after, before, "after {length} keys");
-            let status = link.ask("status").expect("it answers").answer;
-            assert!(status.starts_with("ok gait=stand"), "{status}");
-            let load = link.ask("load").expect("it answers").answer;
-            assert!(load.starts_with("err 9"), "nothing was saved: {load}");
-        }
-    }
-
-    #[test]
-    fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
-        let mut link = robot();
-        link.tell("trim 1 3").expect("it is taken");
-        let mut guide = Guide::new(&mut link).expect("it answers");
-        press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
-        assert_eq!(guide.now.servo.a1.trim, -3.0);
-        let now = Calibration::ask(&mut link).expect("it answers");
-        assert_eq!(
-            (now.servo.a1.trim, now.servo.a1.dir),
-            (-3.0, Direction::Minus)
-        );
-    }
-
-    #[test]
-    fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
-        let mut link = robot();
-        let mut guide = Guide::new(&mut link).expect("it answers");
-        press(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
-        assert!(guide.view().message.contains("space bar first"));
-        press(&mut guide, &[Key::Next]);
-        assert!(guide.view().title.contains("A1"), "no step is left out");
-        press(&mut guide, &[Key::Act]);
-        let status = link.ask("status").expect("it answers").answer;
-        assert!(
-            status.contains("pose=148.59,41.41,318.59,221.41"),
-            "{status}"
-        );
-    }
-
-    #[test]
-    fn one_can_go_back_and_a_refused_trim_is_said_and_changes_nothing() {
-        let mut link = robot();
-        let mut guide = Guide::new(&mut link).expect("it answers");
-        press(&mut guide, &[Key::Back, Key::Next, Key::Next]);
-        for _ in 0..4 {
-            press(&mut guide, &PROVE);
-        }
-        press(&mut guide, &[Key::Turn(19.9), Key::Turn(0.5)]);
-        let view = guide.view();
-        assert!(
-            view.message
-                .starts_with("The robot refuses `trim 1 20.40`: 3 trim must")
-        );
-        assert!(
-            view.text.contains(&"    trim +19.90 deg".to_owned()),
-            "{view:?}"
-        );
-        press(&mut guide, &[Key::Back]);
-        assert!(guide.view().title.contains("which way does A4"));
-    }
-}
+mod tests;

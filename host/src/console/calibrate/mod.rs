@@ -12,7 +12,7 @@ use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlt
 use crossterm::{cursor, execute, queue};
 
 use super::connect::Connect;
-use super::link::LinkError;
+use super::turn_error::TurnError;
 use crate::Failure;
 use guide::{Guide, Key, View};
 
@@ -44,11 +44,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let ended = Guide::new(&mut board.link).map_err(TurnError::from);
     let ended = ended.and_then(|mut guide| with_keys(&mut guide));
     match ended {
-        Ok(View { title, .. }) if title.ends_with("done") => {
+        Ok(true) => {
             println!("the calibration is saved");
             Ok(())
         }
-        Ok(_) => {
+        Ok(false) => {
             println!("left: the robot has what it had before");
             Ok(())
         }
@@ -61,8 +61,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Shows the steps until the person is done; returns the last.
-fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<View, TurnError> {
+/// Shows the steps until the person is done; whether it was saved.
+fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     let mut page = Page::new()?;
     let mut shown = None;
     loop {
@@ -80,7 +80,7 @@ fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<View, 
                 if let Some(key) = meaning(key)
                     && guide.key(key)?
                 {
-                    return Ok(guide.view());
+                    return Ok(guide.is_saved());
                 }
             }
             Event::Resize(..) => shown = None,
@@ -157,23 +157,5 @@ impl Drop for Page {
         // The terminal may be gone; then nothing is left to be done.
         let _ = execute!(self.0, cursor::Show, LeaveAlternateScreen);
         let _ = terminal::disable_raw_mode();
-    }
-}
-
-/// Why the steps do not go on.
-enum TurnError {
-    Link(LinkError),
-    Io(io::Error),
-}
-
-impl From<LinkError> for TurnError {
-    fn from(error: LinkError) -> Self {
-        Self::Link(error)
-    }
-}
-
-impl From<io::Error> for TurnError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
     }
 }
