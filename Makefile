@@ -24,7 +24,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash flash-test lint cli bench prove mutants docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .mutants .docs
+.PHONY: help sim test firmware flash flash-test lint cli bench prove mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .mutants .fuzz .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -50,6 +50,8 @@ prove: ## the guard against floating point at every pose there is; about a minut
 	$(call prepared,.prove)
 mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
 	$(call prepared,.mutants)
+fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
+	$(call prepared,.fuzz)
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
 clean: ## remove everything that was built
@@ -116,6 +118,9 @@ clean: ## remove everything that was built
 # ONLY=serial.rs narrows it down.
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
+
+.fuzz:
+	@for target in $(or $(TARGET),console memory); do scripts/fuzz $$target $(or $(MINUTES),1) || exit 1; done
 
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md

@@ -1,0 +1,95 @@
+//! What the core must bear without harm: any bytes at its console, any bytes in its
+//! EEPROM.
+//!
+//! Bytes come from a half-open port, a modem manager or a cat on the keyboard; the
+//! EEPROM may hold another program's data. Whatever they are, each line has one
+//! answer, no pulse leaves a servo's limits, and what was saved stays whole.
+//!
+//! [`console`] and [`memory`] check that for one input. `make test` calls them with
+//! ten million seeded random bytes and lines, `make fuzz` with what LLVM's libFuzzer
+//! finds.
+#![deny(unsafe_code)]
+
+mod board;
+
+pub use board::Board;
+
+use std::sync::LazyLock;
+
+use lizard_core::memory::{Bytes, CONTENT, Memory, Place, Progress};
+use lizard_core::record::{COPIES, RESTED};
+use lizard_core::settings::Settings;
+use lizard_robot::Robot;
+
+/// The robot that `LIZARD_ROBOT` names, else the source tree's robot.toml.
+///
+/// # Panics
+/// If that is no robot.
+pub fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
+        let built_in = concat!(env!("CARGO_MANIFEST_DIR"), "/../robot.toml").into();
+        let path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+        Robot::load(path.unwrap_or(built_in)).unwrap_or_else(|error| panic!("{error}"))
+    });
+    &ROBOT
+}
+
+/// Bytes at the console, a frame after each eight of them.
+///
+/// # Panics
+/// If they do harm.
+pub fn console(data: &[u8]) {
+    let mut board = Board::new(robot(), Bytes::default());
+    for eight in data.chunks(8) {
+        for byte in eight {
+            board.take(*byte);
+        }
+        board.frame();
+    }
+    board.take(b'\n');
+    board.assert_memory_is_right();
+}
+
+/// An EEPROM: the first bytes are put over the contents of its three records, which
+/// are whole then; of the others each three set a byte somewhere, so that a record may
+/// be damaged, too.
+///
+/// # Panics
+/// If it does harm.
+pub fn memory(data: &[u8]) {
+    let robot = robot();
+    let mut memory = Bytes::default();
+    let (records, patches) = data.split_at(data.len().min(3 * CONTENT));
+    let places = [COPIES[0], COPIES[1], RESTED];
+    for (place, change) in places.into_iter().zip(records.chunks(CONTENT)) {
+        let mut content = *Settings::of(robot.firmware()).bytes();
+        for (byte, change) in content.iter_mut().zip(change) {
+            *byte ^= change;
+        }
+        write(place, &content, &mut memory);
+    }
+    for patch in patches.chunks_exact(3) {
+        memory.write(u16::from_le_bytes([patch[0], patch[1]]) % 1024, patch[2]);
+    }
+    let before = memory.clone();
+    let mut board = Board::new(robot, memory);
+    // Three seconds and a half: what `boot` says is done, too.
+    for _ in 0..175 {
+        board.frame();
+    }
+    let kept = &board.memory().0;
+    let settings = 0..usize::from(RESTED.0);
+    assert_eq!(kept[settings.clone()], before.0[settings], "nobody saved");
+    for byte in b"status\nstand\n" {
+        board.take(*byte);
+    }
+    for _ in 0..50 {
+        board.frame();
+    }
+}
+
+/// Writes a record as the core does.
+fn write(place: Place, content: &[u8; CONTENT], memory: &mut Bytes) {
+    let mut writing = place.write();
+    while writing.step(content, memory) == Progress::Going {}
+}
