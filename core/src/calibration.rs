@@ -24,6 +24,14 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// No servo: without travel.
+    pub const NONE: Self = Self {
+        neutral: Width(0),
+        gain: 0,
+        min: Sweep(0),
+        max: Sweep(0),
+    };
+
     /// The pulse width that turns the servo to `sweep`.
     pub fn width(&self, sweep: Sweep) -> Width {
         Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))

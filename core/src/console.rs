@@ -59,7 +59,7 @@ enum Output {
 }
 
 /// Pose reports, as `watch` asked for them.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Watch {
     /// Frames from one report to the next; 0 for none.
     every: u16,
@@ -90,21 +90,20 @@ pub struct Console<R> {
 impl<R: Robot> Console<R> {
     /// A robot at power-on, its banner not yet written; [`Console::begin`] has to
     /// follow.
-    #[inline(never)]
-    pub fn new(robot: R) -> Self {
+    pub const fn new(robot: R) -> Self {
         Self {
             line: Line::new(),
-            settings: Settings::of(&robot),
-            motion: Motion::new(robot),
+            settings: Settings::NONE,
+            motion: Motion::unbegun(robot),
             found: Outcome::Latest,
-            safety: Safety::default(),
+            safety: Safety::new(),
             cause: Cause::Power,
             restarts: 0,
             job: Some(Job::Pose(RESTED.forget())),
             banner: true,
             answer: None,
             held: None,
-            watch: Watch::default(),
+            watch: Watch::every(0),
         }
     }
 
@@ -114,6 +113,7 @@ impl<R: Robot> Console<R> {
     pub fn begin<M: Memory>(&mut self, memory: &M, restart: &Restart) {
         self.cause = restart.cause;
         self.restarts = restart.count;
+        self.motion.begin();
         self.found = record::load(self.motion.robot(), memory, &mut self.settings);
         if self.found != Outcome::Latest {
             self.safety.notify(Notice::Memory);

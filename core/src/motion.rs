@@ -136,22 +136,37 @@ pub struct Motion<R> {
 
 impl<R: Robot> Motion<R> {
     /// The robot at power-on: waking, then standing.
-    #[inline(never)]
     pub fn new(robot: R) -> Self {
+        let mut motion = Self::unbegun(robot);
+        motion.begin();
+        for place in 0..4 {
+            motion.calibrate(place, motion.robot.servo(place));
+        }
+        motion
+    }
+
+    /// A robot without pulses, of which nothing is known; [`Motion::begin`] and the
+    /// calibration of every servo have to follow.
+    pub const fn unbegun(robot: R) -> Self {
         Self {
-            calibration: robot.calibration(),
-            state: State::cycling(&robot, GaitId::STAND),
+            calibration: [Calibration::NONE; 4],
+            state: State::Resting,
             robot,
             next: None,
             speed: 100,
             slow: false,
-            sent: Pulses::default(),
+            sent: Pulses([Width(0); 4]),
             settling: false,
             awake: 0,
             pose: Pose::NEUTRAL,
             hazard: None,
             frames: 0,
         }
+    }
+
+    /// Wakes the servos, to stand.
+    pub fn begin(&mut self) {
+        self.state = State::cycling(&self.robot, GaitId::STAND);
     }
 
     /// The robot that moves.

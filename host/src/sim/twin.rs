@@ -117,10 +117,9 @@ struct Twin<R> {
 impl<R: Robot> Twin<R> {
     fn new(robot: R) -> Self {
         let mut line = Line::default();
-        Self {
-            main: Main::new(robot, &mut line),
-            line,
-        }
+        let mut main = Main::new(robot);
+        main.begin(&mut line);
+        Self { main, line }
     }
 
     /// The main loop, woken at a cycle, until it has nothing left to do.
