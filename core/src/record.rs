@@ -69,10 +69,11 @@ impl Copies {
     }
 }
 
-/// Reads the settings to use into `settings`, which are robot.toml's: those saved
-/// last, if they will do. If not, robot.toml's stay.
+/// Reads the settings to use into `settings`: those saved last, if they will do. If
+/// not, robot.toml's.
 #[inline(never)]
 pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
+    *settings = Settings::of(robot);
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
         return match copies.found {
