@@ -217,11 +217,34 @@ impl Text {
     ///
     /// # Errors
     /// Those of `out`.
+    #[inline(never)]
     pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
-        for character in Characters::of(self as u8) {
-            out.write_char(char::from(character & 0x7f))?;
+        let mut part = Part::of(self as u8);
+        // What follows the phrase that `part` is of.
+        let mut rest = Part::NONE;
+        loop {
+            if part.left == 0 {
+                part = rest;
+                rest.left = 0;
+            }
+            if part.left == 0 {
+                return Ok(());
+            }
+            let mut code = part.next();
+            if code >= SHORT {
+                code = SHORT + (code - SHORT) * 16 + part.next();
+            }
+            match code.checked_sub(ALPHABET.len() as u8) {
+                None => {
+                    let character = CHARACTERS.at(usize::from(code)).load();
+                    out.write_char(char::from(character & 0x7f))?;
+                }
+                Some(phrase) => {
+                    rest = part;
+                    part = Part::of(COUNT as u8 + phrase);
+                }
+            }
         }
-        Ok(())
     }
 
     /// Its length in bytes.
@@ -231,7 +254,33 @@ impl Text {
 
     /// True if the sentence is just this word.
     pub fn is(self, word: &[u8]) -> bool {
-        Characters::of(self as u8).eq(word.iter().copied())
+        let mut left = Left(word);
+        self.print(&mut left).is_ok() && left.0.is_empty()
+    }
+}
+
+/// What is left of a word of which the beginning has been written.
+struct Left<'a>(&'a [u8]);
+
+/// Something else has been written.
+struct Differs;
+
+impl uWrite for Left<'_> {
+    type Error = Differs;
+
+    fn write_str(&mut self, text: &str) -> Result<(), Differs> {
+        self.0 = self.0.strip_prefix(text.as_bytes()).ok_or(Differs)?;
+        Ok(())
+    }
+
+    fn write_char(&mut self, character: char) -> Result<(), Differs> {
+        match self.0 {
+            [first, left @ ..] if *first == character as u8 => {
+                self.0 = left;
+                Ok(())
+            }
+            _ => Err(Differs),
+        }
     }
 }
 
@@ -261,56 +310,13 @@ impl Part {
     }
 
     /// The next one.
+    #[inline(always)]
     fn next(&mut self) -> u8 {
         let pair = NIBBLES.at(usize::from(self.at >> 1)).load();
         let nibble = if self.at & 1 == 0 { pair } else { pair >> 4 };
         self.at += 1;
         self.left -= 1;
         nibble & 0xf
-    }
-}
-
-/// The characters of a string.
-struct Characters {
-    part: Part,
-    /// What follows the phrase that `part` is of.
-    rest: Part,
-}
-
-impl Characters {
-    fn of(string: u8) -> Self {
-        Self {
-            part: Part::of(string),
-            rest: Part::NONE,
-        }
-    }
-}
-
-impl Iterator for Characters {
-    type Item = u8;
-
-    #[inline(never)]
-    fn next(&mut self) -> Option<u8> {
-        loop {
-            if self.part.left == 0 {
-                if self.rest.left == 0 {
-                    return None;
-                }
-                self.part = self.rest;
-                self.rest.left = 0;
-            }
-            let mut code = self.part.next();
-            if code >= SHORT {
-                code = SHORT + (code - SHORT) * 16 + self.part.next();
-            }
-            match code.checked_sub(ALPHABET.len() as u8) {
-                None => return Some(CHARACTERS.at(usize::from(code)).load()),
-                Some(phrase) => {
-                    self.rest = self.part;
-                    self.part = Part::of(COUNT as u8 + phrase);
-                }
-            }
-        }
     }
 }
 
