@@ -61,32 +61,17 @@ texts! {
 
     // Help, a line each.
     HelpGaits = "# gaits:";
-    HelpWords = "# others:";
+    HelpWords = "# others: ";
     HelpHint = "# a word alone tells what it wants, the docs what it does";
 
-    // Answers, and the words of commands.
+    // Answers.
     Ok = "ok ";
     OkHelp = "ok help";
     OkGait = "ok gait=";
-    Help = "help";
     Stop = "stop";
     Rest = "rest";
     Pose = "pose";
-    Speed = "speed";
-    Watch = "watch";
-    Status = "status";
-    QuestionMark = "?";
-    Trim = "trim";
-    Limit = "limit";
-    Dir = "dir";
-    Scale = "scale";
     Cal = "cal";
-    Center = "center";
-    Save = "save";
-    Load = "load";
-    Factory = "factory";
-    Boot = "boot";
-    Deadman = "deadman";
     StatusPhase = " phase=";
     StatusMargin = " margin=";
     StatusSpeed = " speed=";
@@ -251,37 +236,6 @@ impl Text {
     pub const fn length(self) -> u8 {
         SENTENCES[self as usize].len() as u8
     }
-
-    /// True if the sentence is just this word.
-    pub fn is(self, word: &[u8]) -> bool {
-        let mut left = Left(word);
-        self.print(&mut left).is_ok() && left.0.is_empty()
-    }
-}
-
-/// What is left of a word of which the beginning has been written.
-struct Left<'a>(&'a [u8]);
-
-/// Something else has been written.
-struct Differs;
-
-impl uWrite for Left<'_> {
-    type Error = Differs;
-
-    fn write_str(&mut self, text: &str) -> Result<(), Differs> {
-        self.0 = self.0.strip_prefix(text.as_bytes()).ok_or(Differs)?;
-        Ok(())
-    }
-
-    fn write_char(&mut self, character: char) -> Result<(), Differs> {
-        match self.0 {
-            [first, left @ ..] if *first == character as u8 => {
-                self.0 = left;
-                Ok(())
-            }
-            _ => Err(Differs),
-        }
-    }
 }
 
 /// Nibbles of a string that are left.
@@ -432,7 +386,6 @@ mod tests {
         for (text, expected) in [
             (Text::Banner, "# lizard "),
             (Text::Version, env!("CARGO_PKG_VERSION")),
-            (Text::QuestionMark, "?"),
             (Text::Unknown, "unknown command, send help for the list"),
             (Text::Resting, "servos are resting, send stand first"),
         ] {
@@ -440,14 +393,6 @@ mod tests {
             let Ok(()) = text.print(&mut printed);
             assert_eq!(printed, expected);
             assert_eq!(usize::from(text.length()), expected.len());
-        }
-    }
-
-    #[test]
-    fn a_word_is_itself_and_neither_shorter_nor_longer() {
-        assert!(Text::Stop.is(b"stop"));
-        for other in ["", "s", "sto", "stoq", "stops", "rest"] {
-            assert!(!Text::Stop.is(other.as_bytes()), "{other}");
         }
     }
 

@@ -4,7 +4,6 @@ use ufmt::uWrite;
 
 use super::{Console, Counters, LONGEST_LINE};
 use crate::answer::{self, Answer};
-use crate::command::WORDS;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::guard::Clearance;
@@ -16,6 +15,7 @@ use crate::settings::Boot;
 use crate::supply::{Level, Voltage};
 use crate::text::Text;
 use crate::units::{Angle, Sweep, thousandths_from_phase};
+use crate::word::Word;
 
 /// Places of the lines of `cal`.
 const CAL_BOOT: u8 = 4;
@@ -47,10 +47,7 @@ impl<R: Robot> Console<R> {
             }
             Answer::Words => {
                 Text::HelpWords.print(out)?;
-                for place in 0..WORDS.as_slice().len() {
-                    out.write_char(if place == 0 { ' ' } else { '|' })?;
-                    WORDS.at(place).load().print(out)?;
-                }
+                Word::print_all(out)?;
                 return Ok(Some(Answer::Hint));
             }
             Answer::Hint => {
