@@ -9,59 +9,24 @@ use lizard_avr::flash;
 use crate::gait::{GaitId, Name};
 use crate::part::Servo;
 use crate::robot::Robot;
-use crate::settings::Boot;
 use crate::text::Text;
-use crate::units::{Angle, Sweep, TURN_CENTIDEG};
+use crate::units::{Angle, TURN_CENTIDEG};
 use crate::word::Word;
 
 /// A command, with its arguments checked as far as syntax and range go.
+// Not an enum: taking values of several sizes to pieces costs half a kilobyte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command {
-    /// List the commands.
-    Help,
-    /// Begin a gait; `stand` is one.
-    Gait(GaitId),
-    /// Freeze.
-    Stop,
-    /// End the pulses.
-    Rest,
-    /// Pace of gaits in percent, 10..=100.
-    Speed(u8),
-    /// Go to chassis angles, A1 to A4.
-    Pose([Angle; 4]),
-    /// Print the state.
-    Status,
-    /// Report the pose every so many frames; 0 ends it.
-    Watch(u16),
-    /// Set something of a servo.
-    Adjust(Servo, Change),
-    /// Print all that is set.
-    Cal,
-    /// Go to where every servo has its neutral pulse, trims left out.
-    Center,
-    /// Keep what is set in the EEPROM.
-    Save,
-    /// Take what the EEPROM keeps.
-    Load,
-    /// Take what robot.toml says.
-    Factory,
-    /// What to do after power-on.
-    Boot(Boot),
-    /// Milliseconds without a line after which a gait ends; 0 for never.
-    Deadman(u16),
-}
-
-/// What is set of a servo.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change {
-    /// How far its horn is to turn from where it sits.
-    Trim(Sweep),
-    /// The chassis angles at which its travel ends, clockwise and counter-clockwise.
-    Limit([Angle; 2]),
-    /// Whether a longer pulse turns it counter-clockwise.
-    Dir(bool),
-    /// Hundredths of a microsecond per degree, 500..=2000.
-    Scale(u16),
+pub struct Command {
+    /// The word of the console; none for the name of a gait.
+    pub word: Option<Word>,
+    /// The gait that is named, also after `boot`; none for `boot rest`.
+    pub gait: Option<GaitId>,
+    /// The place of the servo that is to be set.
+    pub servo: u8,
+    /// The numbers that follow: a percentage, frames or milliseconds as they are;
+    /// `dir` as 1 for `+` and 0 for `-`; `scale` in hundredths of a microsecond per
+    /// degree; anything else as an [`Angle`].
+    pub numbers: [u16; 4],
 }
 
 /// Why a line is no command.
@@ -152,60 +117,53 @@ const fn form(word: Word) -> Option<usize> {
     }
 }
 
-/// Arguments as they were read.
-#[derive(Default)]
-struct Arguments {
-    servo: u8,
-    numbers: [u16; 4],
-}
-
 /// Reads a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
 /// What keeps the line from being a command.
 pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
-    let mut words = Words(line);
-    let Some(word) = Word::find(words.next()) else {
-        return gait(line, robot).map(Command::Gait);
-    };
-    let mut arguments = Arguments::default();
-    if word == Word::Boot {
-        return boot(words, robot);
-    } else if let Some(place) = form(word) {
-        arguments.read(words, &FORMS.at(place).load(), word)?;
-    } else if !words.is_done() {
-        return Err(Misread::Surplus);
-    }
-    let [first, second, ..] = arguments.numbers;
-    let change = match word {
-        Word::Help | Word::QuestionMark => return Ok(Command::Help),
-        Word::Stop => return Ok(Command::Stop),
-        Word::Rest => return Ok(Command::Rest),
-        Word::Status => return Ok(Command::Status),
-        Word::Cal => return Ok(Command::Cal),
-        Word::Center => return Ok(Command::Center),
-        Word::Save => return Ok(Command::Save),
-        Word::Load => return Ok(Command::Load),
-        Word::Factory | Word::Boot => return Ok(Command::Factory),
-        Word::Pose => return Ok(Command::Pose(arguments.numbers.map(Angle))),
-        Word::Speed => return Ok(Command::Speed(first as u8)),
-        Word::Watch => return Ok(Command::Watch(first)),
-        Word::Deadman => return Ok(Command::Deadman(first)),
-        Word::Trim => Change::Trim(Sweep(first as i16)),
-        Word::Limit => Change::Limit([Angle(first), Angle(second)]),
-        Word::Dir => Change::Dir(first != 0),
-        Word::Scale => Change::Scale(first),
-    };
-    Ok(Command::Adjust(
-        Servo::at(usize::from(arguments.servo)),
-        change,
-    ))
+    let mut command = Command::NONE;
+    command.read(line, robot)?;
+    Ok(command)
 }
 
-impl Arguments {
-    /// Reads what is left of a line.
+impl Command {
+    /// To be read into.
+    pub const NONE: Self = Self {
+        word: None,
+        gait: None,
+        servo: 0,
+        numbers: [0; 4],
+    };
+
+    /// The same as [`parse`], into [`Command::NONE`].
+    ///
+    /// # Errors
+    /// Those of [`parse`].
+    pub fn read<R: Robot>(&mut self, line: &[u8], robot: &R) -> Result<(), Misread> {
+        let mut words = Words(line);
+        self.word = Word::find(words.next());
+        match self.word {
+            None => self.gait = Some(gait(line, robot)?),
+            Some(Word::Boot) => {
+                let rest = words.0.trim_ascii();
+                if Word::find(rest) != Some(Word::Rest) {
+                    let gait = gait(rest, robot);
+                    self.gait = Some(gait.map_err(|_| Misread::Wants(Text::BootWants))?);
+                }
+            }
+            Some(word) => match form(word) {
+                Some(place) => self.read_arguments(words, &FORMS.at(place).load())?,
+                None if !words.is_done() => return Err(Misread::Surplus),
+                None => {}
+            },
+        }
+        Ok(())
+    }
+
+    /// Reads what follows the word.
     #[inline(never)]
-    fn read(&mut self, mut words: Words, form: &Form, word: Word) -> Result<(), Misread> {
+    fn read_arguments(&mut self, mut words: Words, form: &Form) -> Result<(), Misread> {
         let wants = Err(Misread::Wants(form.wants));
         if form.servo {
             self.servo = match words.next() {
@@ -232,7 +190,7 @@ impl Arguments {
         }
         match beyond {
             _ if !words.is_done() => wants,
-            Some(place) if word == Word::Pose => {
+            Some(place) if self.word == Some(Word::Pose) => {
                 Err(Misread::PoseRange(Servo::at(usize::from(place))))
             }
             Some(_) => Err(Misread::Range(form.range)),
@@ -261,16 +219,6 @@ impl<'a> Words<'a> {
     fn is_done(mut self) -> bool {
         self.next().is_empty()
     }
-}
-
-fn boot<R: Robot>(words: Words, robot: &R) -> Result<Command, Misread> {
-    let rest = words.0.trim_ascii();
-    let boot = if Word::find(rest) == Some(Word::Rest) {
-        Boot::Rest
-    } else {
-        Boot::Gait(gait(rest, robot).map_err(|_| Misread::Wants(Text::BootWants))?)
-    };
-    Ok(Command::Boot(boot))
 }
 
 /// A gait's name, or what is wrong with it. Any blanks between words will do.

@@ -8,7 +8,7 @@
 use ufmt::uWrite;
 
 use crate::answer::{self, Answer, Refusal};
-use crate::command::{Change, Command, parse};
+use crate::command::Command;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::hazard::Hazard;
@@ -24,6 +24,8 @@ use crate::safety::{Health, Notice, Order, Safety};
 use crate::settings::{Boot, Settings};
 use crate::supply::Voltage;
 use crate::text::Text;
+use crate::units::{Angle, Sweep};
+use crate::word::Word;
 
 use job::Job;
 
@@ -217,16 +219,20 @@ impl<R: Robot> Console<R> {
             return;
         };
         self.safety.line_came();
-        self.answer = match ended {
-            line::Ended::TooLong => Some(Answer::Refused(Refusal::TooLong)),
-            line::Ended::Line => match parse(self.line.text(), self.motion.robot()) {
-                Err(misread) => Some(Answer::Refused(Refusal::Misread(misread))),
-                Ok(command) => {
-                    let executed = self.execute(command);
-                    executed.unwrap_or_else(|refusal| Some(Answer::Refused(refusal)))
+        self.answer = Some(Answer::Done);
+        let done = match ended {
+            line::Ended::TooLong => Err(Refusal::TooLong),
+            line::Ended::Line => {
+                let mut command = Command::NONE;
+                match command.read(self.line.text(), self.motion.robot()) {
+                    Err(misread) => Err(Refusal::Misread(misread)),
+                    Ok(()) => self.execute(&command),
                 }
-            },
+            }
         };
+        if let Err(refusal) = done {
+            self.answer = Some(Answer::Refused(refusal));
+        }
     }
 
     /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes.
@@ -312,28 +318,33 @@ impl<R: Robot> Console<R> {
         self.motion.set_slow(!self.safety.allows_writing());
     }
 
-    /// Executes a command. None: the answer comes when the memory has been dealt with.
+    /// Executes a command. The answer is that it is done, if this sets no other; none
+    /// comes as long as there is something to do with the memory.
     #[inline(never)]
-    fn execute(&mut self, command: Command) -> Result<Option<Answer>, Refusal> {
-        match command {
-            Command::Help => return Ok(Some(Answer::Gaits(GaitId::STAND))),
-            Command::Status => return Ok(Some(Answer::Status)),
-            Command::Cal => return Ok(Some(Answer::Settings(0))),
-            Command::Speed(percent) => self.motion.set_speed(percent),
-            Command::Watch(frames) => self.watch = Watch::every(frames),
-            Command::Rest => self.rest(),
-            Command::Gait(gait) => {
-                self.may_move(gait == GaitId::STAND)?;
-                self.motion.start_gait(gait);
-                self.moves();
-            }
-            Command::Pose(angles) => {
+    fn execute(&mut self, command: &Command) -> Result<(), Refusal> {
+        let [number, second, ..] = command.numbers;
+        let Some(word) = command.word else {
+            let gait = command.gait.unwrap_or(GaitId::STAND);
+            self.may_move(gait == GaitId::STAND)?;
+            self.motion.start_gait(gait);
+            self.moves();
+            return Ok(());
+        };
+        match word {
+            Word::Help | Word::QuestionMark => self.answer = Some(Answer::Gaits(GaitId::STAND)),
+            Word::Status => self.answer = Some(Answer::Status),
+            Word::Cal => self.answer = Some(Answer::Settings(0)),
+            Word::Speed => self.motion.set_speed(number as u8),
+            Word::Watch => self.watch = Watch::every(number),
+            Word::Rest => self.rest(),
+            Word::Pose => {
                 let motion = &self.motion;
+                let angles = command.numbers.map(Angle);
                 let pose = Pose::at(&angles, &motion.robot().neutral(), motion.calibration())
                     .map_err(Refusal::Travel)?;
                 self.go_to(&pose)?;
             }
-            Command::Center => {
+            Word::Center => {
                 let mut pose = self.settings.pose();
                 for sweep in &mut pose.0 {
                     sweep.0 = -sweep.0;
@@ -343,48 +354,50 @@ impl<R: Robot> Console<R> {
                 }
                 self.go_to(&pose)?;
             }
-            Command::Stop => {
+            Word::Stop => {
                 if self.motion.activity() == Activity::Rest {
                     return Err(Refusal::Resting);
                 }
                 self.motion.stop();
             }
-            Command::Adjust(servo, change) => {
-                let place = servo.index();
-                let neutral = self.motion.robot().neutral()[place];
-                let before = self.settings.servo(place);
-                let mut set = before;
-                match change {
-                    Change::Trim(trim) => set.trim = trim,
-                    Change::Dir(direct) => set.set_direct(direct),
-                    Change::Scale(scale) => set.set_scale(scale),
-                    Change::Limit([min, max]) => {
-                        set.min = neutral.sweep_to(min);
-                        set.max = neutral.sweep_to(max);
+            Word::Trim | Word::Limit | Word::Dir | Word::Scale => {
+                let place = usize::from(command.servo);
+                let neutral = self.motion.robot().neutral()[place & 3];
+                let mut settings = self.settings;
+                let mut set = settings.servo(place);
+                match word {
+                    Word::Trim => set.trim = Sweep(number as i16),
+                    Word::Dir => set.set_direct(number != 0),
+                    Word::Scale => set.set_scale(number),
+                    _ => {
+                        set.min = neutral.sweep_to(Angle(number));
+                        set.max = neutral.sweep_to(Angle(second));
                     }
                 }
-                self.settings.set_servo(place, set);
-                if let Err(refusal) = self.adjust() {
-                    self.settings.set_servo(place, before);
-                    return Err(refusal);
-                }
+                settings.set_servo(place, set);
+                self.replace(&settings)?;
             }
-            Command::Factory => self.replace(&Settings::of(self.motion.robot()))?,
-            Command::Boot(boot) => self.settings.set_boot(boot, self.motion.robot()),
-            Command::Deadman(ms) => self.settings.set_deadman(ms),
-            Command::Load => {
-                self.job = Some(Job::Load);
-                return Ok(None);
+            Word::Factory => self.replace(&Settings::of(self.motion.robot()))?,
+            Word::Boot => {
+                let boot = command.gait.map_or(Boot::Rest, Boot::Gait);
+                self.settings.set_boot(boot, self.motion.robot());
             }
-            Command::Save => {
+            Word::Deadman => self.settings.set_deadman(number),
+            Word::Load => self.begin_job(Job::Load),
+            Word::Save => {
                 if !self.safety.allows_writing() {
                     return Err(Refusal::Supply);
                 }
-                self.job = Some(Job::Save);
-                return Ok(None);
+                self.begin_job(Job::Save);
             }
         }
-        Ok(Some(Answer::Done))
+        Ok(())
+    }
+
+    /// Begins something to do with the memory that ends with an answer.
+    fn begin_job(&mut self, job: Job) {
+        self.job = Some(job);
+        self.answer = None;
     }
 
     /// Refuses a motion for want of a supply, or because the servos rest and this
