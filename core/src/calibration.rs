@@ -37,9 +37,11 @@ impl Calibration {
         Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
     }
 
-    /// The same without an end, for sweeps beyond the travel.
-    pub fn pulse(&self, sweep: Sweep) -> i32 {
-        i32::from(self.neutral.0) + self.turned(sweep)
+    /// The same for sweeps beyond the travel: 0 for less, 65535 for more than that.
+    #[inline(never)]
+    pub fn pulse(&self, sweep: Sweep) -> u16 {
+        let pulse = i32::from(self.neutral.0) + self.turned(sweep);
+        pulse.clamp(0, i32::from(u16::MAX)) as u16
     }
 
     fn turned(&self, sweep: Sweep) -> i32 {

@@ -71,6 +71,9 @@ struct Watch {
     due: bool,
 }
 
+/// Something is not done; the answer says why.
+struct Refused;
+
 /// The robot as its console sees it.
 #[derive(Debug)]
 pub struct Console<R> {
@@ -171,27 +174,27 @@ impl<R: Robot> Console<R> {
             return;
         }
         let robot = self.motion.robot();
-        let ended = match &mut self.job {
+        let progress = match &mut self.job {
             None => return,
             Some(Job::Load) => {
                 let mut kept = self.settings;
-                match record::load(robot, memory, &mut kept) {
+                self.job = None;
+                self.answer = Some(Answer::Done);
+                // Either way, what is to be said is in the answer.
+                _ = match record::load(robot, memory, &mut kept) {
                     Outcome::Latest | Outcome::Other => self.replace(&kept),
-                    _ => Err(Refusal::NothingSaved),
-                }
+                    _ => self.refuse(Refusal::NothingSaved),
+                };
+                return;
             }
             Some(Job::Save) => match record::save(&mut self.settings, memory) {
-                None => Ok(()),
+                None => Progress::Done,
                 Some(writing) => {
                     self.job = Some(Job::Saving(writing));
                     return;
                 }
             },
-            Some(Job::Saving(writing)) => match writing.step(self.settings.bytes(), memory) {
-                Progress::Going => return,
-                Progress::Done => Ok(()),
-                Progress::Failed => Err(Refusal::NotKept),
-            },
+            Some(Job::Saving(writing)) => writing.step(self.settings.bytes(), memory),
             Some(Job::Pose(writing)) => {
                 let pose = Settings::of_pose(self.motion.pose(), robot);
                 if writing.step(pose.bytes(), memory) != Progress::Going {
@@ -200,8 +203,12 @@ impl<R: Robot> Console<R> {
                 return;
             }
         };
+        self.answer = Some(match progress {
+            Progress::Going => return,
+            Progress::Done => Answer::Done,
+            Progress::Failed => Answer::Refused(Refusal::NotKept),
+        });
         self.job = None;
-        self.answer = Some(ended.map_or_else(Answer::Refused, |()| Answer::Done));
     }
 
     /// True while a line waits to be written. No byte is to be passed on
@@ -220,19 +227,16 @@ impl<R: Robot> Console<R> {
         };
         self.safety.line_came();
         self.answer = Some(Answer::Done);
-        let done = match ended {
-            line::Ended::TooLong => Err(Refusal::TooLong),
-            line::Ended::Line => {
-                let mut command = Command::NONE;
-                match command.read(self.line.text(), self.motion.robot()) {
-                    Err(misread) => Err(Refusal::Misread(misread)),
-                    Ok(()) => self.execute(&command),
-                }
-            }
-        };
-        if let Err(refusal) = done {
-            self.answer = Some(Answer::Refused(refusal));
+        if ended == line::Ended::TooLong {
+            self.answer = Some(Answer::Refused(Refusal::TooLong));
+            return;
         }
+        let mut command = Command::NONE;
+        // Either way, what is to be said is in the answer.
+        _ = match command.read(self.line.text(), self.motion.robot()) {
+            Ok(()) => self.execute(&command),
+            Err(misread) => self.refuse(Refusal::Misread(misread)),
+        };
     }
 
     /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes.
@@ -321,8 +325,8 @@ impl<R: Robot> Console<R> {
     /// Executes a command. The answer is that it is done, if this sets no other; none
     /// comes as long as there is something to do with the memory.
     #[inline(never)]
-    fn execute(&mut self, command: &Command) -> Result<(), Refusal> {
-        let [number, second, ..] = command.numbers;
+    fn execute(&mut self, command: &Command) -> Result<(), Refused> {
+        let [number, ..] = command.numbers;
         let Some(word) = command.word else {
             let gait = command.gait.unwrap_or(GaitId::STAND);
             self.may_move(gait == GaitId::STAND)?;
@@ -338,10 +342,7 @@ impl<R: Robot> Console<R> {
             Word::Watch => self.watch = Watch::every(number),
             Word::Rest => self.rest(),
             Word::Pose => {
-                let motion = &self.motion;
-                let angles = command.numbers.map(Angle);
-                let pose = Pose::at(&angles, &motion.robot().neutral(), motion.calibration())
-                    .map_err(Refusal::Travel)?;
+                let pose = Pose::at(&command.numbers, self.motion.robot());
                 self.go_to(&pose)?;
             }
             Word::Center => {
@@ -349,34 +350,15 @@ impl<R: Robot> Console<R> {
                 for sweep in &mut pose.0 {
                     sweep.0 = -sweep.0;
                 }
-                if let Some(servo) = pose.beyond(self.motion.calibration()) {
-                    return Err(Refusal::Travel(servo));
-                }
                 self.go_to(&pose)?;
             }
             Word::Stop => {
                 if self.motion.activity() == Activity::Rest {
-                    return Err(Refusal::Resting);
+                    return self.refuse(Refusal::Resting);
                 }
                 self.motion.stop();
             }
-            Word::Trim | Word::Limit | Word::Dir | Word::Scale => {
-                let place = usize::from(command.servo);
-                let neutral = self.motion.robot().neutral()[place & 3];
-                let mut settings = self.settings;
-                let mut set = settings.servo(place);
-                match word {
-                    Word::Trim => set.trim = Sweep(number as i16),
-                    Word::Dir => set.set_direct(number != 0),
-                    Word::Scale => set.set_scale(number),
-                    _ => {
-                        set.min = neutral.sweep_to(Angle(number));
-                        set.max = neutral.sweep_to(Angle(second));
-                    }
-                }
-                settings.set_servo(place, set);
-                self.replace(&settings)?;
-            }
+            Word::Trim | Word::Limit | Word::Dir | Word::Scale => self.set_servo(word, command)?,
             Word::Factory => self.replace(&Settings::of(self.motion.robot()))?,
             Word::Boot => {
                 let boot = command.gait.map_or(Boot::Rest, Boot::Gait);
@@ -386,12 +368,37 @@ impl<R: Robot> Console<R> {
             Word::Load => self.begin_job(Job::Load),
             Word::Save => {
                 if !self.safety.allows_writing() {
-                    return Err(Refusal::Supply);
+                    return self.refuse(Refusal::Supply);
                 }
                 self.begin_job(Job::Save);
             }
         }
         Ok(())
+    }
+
+    /// Sets something of a servo, if the robot can do with it what it does.
+    #[inline(never)]
+    fn set_servo(&mut self, what: Word, command: &Command) -> Result<(), Refused> {
+        let [number, second, ..] = command.numbers;
+        let place = usize::from(command.servo);
+        let before = self.settings.servo(place);
+        let mut set = before;
+        match what {
+            Word::Trim => set.trim = Sweep(number as i16),
+            Word::Dir => set.set_direct(number != 0),
+            Word::Scale => set.set_scale(number),
+            _ => {
+                let neutral = self.motion.robot().neutral_of(place);
+                set.min = neutral.sweep_to(Angle(number));
+                set.max = neutral.sweep_to(Angle(second));
+            }
+        }
+        self.settings.set_servo(place, set);
+        let adjusted = self.adjust();
+        if adjusted.is_err() {
+            self.settings.set_servo(place, before);
+        }
+        adjusted
     }
 
     /// Begins something to do with the memory that ends with an answer.
@@ -403,21 +410,32 @@ impl<R: Robot> Console<R> {
     /// Refuses a motion for want of a supply, or because the servos rest and this
     /// command does not `wake` them.
     #[inline(never)]
-    fn may_move(&self, wakes: bool) -> Result<(), Refusal> {
+    fn may_move(&mut self, wakes: bool) -> Result<(), Refused> {
         if !wakes && self.motion.activity() == Activity::Rest {
-            Err(Refusal::Resting)
+            self.refuse(Refusal::Resting)
         } else if !self.safety.allows_motion() {
-            Err(Refusal::Supply)
+            self.refuse(Refusal::Supply)
         } else {
             Ok(())
         }
     }
 
-    fn go_to(&mut self, pose: &Pose) -> Result<(), Refusal> {
+    fn go_to(&mut self, pose: &Pose) -> Result<(), Refused> {
+        if let Some(servo) = pose.beyond(self.motion.calibration()) {
+            return self.refuse(Refusal::Travel(servo));
+        }
         self.may_move(false)?;
-        self.motion.go_to(pose).map_err(Refusal::Unsafe)?;
+        if let Err(hazard) = self.motion.go_to(pose) {
+            return self.refuse(Refusal::Unsafe(hazard));
+        }
         self.moves();
         Ok(())
+    }
+
+    /// Answers why something is not done.
+    fn refuse(&mut self, why: Refusal) -> Result<(), Refused> {
+        self.answer = Some(Answer::Refused(why));
+        Err(Refused)
     }
 
     /// A motion begins: faults are over, and the pose of the last rest is, too.
@@ -436,7 +454,7 @@ impl<R: Robot> Console<R> {
 
     /// Takes other settings, or keeps those that there are.
     #[inline(never)]
-    fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
+    fn replace(&mut self, settings: &Settings) -> Result<(), Refused> {
         let before = self.settings;
         self.settings = *settings;
         let adjusted = self.adjust();
@@ -449,15 +467,15 @@ impl<R: Robot> Console<R> {
     /// Puts the settings into effect at once, if the robot can do with them what it
     /// does; if not, they have to be taken back.
     #[inline(never)]
-    fn adjust(&mut self) -> Result<(), Refusal> {
+    fn adjust(&mut self) -> Result<(), Refused> {
         let robot = self.motion.robot();
         if let Some(servo) = self.settings.unfit(robot) {
-            return Err(Refusal::Unfit(servo));
+            return self.refuse(Refusal::Unfit(servo));
         }
         for place in 0..4 {
             let calibration = self.settings.calibration(place, robot);
             if self.motion.goes_beyond(place, &calibration) {
-                return Err(Refusal::Elsewhere(Servo::at(place)));
+                return self.refuse(Refusal::Elsewhere(Servo::at(place)));
             }
         }
         self.calibrate();

@@ -172,7 +172,7 @@ impl<R: Robot> Console<R> {
             _ => {
                 let place = usize::from(line & 3);
                 let set = settings.servo(place);
-                let neutral = self.motion.robot().neutral()[place];
+                let neutral = self.motion.robot().neutral_of(place);
                 Text::Information.print(out)?;
                 out.write_char('A')?;
                 out.write_char(char::from(b'1' + line))?;
@@ -253,7 +253,7 @@ impl<R: Robot> Console<R> {
     pub(super) fn print_pose<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         Text::WatchPose.print(out)?;
         let motion = &self.motion;
-        answer::angles(out, &motion.pose().angles(&motion.robot().neutral()))
+        answer::angles(out, motion.pose(), motion.robot())
     }
 
     /// A gait's name as a value without a blank: `arc-left`.
