@@ -45,21 +45,6 @@ pub struct Counters {
     pub rx_lost: u16,
 }
 
-/// A line that waits to be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Output {
-    /// What robot this is, once after power-on.
-    Banner,
-    /// The answer to the last line received, or a part of it.
-    Answer(Answer),
-    /// Something that nobody asked for.
-    Notice(Notice),
-    /// Why the guard holds the robot.
-    Held(Hazard),
-    /// The pose, as `watch` asked for it.
-    Report,
-}
-
 /// Pose reports, as `watch` asked for them.
 #[derive(Clone, Copy, Debug)]
 struct Watch {
@@ -214,7 +199,11 @@ impl<R: Robot> Console<R> {
     /// True while a line waits to be written. No byte is to be passed on
     /// meanwhile: the answer may still need the line it answers.
     pub const fn has_output(&self) -> bool {
-        self.next_output().is_some()
+        self.banner
+            || self.answer.is_some()
+            || self.safety.notice().is_some()
+            || self.held.is_some()
+            || self.watch.due
     }
 
     /// Takes a byte from the serial line and executes the line that it ends.
@@ -239,7 +228,9 @@ impl<R: Robot> Console<R> {
         };
     }
 
-    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes.
+    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
+    /// is, once after power-on; an answer or a part of it; what nobody asked for; why
+    /// the guard holds the robot; the pose, as `watch` asked for it.
     ///
     /// # Errors
     /// Those of `out`.
@@ -248,50 +239,28 @@ impl<R: Robot> Console<R> {
     where
         W: uWrite + ?Sized,
     {
-        match self.next_output() {
-            None => return Ok(()),
-            Some(Output::Banner) => {
-                self.banner = false;
-                print::print_banner(out, self.motion.robot().hash())?;
-            }
-            Some(Output::Answer(answer)) => {
-                self.answer = self.print_answer(out, answer, counters)?;
-            }
-            Some(Output::Notice(notice)) => {
-                self.safety.written(notice);
-                self.print_notice(out, notice)?;
-            }
-            Some(Output::Held(hazard)) => {
-                self.held = None;
-                Text::Held.print(out)?;
-                answer::print_hazard(hazard, self.motion.robot(), out)?;
-            }
-            Some(Output::Report) => {
-                self.watch.due = false;
-                Text::WatchTime.print(out)?;
-                answer::number(out, self.motion.frames(), 0)?;
-                self.print_pose(out)?;
-            }
+        if self.banner {
+            self.banner = false;
+            print::print_banner(out, self.motion.robot().hash())?;
+        } else if let Some(answer) = self.answer {
+            self.answer = self.print_answer(out, answer, counters)?;
+        } else if let Some(notice) = self.safety.notice() {
+            self.safety.written(notice);
+            self.print_notice(out, notice)?;
+        } else if let Some(hazard) = self.held {
+            self.held = None;
+            Text::Held.print(out)?;
+            answer::print_hazard(hazard, self.motion.robot(), out)?;
+        } else if self.watch.due {
+            self.watch.due = false;
+            Text::WatchTime.print(out)?;
+            answer::number(out, self.motion.frames(), 0)?;
+            self.print_pose(out)?;
+        } else {
+            return Ok(());
         }
         out.write_char('\r')?;
         out.write_char('\n')
-    }
-
-    /// What is to be written next: the one order of everything that may wait.
-    const fn next_output(&self) -> Option<Output> {
-        if self.banner {
-            Some(Output::Banner)
-        } else if let Some(answer) = self.answer {
-            Some(Output::Answer(answer))
-        } else if let Some(notice) = self.safety.notice() {
-            Some(Output::Notice(notice))
-        } else if let Some(hazard) = self.held {
-            Some(Output::Held(hazard))
-        } else if self.watch.due {
-            Some(Output::Report)
-        } else {
-            None
-        }
     }
 
     /// Watches what may go wrong, and does what that asks for.
