@@ -480,7 +480,7 @@ impl Watch {
 
     fn frame(&mut self) {
         if self.every > 0 {
-            self.left = self.left.saturating_sub(1);
+            self.left -= 1;
             if self.left == 0 {
                 self.left = self.every;
                 self.due = true;

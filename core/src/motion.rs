@@ -282,28 +282,34 @@ impl<R: Robot> Motion<R> {
     /// One frame on: the pulses to send in it.
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
+        let mut pulses = Pulses::default();
         if matches!(self.state, State::Resting) {
-            return Pulses::default();
+            return pulses;
         }
         if self.awake < AWAKE {
             self.awake += 1;
         } else if !self.settling {
             self.proceed();
         }
-        let mut pulses = self.pose.pulses(&self.calibration);
-        if self.settling {
-            self.settling = self.limit_slew(&mut pulses);
-        }
-        self.sent = pulses;
-        if self.awake < AWAKE {
-            let mut wakes_at = WAKE_APART;
-            for width in &mut pulses.0 {
-                if self.awake < wakes_at {
-                    *width = Width(0);
-                }
-                wakes_at += WAKE_APART;
+        let per_frame = self.robot.slew().per_frame;
+        let mut under_way = false;
+        let mut wakes_at = WAKE_APART;
+        for (place, pulse) in pulses.0.iter_mut().enumerate() {
+            let servo = &self.calibration[place];
+            let sent = &mut self.sent.0[place];
+            let mut width = servo.width(self.pose.0[place]);
+            if self.settling {
+                let (wanted, way) = (width.0, servo.slew(per_frame));
+                width.0 = wanted.clamp(sent.0.saturating_sub(way), sent.0.saturating_add(way));
+                under_way |= width.0 != wanted;
             }
+            *sent = width;
+            if self.awake >= wakes_at {
+                *pulse = width;
+            }
+            wakes_at += WAKE_APART;
         }
+        self.settling = under_way;
         pulses
     }
 
@@ -361,24 +367,6 @@ impl<R: Robot> Motion<R> {
     /// Why the guard stopped the robot, until the next motion begins.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
-    }
-
-    /// Keeps the pulses within a frame's way of the last ones; true while they are
-    /// not yet those that are wanted.
-    #[inline(never)]
-    fn limit_slew(&self, pulses: &mut Pulses) -> bool {
-        let mut under_way = false;
-        let per_frame = self.robot.slew().per_frame;
-        for (place, width) in pulses.0.iter_mut().enumerate() {
-            let wanted = width.0;
-            let (sent, way) = (
-                self.sent.0[place].0,
-                self.calibration[place].slew(per_frame),
-            );
-            width.0 = wanted.clamp(sent.saturating_sub(way), sent.saturating_add(way));
-            under_way |= width.0 != wanted;
-        }
-        under_way
     }
 
     fn head_for(&mut self, target: Target) {
