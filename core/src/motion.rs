@@ -217,11 +217,7 @@ impl<R: Robot> Motion<R> {
     /// stands; or, where they have never slept, it is held.
     #[inline(never)]
     pub fn begin_at(&mut self, pose: &Pose, asleep: bool) -> bool {
-        if pose.beyond(&self.calibration).is_some()
-            || Clearance::of(&self.robot, pose)
-                .hazard(&self.robot)
-                .is_some()
-        {
+        if pose.beyond(&self.calibration).is_some() || self.hazard_of(pose).is_some() {
             return false;
         }
         self.pose = *pose;
@@ -248,7 +244,7 @@ impl<R: Robot> Motion<R> {
     /// # Errors
     /// What is wrong with the pose; then nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
-        match Clearance::of(&self.robot, pose).hazard(&self.robot) {
+        match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
             None => {
                 self.head_for(Target::Pose(*pose));
@@ -291,6 +287,7 @@ impl<R: Robot> Motion<R> {
         } else if !self.settling {
             self.proceed();
         }
+        // While they settle, they keep within a frame's way of the last ones.
         let per_frame = self.robot.slew().per_frame;
         let mut under_way = false;
         let mut wakes_at = WAKE_APART;
@@ -369,6 +366,12 @@ impl<R: Robot> Motion<R> {
         self.hazard
     }
 
+    /// What is wrong with a pose.
+    #[inline(never)]
+    fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
+        Clearance::of(&self.robot, pose).hazard(&self.robot)
+    }
+
     fn head_for(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
             self.state = State::Holding { asked: false };
@@ -408,7 +411,7 @@ impl<R: Robot> Motion<R> {
                 gait.pose(self.robot.waves(), *phase)
             }
         };
-        if let Some(hazard) = Clearance::of(&self.robot, &pose).hazard(&self.robot) {
+        if let Some(hazard) = self.hazard_of(&pose) {
             self.freeze(State::Holding { asked: false });
             self.hazard = Some(hazard);
             return;
