@@ -402,6 +402,7 @@ impl<R: Robot> Console<R> {
     }
 
     /// Answers why something is not done.
+    #[inline(never)]
     fn refuse(&mut self, why: Refusal) -> Result<(), Refused> {
         self.answer = Some(Answer::Refused(why));
         Err(Refused)

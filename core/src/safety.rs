@@ -183,6 +183,7 @@ impl Safety {
     }
 
     /// A fault, from now on.
+    #[inline(never)]
     pub fn fail(&mut self, fault: Fault) -> Order {
         self.fault = Some(fault);
         self.notify(Notice::Fault);

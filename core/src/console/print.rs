@@ -71,7 +71,6 @@ impl<R: Robot> Console<R> {
 
     /// `# gaits: stand|walk|...`, as many as a line takes; returns the first that
     /// it has no room for.
-    #[inline(never)]
     fn print_gaits<W>(&self, out: &mut W, first: GaitId) -> Result<Option<GaitId>, W::Error>
     where
         W: uWrite + ?Sized,
@@ -196,7 +195,6 @@ impl<R: Robot> Console<R> {
     }
 
     /// What is said without being asked for.
-    #[inline(never)]
     pub(super) fn print_notice<W>(&self, out: &mut W, notice: Notice) -> Result<(), W::Error>
     where
         W: uWrite + ?Sized,
