@@ -5,8 +5,6 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 #![feature(abi_avr_interrupt, asm_experimental_arch)]
 
-use core::mem::MaybeUninit;
-
 use lizard_core::step::{Main, Step};
 use panic_halt as _;
 
@@ -18,14 +16,15 @@ use board::{Uno, sleep};
 /// All that main knows. At a fixed address, which the compiler then puts into the
 /// instructions: on the stack, every access would have to work out its own, and the
 /// program would be a tenth larger.
-static mut MAIN: MaybeUninit<Main<robot::Lizard>> = MaybeUninit::uninit();
+static mut MAIN: Main<robot::Lizard> = Main::new(robot::Lizard);
 
 #[avr_device::entry]
 fn main() -> ! {
     let mut uno = Uno::start();
     let place = &raw mut MAIN;
     // SAFETY: this function is entered once, and nobody else names `MAIN`.
-    let main = unsafe { (*place).write(Main::new(robot::Lizard, &mut uno)) };
+    let main = unsafe { &mut *place };
+    main.begin(&mut uno);
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {
             sleep::until_tick_or_byte(ticks);

@@ -24,6 +24,7 @@ include!(concat!(env!("OUT_DIR"), "/robot.rs"));
 lizard_avr::flash! {
     const SERVOS: [Calibration; 4] = CALIBRATION;
     const REACHES: [Reach; 4] = REACH;
+    const NEUTRALS: [Angle; 4] = NEUTRAL;
 }
 
 /// The robot of robot.toml.
@@ -60,6 +61,11 @@ impl Robot for Lizard {
     #[inline(always)]
     fn neutral(&self) -> [Angle; 4] {
         NEUTRAL
+    }
+
+    #[inline(never)]
+    fn neutral_of(&self, place: usize) -> Angle {
+        NEUTRALS.at(place).load()
     }
 
     // Out of line: constants of this size cost less as a table.

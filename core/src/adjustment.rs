@@ -57,7 +57,7 @@ impl Adjustment {
             max: Sweep(-1),
         };
         let neutral = servo.pulse(self.trim);
-        servo.neutral = Width(neutral as u16);
+        servo.neutral = Width(neutral);
         if pulses[0] <= neutral && neutral <= pulses[1] {
             servo.min = farthest(&servo, self.min, pulses);
             servo.max = farthest(&servo, self.max, pulses);
@@ -94,7 +94,7 @@ impl Adjustment {
 /// The farthest sweep from 0 towards `end` at which a servo's pulses are still
 /// within two, as they are at 0.
 #[inline(never)]
-fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [i32; 2]) -> Sweep {
+fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
     let reaches = |sweep: i16| {
         let pulse = servo.pulse(Sweep(sweep));
         shortest <= pulse && pulse <= longest

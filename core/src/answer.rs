@@ -13,10 +13,11 @@ use crate::gait::GaitId;
 use crate::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::part::{End, Servo, Side};
+use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::slider::Slider;
 use crate::text::Text;
-use crate::units::{Angle, Sine};
+use crate::units::Sine;
 
 /// Why a command is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,15 +82,20 @@ where
     Ok(())
 }
 
-/// Prints four chassis angles in degrees, with commas between them.
+/// Prints the four chassis angles of a pose in degrees, with commas between them.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn angles<W: uWrite + ?Sized>(out: &mut W, angles: &[Angle; 4]) -> Result<(), W::Error> {
-    for (place, angle) in angles.iter().enumerate() {
+pub fn angles<R, W>(out: &mut W, pose: &Pose, robot: &R) -> Result<(), W::Error>
+where
+    R: Robot,
+    W: uWrite + ?Sized,
+{
+    for (place, sweep) in pose.0.iter().enumerate() {
         if place > 0 {
             out.write_char(',')?;
         }
+        let angle = robot.neutral_of(place).swept(*sweep);
         number(out, angle.centideg().into(), 2)?;
     }
     Ok(())
@@ -266,7 +272,7 @@ where
     R: Robot,
     W: uWrite + ?Sized,
 {
-    let neutral = motion.robot().neutral()[servo.index()];
+    let neutral = motion.robot().neutral_of(servo.index());
     field(out, Text::Nothing, neutral.swept(reach.min).centideg())?;
     field(out, Text::Dots, neutral.swept(reach.max).centideg())
 }
@@ -354,6 +360,7 @@ mod tests {
 
     use super::*;
     use crate::sample::Sample;
+    use crate::units::Angle;
 
     fn printed(value: u32, decimals: usize) -> String {
         let mut text = String::new();
@@ -399,7 +406,9 @@ mod tests {
     fn angles_have_two_decimals_and_commas_between_them() {
         let mut text = String::new();
         let centideg = [0, 4_141, 31_860, 35_999];
-        let Ok(()) = angles(&mut text, &centideg.map(Angle::from_centideg));
+        let robot = Sample::odd();
+        let pose = Pose::at(&centideg.map(|angle| Angle::from_centideg(angle).0), &robot);
+        let Ok(()) = angles(&mut text, &pose, &robot);
         assert_eq!(text, "0.00,41.41,318.60,359.99");
     }
 

@@ -24,14 +24,24 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// No servo: without travel.
+    pub const NONE: Self = Self {
+        neutral: Width(0),
+        gain: 0,
+        min: Sweep(0),
+        max: Sweep(0),
+    };
+
     /// The pulse width that turns the servo to `sweep`.
     pub fn width(&self, sweep: Sweep) -> Width {
         Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
     }
 
-    /// The same without an end, for sweeps beyond the travel.
-    pub fn pulse(&self, sweep: Sweep) -> i32 {
-        i32::from(self.neutral.0) + self.turned(sweep)
+    /// The same for sweeps beyond the travel: 0 for less, 65535 for more than that.
+    #[inline(never)]
+    pub fn pulse(&self, sweep: Sweep) -> u16 {
+        let pulse = i32::from(self.neutral.0) + self.turned(sweep);
+        pulse.clamp(0, i32::from(u16::MAX)) as u16
     }
 
     fn turned(&self, sweep: Sweep) -> i32 {

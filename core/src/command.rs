@@ -9,58 +9,24 @@ use lizard_avr::flash;
 use crate::gait::{GaitId, Name};
 use crate::part::Servo;
 use crate::robot::Robot;
-use crate::settings::Boot;
 use crate::text::Text;
-use crate::units::{Angle, Sweep, TURN_CENTIDEG};
+use crate::units::{Angle, TURN_CENTIDEG};
+use crate::word::Word;
 
 /// A command, with its arguments checked as far as syntax and range go.
+// Not an enum: taking values of several sizes to pieces costs half a kilobyte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command {
-    /// List the commands.
-    Help,
-    /// Begin a gait; `stand` is one.
-    Gait(GaitId),
-    /// Freeze.
-    Stop,
-    /// End the pulses.
-    Rest,
-    /// Pace of gaits in percent, 10..=100.
-    Speed(u8),
-    /// Go to chassis angles, A1 to A4.
-    Pose([Angle; 4]),
-    /// Print the state.
-    Status,
-    /// Report the pose every so many frames; 0 ends it.
-    Watch(u16),
-    /// Set something of a servo.
-    Adjust(Servo, Change),
-    /// Print all that is set.
-    Cal,
-    /// Go to where every servo has its neutral pulse, trims left out.
-    Center,
-    /// Keep what is set in the EEPROM.
-    Save,
-    /// Take what the EEPROM keeps.
-    Load,
-    /// Take what robot.toml says.
-    Factory,
-    /// What to do after power-on.
-    Boot(Boot),
-    /// Milliseconds without a line after which a gait ends; 0 for never.
-    Deadman(u16),
-}
-
-/// What is set of a servo.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change {
-    /// How far its horn is to turn from where it sits.
-    Trim(Sweep),
-    /// The chassis angles at which its travel ends, clockwise and counter-clockwise.
-    Limit([Angle; 2]),
-    /// Whether a longer pulse turns it counter-clockwise.
-    Dir(bool),
-    /// Hundredths of a microsecond per degree, 500..=2000.
-    Scale(u16),
+pub struct Command {
+    /// The word of the console; none for the name of a gait.
+    pub word: Option<Word>,
+    /// The gait that is named, also after `boot`; none for `boot rest`.
+    pub gait: Option<GaitId>,
+    /// The place of the servo that is to be set.
+    pub servo: u8,
+    /// The numbers that follow: a percentage, frames or milliseconds as they are;
+    /// `dir` as 1 for `+` and 0 for `-`; `scale` in hundredths of a microsecond per
+    /// degree; anything else as an [`Angle`].
+    pub numbers: [u16; 4],
 }
 
 /// Why a line is no command.
@@ -88,39 +54,67 @@ pub const WATCH_MOST: u16 = 10_000;
 pub const DEADMAN_MOST: u16 = 60_000;
 
 /// Larger angles are taken for mistakes; a turn either way is enough.
-const LARGEST_ANGLE: i32 = TURN_CENTIDEG;
+const LARGEST_ANGLE: u16 = TURN_CENTIDEG as u16;
+
+/// How an argument is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Kind {
+    /// Digits.
+    Whole,
+    /// Degrees with a sign and at most two decimals, read as an [`Angle`].
+    Degrees,
+    /// A number with at most two decimals, read as hundredths.
+    Hundredths,
+    /// `+`, read as 1, or `-`, read as 0.
+    Sign,
+}
+
+/// The arguments of a command.
+#[derive(Clone, Copy)]
+struct Form {
+    /// Whether a servo's number comes first.
+    servo: bool,
+    /// How many there are besides.
+    count: u8,
+    /// What each of them is.
+    kind: Kind,
+    /// The range of each, without its sign.
+    least: u16,
+    most: u16,
+    /// What is said of a line that is not of this form.
+    wants: Text,
+    /// What is said of one out of range.
+    range: Text,
+}
 
 flash! {
-    /// The words that the console takes for its own; no gait's name may begin with
-    /// one.
-    pub const WORDS: [Text; 19] = [
-        Text::Help,
-        Text::QuestionMark,
-        Text::Stop,
-        Text::Rest,
-        Text::Status,
-        Text::Pose,
-        Text::Speed,
-        Text::Watch,
-        Text::Trim,
-        Text::Limit,
-        Text::Dir,
-        Text::Scale,
-        Text::Cal,
-        Text::Center,
-        Text::Save,
-        Text::Load,
-        Text::Factory,
-        Text::Boot,
-        Text::Deadman,
+    /// In the order of [`form`].
+    const FORMS: [Form; 8] = [
+        Form { servo: false, count: 4, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::PoseWants, range: Text::Nothing },
+        Form { servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
+        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: WATCH_MOST, wants: Text::WatchWants, range: Text::WatchRange },
+        Form { servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
+        Form { servo: true, count: 2, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::LimitWants, range: Text::LimitRange },
+        Form { servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
+        Form { servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
+        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: DEADMAN_MOST, wants: Text::DeadmanWants, range: Text::DeadmanRange },
     ];
 }
 
-/// One of [`WORDS`].
-pub fn own_word(word: &[u8]) -> Option<Text> {
-    (0..WORDS.as_slice().len())
-        .map(|place| WORDS.at(place).load())
-        .find(|text| text.is(word))
+/// Where the form of a command is that takes arguments.
+const fn form(word: Word) -> Option<usize> {
+    match word {
+        Word::Pose => Some(0),
+        Word::Speed => Some(1),
+        Word::Watch => Some(2),
+        Word::Trim => Some(3),
+        Word::Limit => Some(4),
+        Word::Dir => Some(5),
+        Word::Scale => Some(6),
+        Word::Deadman => Some(7),
+        _ => None,
+    }
 }
 
 /// Reads a line that is trimmed, not empty and in lower case.
@@ -128,50 +122,80 @@ pub fn own_word(word: &[u8]) -> Option<Text> {
 /// # Errors
 /// What keeps the line from being a command.
 pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
-    let mut words = Words(line);
-    let Some(word) = own_word(words.next()) else {
-        return gait(line, robot);
+    let mut command = Command::NONE;
+    command.read(line, robot)?;
+    Ok(command)
+}
+
+impl Command {
+    /// To be read into.
+    pub const NONE: Self = Self {
+        word: None,
+        gait: None,
+        servo: 0,
+        numbers: [0; 4],
     };
-    let alone = match word {
-        Text::Stop => Command::Stop,
-        Text::Rest => Command::Rest,
-        Text::Status => Command::Status,
-        Text::Cal => Command::Cal,
-        Text::Center => Command::Center,
-        Text::Save => Command::Save,
-        Text::Load => Command::Load,
-        Text::Factory => Command::Factory,
-        Text::Pose => return pose(words),
-        Text::Trim => return adjust(words, word, Text::TrimWants),
-        Text::Limit => return adjust(words, word, Text::LimitWants),
-        Text::Dir => return adjust(words, word, Text::DirWants),
-        Text::Scale => return adjust(words, word, Text::ScaleWants),
-        Text::Boot => return boot(words, robot),
-        Text::Speed => {
-            return match whole(words).ok_or(Misread::Wants(Text::SpeedWants))? {
-                percent @ 10..=100 => Ok(Command::Speed(percent as u8)),
-                _ => Err(Misread::Range(Text::SpeedRange)),
+
+    /// The same as [`parse`], into [`Command::NONE`].
+    ///
+    /// # Errors
+    /// Those of [`parse`].
+    pub fn read<R: Robot>(&mut self, line: &[u8], robot: &R) -> Result<(), Misread> {
+        let mut words = Words(line);
+        self.word = Word::find(words.next());
+        match self.word {
+            None => self.gait = Some(gait(line, robot)?),
+            Some(Word::Boot) => {
+                let rest = words.0.trim_ascii();
+                if Word::find(rest) != Some(Word::Rest) {
+                    let gait = gait(rest, robot);
+                    self.gait = Some(gait.map_err(|_| Misread::Wants(Text::BootWants))?);
+                }
+            }
+            Some(word) => match form(word) {
+                Some(place) => self.read_arguments(words, &FORMS.at(place).load())?,
+                None if !words.is_done() => return Err(Misread::Surplus),
+                None => {}
+            },
+        }
+        Ok(())
+    }
+
+    /// Reads what follows the word.
+    #[inline(never)]
+    fn read_arguments(&mut self, mut words: Words, form: &Form) -> Result<(), Misread> {
+        let wants = Err(Misread::Wants(form.wants));
+        if form.servo {
+            self.servo = match words.next() {
+                [digit @ b'1'..=b'4'] => digit - b'1',
+                _ => return wants,
             };
         }
-        Text::Watch => {
-            return match whole(words).ok_or(Misread::Wants(Text::WatchWants))? {
-                frames @ 0..=WATCH_MOST => Ok(Command::Watch(frames)),
-                _ => Err(Misread::Range(Text::WatchRange)),
+        let mut beyond = None;
+        for (place, number) in (0..form.count).zip(&mut self.numbers) {
+            let Some((size, negative)) = number_of(words.next(), form.kind) else {
+                return wants;
             };
+            *number = size;
+            let mut within = form.least <= size && size <= form.most;
+            if form.kind == Kind::Degrees {
+                let size = i32::from(size);
+                *number = Angle::from_centideg(if negative { -size } else { size }).0;
+            } else {
+                within &= !negative;
+            }
+            if !within {
+                beyond = beyond.or(Some(place));
+            }
         }
-        Text::Deadman => {
-            return match whole(words).ok_or(Misread::Wants(Text::DeadmanWants))? {
-                ms @ 0..=DEADMAN_MOST => Ok(Command::Deadman(ms)),
-                _ => Err(Misread::Range(Text::DeadmanRange)),
-            };
+        match beyond {
+            _ if !words.is_done() => wants,
+            Some(place) if self.word == Some(Word::Pose) => {
+                Err(Misread::PoseRange(Servo::at(usize::from(place))))
+            }
+            Some(_) => Err(Misread::Range(form.range)),
+            None => Ok(()),
         }
-        // Help and the question mark.
-        _ => Command::Help,
-    };
-    if words.is_done() {
-        Ok(alone)
-    } else {
-        Err(Misread::Surplus)
     }
 }
 
@@ -197,200 +221,93 @@ impl<'a> Words<'a> {
     }
 }
 
-fn pose(mut words: Words) -> Result<Command, Misread> {
-    let mut angles = [Angle(0); 4];
-    let mut beyond = None;
-    for (place, angle) in angles.iter_mut().enumerate() {
-        let centideg = centideg(words.next()).ok_or(Misread::Wants(Text::PoseWants))?;
-        if centideg.abs() > LARGEST_ANGLE {
-            beyond = beyond.or(Some(Servo::at(place)));
-        } else {
-            *angle = Angle::from_centideg(centideg);
-        }
-    }
-    match beyond {
-        _ if !words.is_done() => Err(Misread::Wants(Text::PoseWants)),
-        Some(servo) => Err(Misread::PoseRange(servo)),
-        None => Ok(Command::Pose(angles)),
-    }
-}
-
-/// A servo's number, then what `word` sets of it; anything else is what `wants`
-/// says.
-fn adjust(mut words: Words, word: Text, wants: Text) -> Result<Command, Misread> {
-    let servo = match words.next() {
-        [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
-        _ => return Err(Misread::Wants(wants)),
-    };
-    let change = match word {
-        Text::Trim => trim(&mut words),
-        Text::Limit => limit(&mut words),
-        Text::Dir => dir(&mut words),
-        _ => scale(&mut words),
-    };
-    if words.is_done() {
-        Ok(Command::Adjust(servo, change?))
-    } else {
-        Err(Misread::Wants(wants))
-    }
-}
-
-fn trim(words: &mut Words) -> Result<Change, Misread> {
-    match centideg(words.next()).ok_or(Misread::Wants(Text::TrimWants))? {
-        angle @ -2000..=2000 => Ok(Change::Trim(Sweep(Angle::from_centideg(angle).0 as i16))),
-        _ => Err(Misread::Range(Text::TrimRange)),
-    }
-}
-
-fn limit(words: &mut Words) -> Result<Change, Misread> {
-    let mut ends = [Angle(0); 2];
-    let mut within = true;
-    for end in &mut ends {
-        let angle = centideg(words.next()).ok_or(Misread::Wants(Text::LimitWants))?;
-        within &= angle.abs() <= LARGEST_ANGLE;
-        *end = Angle::from_centideg(angle);
-    }
-    if within {
-        Ok(Change::Limit(ends))
-    } else {
-        Err(Misread::Range(Text::LimitRange))
-    }
-}
-
-#[inline(never)]
-fn dir(words: &mut Words) -> Result<Change, Misread> {
-    match words.next() {
-        b"+" => Ok(Change::Dir(true)),
-        b"-" => Ok(Change::Dir(false)),
-        _ => Err(Misread::Wants(Text::DirWants)),
-    }
-}
-
-#[inline(never)]
-fn scale(words: &mut Words) -> Result<Change, Misread> {
-    match centideg(words.next()).ok_or(Misread::Wants(Text::ScaleWants))? {
-        scale @ 500..=2000 => Ok(Change::Scale(scale as u16)),
-        _ => Err(Misread::Range(Text::ScaleRange)),
-    }
-}
-
-fn boot<R: Robot>(words: Words, robot: &R) -> Result<Command, Misread> {
-    let rest = words.0.trim_ascii();
-    let boot = if Text::Rest.is(rest) {
-        Boot::Rest
-    } else {
-        match gait(rest, robot) {
-            Ok(Command::Gait(id)) => Boot::Gait(id),
-            _ => return Err(Misread::Wants(Text::BootWants)),
-        }
-    };
-    Ok(Command::Boot(boot))
-}
-
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
-fn gait<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
+#[inline(never)]
+fn gait<R: Robot>(line: &[u8], robot: &R) -> Result<GaitId, Misread> {
+    let line = line.trim_ascii_start();
     let mut misread = Misread::Unknown;
     for id in GaitId::all(robot.gaits().len()) {
-        match compare(Words(line), robot.name(id)) {
+        match compare(line, robot.name(id)) {
             Some(Misread::Unknown) => {}
             Some(other) => misread = other,
-            None => return Ok(Command::Gait(id)),
+            None => return Ok(id),
         }
     }
     Err(misread)
 }
 
-/// What keeps the words of a line from being a name.
-fn compare(mut words: Words, name: Name) -> Option<Misread> {
-    let mut word = words.next();
+/// What keeps a line from being a name. It is read no farther than it is one: there
+/// may be many names, and a frame may wait.
+fn compare(line: &[u8], name: Name) -> Option<Misread> {
+    let mut rest = line;
     for byte in name {
-        match word {
-            [] if byte == b' ' => {
-                word = words.next();
-                if word.is_empty() {
-                    return Some(Misread::Incomplete);
-                }
+        match rest {
+            [] if byte == b' ' => return Some(Misread::Incomplete),
+            [first, ..] if byte == b' ' && first.is_ascii_whitespace() => {
+                rest = rest.trim_ascii_start();
             }
-            [first, rest @ ..] if *first == byte => word = rest,
+            [first, others @ ..] if *first == byte => rest = others,
             _ => return Some(Misread::Unknown),
         }
     }
-    if !word.is_empty() {
-        Some(Misread::Unknown)
-    } else if words.is_done() {
-        None
-    } else {
-        Some(Misread::Surplus)
+    match rest {
+        [] => None,
+        [first, ..] if first.is_ascii_whitespace() => Some(Misread::Surplus),
+        _ => Some(Misread::Unknown),
     }
 }
 
-/// The one whole number that is all there is; 65535 stands for more than that.
-fn whole(mut words: Words) -> Option<u16> {
-    let (digits, rest) = number(words.next());
-    if rest.is_empty() && words.is_done() {
-        digits
-    } else {
-        None
-    }
-}
+/// Hundredths have so many decimals.
+const DECIMALS: u8 = 2;
 
-/// An angle with at most two decimals, in hundredths; a larger one than sixteen bits
-/// hold stays at that.
+/// A word as an argument, without its sign, and whether that is a minus. 65535 stands
+/// for more than sixteen bits hold.
 #[inline(never)]
-fn centideg(word: &[u8]) -> Option<i32> {
-    let (sign, digits) = match word {
-        [sign @ (b'-' | b'+'), digits @ ..] => (*sign, digits),
-        digits => (b'+', digits),
-    };
-    let (degrees, mut rest) = number(digits);
-    let mut size = degrees?;
-    if let [b'.', decimals @ ..] = rest {
-        rest = decimals;
-    } else if !rest.is_empty() {
-        return None;
+fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
+    let (mut sign, mut digits) = (b'+', word);
+    if kind != Kind::Whole
+        && let [first @ (b'+' | b'-'), rest @ ..] = word
+    {
+        (sign, digits) = (*first, rest);
     }
-    // As many decimals as there may be, zeros in the place of those that are not there.
-    for _ in 0..2 {
-        let mut decimal = 0;
-        if let [first, others @ ..] = rest {
-            decimal = digit(*first)?;
-            rest = others;
+    let negative = sign == b'-';
+    if kind == Kind::Sign {
+        return (word.len() == 1 && digits.is_empty()).then_some((u16::from(!negative), false));
+    }
+    let mut size = None;
+    let mut decimals = None;
+    for byte in digits {
+        match byte {
+            b'0'..=b'9' => size = Some(append(size.unwrap_or(0), byte - b'0')),
+            b'.' if kind != Kind::Whole && size.is_some() && decimals.is_none() => {
+                decimals = Some(0);
+                continue;
+            }
+            _ => return None,
         }
-        size = append(size, decimal);
+        if let Some(decimals) = &mut decimals {
+            *decimals += 1;
+        }
     }
-    let size = i32::from(size);
-    match (rest, sign) {
-        ([], b'-') => Some(-size),
-        ([], _) => Some(size),
-        _ => None,
+    let mut size = size?;
+    if kind != Kind::Whole {
+        // Zeros in the place of the decimals that are not there.
+        for _ in 0..DECIMALS.checked_sub(decimals.unwrap_or(0))? {
+            size = append(size, 0);
+        }
     }
+    Some((size, negative))
 }
 
 /// A number with one more digit; 65535 stands for more than sixteen bits hold.
 #[inline(never)]
-fn append(number: u16, digit: u16) -> u16 {
+fn append(number: u16, digit: u8) -> u16 {
     // 6553 and one more digit is where sixteen bits may end.
     if number < 6553 {
-        number * 10 + digit
+        number * 10 + u16::from(digit)
     } else {
         u16::MAX
     }
-}
-
-/// Leading digits as a number, saturating, and what follows them.
-fn number(word: &[u8]) -> (Option<u16>, &[u8]) {
-    let (mut value, mut rest) = (None, word);
-    while let [first, others @ ..] = rest
-        && let Some(digit) = digit(*first)
-    {
-        value = Some(append(value.unwrap_or(0), digit));
-        rest = others;
-    }
-    (value, rest)
-}
-
-fn digit(byte: u8) -> Option<u16> {
-    byte.is_ascii_digit().then(|| u16::from(byte - b'0'))
 }
 
 #[cfg(test)]

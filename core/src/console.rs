@@ -8,7 +8,7 @@
 use ufmt::uWrite;
 
 use crate::answer::{self, Answer, Refusal};
-use crate::command::{Change, Command, parse};
+use crate::command::Command;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::hazard::Hazard;
@@ -24,6 +24,8 @@ use crate::safety::{Health, Notice, Order, Safety};
 use crate::settings::{Boot, Settings};
 use crate::supply::Voltage;
 use crate::text::Text;
+use crate::units::{Angle, Sweep};
+use crate::word::Word;
 
 use job::Job;
 
@@ -33,15 +35,6 @@ mod print;
 /// The longest line that [`Console::write_line`] writes, with its line end: a
 /// `status` whose every number has all its digits.
 pub const LONGEST_LINE: u8 = 250;
-
-/// What the board counts for `status`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Pulse edges that came late.
-    pub late: u16,
-    /// Bytes received and lost.
-    pub rx_lost: u16,
-}
 
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,13 +46,22 @@ enum Output {
     /// Something that nobody asked for.
     Notice(Notice),
     /// Why the guard holds the robot.
-    Held(Hazard),
+    Held,
     /// The pose, as `watch` asked for it.
     Report,
 }
 
+/// What the board counts for `status`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Pulse edges that came late.
+    pub late: u16,
+    /// Bytes received and lost.
+    pub rx_lost: u16,
+}
+
 /// Pose reports, as `watch` asked for them.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Watch {
     /// Frames from one report to the next; 0 for none.
     every: u16,
@@ -68,6 +70,9 @@ struct Watch {
     /// Whether one waits to be written.
     due: bool,
 }
+
+/// Something is not done; the answer says why.
+struct Refused;
 
 /// The robot as its console sees it.
 #[derive(Debug)]
@@ -90,21 +95,20 @@ pub struct Console<R> {
 impl<R: Robot> Console<R> {
     /// A robot at power-on, its banner not yet written; [`Console::begin`] has to
     /// follow.
-    #[inline(never)]
-    pub fn new(robot: R) -> Self {
+    pub const fn new(robot: R) -> Self {
         Self {
             line: Line::new(),
-            settings: Settings::of(&robot),
-            motion: Motion::new(robot),
+            settings: Settings::NONE,
+            motion: Motion::unbegun(robot),
             found: Outcome::Latest,
-            safety: Safety::default(),
+            safety: Safety::new(),
             cause: Cause::Power,
             restarts: 0,
             job: Some(Job::Pose(RESTED.forget())),
             banner: true,
             answer: None,
             held: None,
-            watch: Watch::default(),
+            watch: Watch::every(0),
         }
     }
 
@@ -114,6 +118,7 @@ impl<R: Robot> Console<R> {
     pub fn begin<M: Memory>(&mut self, memory: &M, restart: &Restart) {
         self.cause = restart.cause;
         self.restarts = restart.count;
+        self.motion.begin();
         self.found = record::load(self.motion.robot(), memory, &mut self.settings);
         if self.found != Outcome::Latest {
             self.safety.notify(Notice::Memory);
@@ -169,27 +174,27 @@ impl<R: Robot> Console<R> {
             return;
         }
         let robot = self.motion.robot();
-        let ended = match &mut self.job {
+        let progress = match &mut self.job {
             None => return,
             Some(Job::Load) => {
                 let mut kept = self.settings;
-                match record::load(robot, memory, &mut kept) {
+                self.job = None;
+                self.answer = Some(Answer::Done);
+                // Either way, what is to be said is in the answer.
+                _ = match record::load(robot, memory, &mut kept) {
                     Outcome::Latest | Outcome::Other => self.replace(&kept),
-                    _ => Err(Refusal::NothingSaved),
-                }
+                    _ => self.refuse(Refusal::NothingSaved),
+                };
+                return;
             }
             Some(Job::Save) => match record::save(&mut self.settings, memory) {
-                None => Ok(()),
+                None => Progress::Done,
                 Some(writing) => {
                     self.job = Some(Job::Saving(writing));
                     return;
                 }
             },
-            Some(Job::Saving(writing)) => match writing.step(self.settings.bytes(), memory) {
-                Progress::Going => return,
-                Progress::Done => Ok(()),
-                Progress::Failed => Err(Refusal::NotKept),
-            },
+            Some(Job::Saving(writing)) => writing.step(self.settings.bytes(), memory),
             Some(Job::Pose(writing)) => {
                 let pose = Settings::of_pose(self.motion.pose(), robot);
                 if writing.step(pose.bytes(), memory) != Progress::Going {
@@ -198,8 +203,12 @@ impl<R: Robot> Console<R> {
                 return;
             }
         };
+        self.answer = Some(match progress {
+            Progress::Going => return,
+            Progress::Done => Answer::Done,
+            Progress::Failed => Answer::Refused(Refusal::NotKept),
+        });
         self.job = None;
-        self.answer = Some(ended.map_or_else(Answer::Refused, |()| Answer::Done));
     }
 
     /// True while a line waits to be written. No byte is to be passed on
@@ -217,20 +226,23 @@ impl<R: Robot> Console<R> {
             return;
         };
         self.safety.line_came();
-        self.answer = match ended {
-            line::Ended::TooLong => Some(Answer::Refused(Refusal::TooLong)),
-            line::Ended::Line => match parse(self.line.text(), self.motion.robot()) {
-                Err(misread) => Some(Answer::Refused(Refusal::Misread(misread))),
-                Ok(command) => {
-                    let executed = self.execute(command);
-                    executed.unwrap_or_else(|refusal| Some(Answer::Refused(refusal)))
-                }
-            },
+        self.answer = Some(Answer::Done);
+        if ended == line::Ended::TooLong {
+            self.answer = Some(Answer::Refused(Refusal::TooLong));
+            return;
+        }
+        let mut command = Command::NONE;
+        // Either way, what is to be said is in the answer.
+        _ = match command.read(self.line.text(), self.motion.robot()) {
+            Ok(()) => self.execute(&command),
+            Err(misread) => self.refuse(Refusal::Misread(misread)),
         };
     }
 
-    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes; or the first part
-    /// of one, which the next call ends.
+    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
+    /// is, once after power-on; an answer or a part of it; what nobody asked for; why
+    /// the guard holds the robot; the pose, as `watch` asked for it. Of the longest
+    /// line it writes one part, and the next call the other.
     ///
     /// # Errors
     /// Those of `out`.
@@ -255,10 +267,11 @@ impl<R: Robot> Console<R> {
                 self.safety.written(notice);
                 self.print_notice(out, notice)?;
             }
-            Some(Output::Held(hazard)) => {
-                self.held = None;
-                Text::Held.print(out)?;
-                answer::print_hazard(hazard, self.motion.robot(), out)?;
+            Some(Output::Held) => {
+                if let Some(hazard) = self.held.take() {
+                    Text::Held.print(out)?;
+                    answer::print_hazard(hazard, self.motion.robot(), out)?;
+                }
             }
             Some(Output::Report) => {
                 self.watch.due = false;
@@ -279,8 +292,8 @@ impl<R: Robot> Console<R> {
             Some(Output::Answer(answer))
         } else if let Some(notice) = self.safety.notice() {
             Some(Output::Notice(notice))
-        } else if let Some(hazard) = self.held {
-            Some(Output::Held(hazard))
+        } else if self.held.is_some() {
+            Some(Output::Held)
         } else if self.watch.due {
             Some(Output::Report)
         } else {
@@ -316,99 +329,121 @@ impl<R: Robot> Console<R> {
         self.motion.set_slow(!self.safety.allows_writing());
     }
 
-    /// Executes a command. None: the answer comes when the memory has been dealt with.
+    /// Executes a command. The answer is that it is done, if this sets no other; none
+    /// comes as long as there is something to do with the memory.
     #[inline(never)]
-    fn execute(&mut self, command: Command) -> Result<Option<Answer>, Refusal> {
-        match command {
-            Command::Help => return Ok(Some(Answer::Gaits(GaitId::STAND))),
-            Command::Status => return Ok(Some(Answer::Status)),
-            Command::Cal => return Ok(Some(Answer::Settings(0))),
-            Command::Speed(percent) => self.motion.set_speed(percent),
-            Command::Watch(frames) => self.watch = Watch::every(frames),
-            Command::Rest => self.rest(),
-            Command::Gait(gait) => {
-                self.may_move(gait == GaitId::STAND)?;
-                self.motion.start_gait(gait);
-                self.moves();
-            }
-            Command::Pose(angles) => {
-                let motion = &self.motion;
-                let pose = Pose::at(&angles, &motion.robot().neutral(), motion.calibration())
-                    .map_err(Refusal::Travel)?;
+    fn execute(&mut self, command: &Command) -> Result<(), Refused> {
+        let [number, ..] = command.numbers;
+        let Some(word) = command.word else {
+            let gait = command.gait.unwrap_or(GaitId::STAND);
+            self.may_move(gait == GaitId::STAND)?;
+            self.motion.start_gait(gait);
+            self.moves();
+            return Ok(());
+        };
+        match word {
+            Word::Help | Word::QuestionMark => self.answer = Some(Answer::Gaits(GaitId::STAND)),
+            Word::Status => self.answer = Some(Answer::Status),
+            Word::Cal => self.answer = Some(Answer::Settings(0)),
+            Word::Speed => self.motion.set_speed(number as u8),
+            Word::Watch => self.watch = Watch::every(number),
+            Word::Rest => self.rest(),
+            Word::Pose => {
+                let pose = Pose::at(&command.numbers, self.motion.robot());
                 self.go_to(&pose)?;
             }
-            Command::Center => {
+            Word::Center => {
                 let mut pose = self.settings.pose();
                 for sweep in &mut pose.0 {
                     sweep.0 = -sweep.0;
                 }
-                if let Some(servo) = pose.beyond(self.motion.calibration()) {
-                    return Err(Refusal::Travel(servo));
-                }
                 self.go_to(&pose)?;
             }
-            Command::Stop => {
+            Word::Stop => {
                 if self.motion.activity() == Activity::Rest {
-                    return Err(Refusal::Resting);
+                    return self.refuse(Refusal::Resting);
                 }
                 self.motion.stop();
             }
-            Command::Adjust(servo, change) => {
-                let place = servo.index();
-                let neutral = self.motion.robot().neutral()[place];
-                let before = self.settings.servo(place);
-                let mut set = before;
-                match change {
-                    Change::Trim(trim) => set.trim = trim,
-                    Change::Dir(direct) => set.set_direct(direct),
-                    Change::Scale(scale) => set.set_scale(scale),
-                    Change::Limit([min, max]) => {
-                        set.min = neutral.sweep_to(min);
-                        set.max = neutral.sweep_to(max);
-                    }
-                }
-                self.settings.set_servo(place, set);
-                if let Err(refusal) = self.adjust() {
-                    self.settings.set_servo(place, before);
-                    return Err(refusal);
-                }
+            Word::Trim | Word::Limit | Word::Dir | Word::Scale => self.set_servo(word, command)?,
+            Word::Factory => self.replace(&Settings::of(self.motion.robot()))?,
+            Word::Boot => {
+                let boot = command.gait.map_or(Boot::Rest, Boot::Gait);
+                self.settings.set_boot(boot, self.motion.robot());
             }
-            Command::Factory => self.replace(&Settings::of(self.motion.robot()))?,
-            Command::Boot(boot) => self.settings.set_boot(boot, self.motion.robot()),
-            Command::Deadman(ms) => self.settings.set_deadman(ms),
-            Command::Load => {
-                self.job = Some(Job::Load);
-                return Ok(None);
-            }
-            Command::Save => {
+            Word::Deadman => self.settings.set_deadman(number),
+            Word::Load => self.begin_job(Job::Load),
+            Word::Save => {
                 if !self.safety.allows_writing() {
-                    return Err(Refusal::Supply);
+                    return self.refuse(Refusal::Supply);
                 }
-                self.job = Some(Job::Save);
-                return Ok(None);
+                self.begin_job(Job::Save);
             }
         }
-        Ok(Some(Answer::Done))
+        Ok(())
+    }
+
+    /// Sets something of a servo, if the robot can do with it what it does.
+    #[inline(never)]
+    fn set_servo(&mut self, what: Word, command: &Command) -> Result<(), Refused> {
+        let [number, second, ..] = command.numbers;
+        let place = usize::from(command.servo);
+        let before = self.settings.servo(place);
+        let mut set = before;
+        match what {
+            Word::Trim => set.trim = Sweep(number as i16),
+            Word::Dir => set.set_direct(number != 0),
+            Word::Scale => set.set_scale(number),
+            _ => {
+                let neutral = self.motion.robot().neutral_of(place);
+                set.min = neutral.sweep_to(Angle(number));
+                set.max = neutral.sweep_to(Angle(second));
+            }
+        }
+        self.settings.set_servo(place, set);
+        let adjusted = self.adjust();
+        if adjusted.is_err() {
+            self.settings.set_servo(place, before);
+        }
+        adjusted
+    }
+
+    /// Begins something to do with the memory that ends with an answer.
+    fn begin_job(&mut self, job: Job) {
+        self.job = Some(job);
+        self.answer = None;
     }
 
     /// Refuses a motion for want of a supply, or because the servos rest and this
     /// command does not `wake` them.
     #[inline(never)]
-    fn may_move(&self, wakes: bool) -> Result<(), Refusal> {
+    fn may_move(&mut self, wakes: bool) -> Result<(), Refused> {
         if !wakes && self.motion.activity() == Activity::Rest {
-            Err(Refusal::Resting)
+            self.refuse(Refusal::Resting)
         } else if !self.safety.allows_motion() {
-            Err(Refusal::Supply)
+            self.refuse(Refusal::Supply)
         } else {
             Ok(())
         }
     }
 
-    fn go_to(&mut self, pose: &Pose) -> Result<(), Refusal> {
+    fn go_to(&mut self, pose: &Pose) -> Result<(), Refused> {
+        if let Some(servo) = pose.beyond(self.motion.calibration()) {
+            return self.refuse(Refusal::Travel(servo));
+        }
         self.may_move(false)?;
-        self.motion.go_to(pose).map_err(Refusal::Unsafe)?;
+        if let Err(hazard) = self.motion.go_to(pose) {
+            return self.refuse(Refusal::Unsafe(hazard));
+        }
         self.moves();
         Ok(())
+    }
+
+    /// Answers why something is not done.
+    #[inline(never)]
+    fn refuse(&mut self, why: Refusal) -> Result<(), Refused> {
+        self.answer = Some(Answer::Refused(why));
+        Err(Refused)
     }
 
     /// A motion begins: faults are over, and the pose of the last rest is, too.
@@ -427,7 +462,7 @@ impl<R: Robot> Console<R> {
 
     /// Takes other settings, or keeps those that there are.
     #[inline(never)]
-    fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
+    fn replace(&mut self, settings: &Settings) -> Result<(), Refused> {
         let before = self.settings;
         self.settings = *settings;
         let adjusted = self.adjust();
@@ -440,15 +475,15 @@ impl<R: Robot> Console<R> {
     /// Puts the settings into effect at once, if the robot can do with them what it
     /// does; if not, they have to be taken back.
     #[inline(never)]
-    fn adjust(&mut self) -> Result<(), Refusal> {
+    fn adjust(&mut self) -> Result<(), Refused> {
         let robot = self.motion.robot();
         if let Some(servo) = self.settings.unfit(robot) {
-            return Err(Refusal::Unfit(servo));
+            return self.refuse(Refusal::Unfit(servo));
         }
         for place in 0..4 {
             let calibration = self.settings.calibration(place, robot);
             if self.motion.goes_beyond(place, &calibration) {
-                return Err(Refusal::Elsewhere(Servo::at(place)));
+                return self.refuse(Refusal::Elsewhere(Servo::at(place)));
             }
         }
         self.calibrate();
@@ -484,7 +519,7 @@ impl Watch {
 
     fn frame(&mut self) {
         if self.every > 0 {
-            self.left = self.left.saturating_sub(1);
+            self.left -= 1;
             if self.left == 0 {
                 self.left = self.every;
                 self.due = true;

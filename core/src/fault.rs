@@ -62,6 +62,11 @@ pub struct Led {
 }
 
 impl Led {
+    /// At power-on: the slow beat, lit first.
+    pub const fn new() -> Self {
+        Self { frames: 0, code: 0 }
+    }
+
     /// One frame on: whether it is lit.
     pub fn frame(&mut self, fault: Option<Fault>) -> bool {
         let code = fault.map_or(0, Fault::code);

@@ -59,3 +59,4 @@ pub mod supply;
 pub mod text;
 pub mod trig;
 pub mod units;
+pub mod word;

@@ -136,22 +136,37 @@ pub struct Motion<R> {
 
 impl<R: Robot> Motion<R> {
     /// The robot at power-on: waking, then standing.
-    #[inline(never)]
     pub fn new(robot: R) -> Self {
+        let mut motion = Self::unbegun(robot);
+        motion.begin();
+        for place in 0..4 {
+            motion.calibrate(place, motion.robot.servo(place));
+        }
+        motion
+    }
+
+    /// A robot without pulses, of which nothing is known; [`Motion::begin`] and the
+    /// calibration of every servo have to follow.
+    pub const fn unbegun(robot: R) -> Self {
         Self {
-            calibration: robot.calibration(),
-            state: State::cycling(&robot, GaitId::STAND),
+            calibration: [Calibration::NONE; 4],
+            state: State::Resting,
             robot,
             next: None,
             speed: 100,
             slow: false,
-            sent: Pulses::default(),
+            sent: Pulses([Width(0); 4]),
             settling: false,
             awake: 0,
             pose: Pose::NEUTRAL,
             hazard: None,
             frames: 0,
         }
+    }
+
+    /// Wakes the servos, to stand.
+    pub fn begin(&mut self) {
+        self.state = State::cycling(&self.robot, GaitId::STAND);
     }
 
     /// The robot that moves.
@@ -202,11 +217,7 @@ impl<R: Robot> Motion<R> {
     /// stands; or, where they have never slept, it is held.
     #[inline(never)]
     pub fn begin_at(&mut self, pose: &Pose, asleep: bool) -> bool {
-        if pose.beyond(&self.calibration).is_some()
-            || Clearance::of(&self.robot, pose)
-                .hazard(&self.robot)
-                .is_some()
-        {
+        if pose.beyond(&self.calibration).is_some() || self.hazard_of(pose).is_some() {
             return false;
         }
         self.pose = *pose;
@@ -233,7 +244,7 @@ impl<R: Robot> Motion<R> {
     /// # Errors
     /// What is wrong with the pose; then nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
-        match Clearance::of(&self.robot, pose).hazard(&self.robot) {
+        match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
             None => {
                 self.head_for(Target::Pose(*pose));
@@ -267,28 +278,35 @@ impl<R: Robot> Motion<R> {
     /// One frame on: the pulses to send in it.
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
+        let mut pulses = Pulses::default();
         if matches!(self.state, State::Resting) {
-            return Pulses::default();
+            return pulses;
         }
         if self.awake < AWAKE {
             self.awake += 1;
         } else if !self.settling {
             self.proceed();
         }
-        let mut pulses = self.pose.pulses(&self.calibration);
-        if self.settling {
-            self.settling = self.limit_slew(&mut pulses);
-        }
-        self.sent = pulses;
-        if self.awake < AWAKE {
-            let mut wakes_at = WAKE_APART;
-            for width in &mut pulses.0 {
-                if self.awake < wakes_at {
-                    *width = Width(0);
-                }
-                wakes_at += WAKE_APART;
+        // While they settle, they keep within a frame's way of the last ones.
+        let per_frame = self.robot.slew().per_frame;
+        let mut under_way = false;
+        let mut wakes_at = WAKE_APART;
+        for (place, pulse) in pulses.0.iter_mut().enumerate() {
+            let servo = &self.calibration[place];
+            let sent = &mut self.sent.0[place];
+            let mut width = servo.width(self.pose.0[place]);
+            if self.settling {
+                let (wanted, way) = (width.0, servo.slew(per_frame));
+                width.0 = wanted.clamp(sent.0.saturating_sub(way), sent.0.saturating_add(way));
+                under_way |= width.0 != wanted;
             }
+            *sent = width;
+            if self.awake >= wakes_at {
+                *pulse = width;
+            }
+            wakes_at += WAKE_APART;
         }
+        self.settling = under_way;
         pulses
     }
 
@@ -348,22 +366,10 @@ impl<R: Robot> Motion<R> {
         self.hazard
     }
 
-    /// Keeps the pulses within a frame's way of the last ones; true while they are
-    /// not yet those that are wanted.
+    /// What is wrong with a pose.
     #[inline(never)]
-    fn limit_slew(&self, pulses: &mut Pulses) -> bool {
-        let mut under_way = false;
-        let per_frame = self.robot.slew().per_frame;
-        for (place, width) in pulses.0.iter_mut().enumerate() {
-            let wanted = width.0;
-            let (sent, way) = (
-                self.sent.0[place].0,
-                self.calibration[place].slew(per_frame),
-            );
-            width.0 = wanted.clamp(sent.saturating_sub(way), sent.saturating_add(way));
-            under_way |= width.0 != wanted;
-        }
-        under_way
+    fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
+        Clearance::of(&self.robot, pose).hazard(&self.robot)
     }
 
     fn head_for(&mut self, target: Target) {
@@ -405,7 +411,7 @@ impl<R: Robot> Motion<R> {
                 gait.pose(self.robot.waves(), *phase)
             }
         };
-        if let Some(hazard) = Clearance::of(&self.robot, &pose).hazard(&self.robot) {
+        if let Some(hazard) = self.hazard_of(&pose) {
             self.freeze(State::Holding { asked: false });
             self.hazard = Some(hazard);
             return;

@@ -7,6 +7,7 @@
 
 use crate::calibration::Calibration;
 use crate::part::Servo;
+use crate::robot::Robot;
 use crate::units::{Angle, Sweep, Width};
 
 /// Four sweeps, in servo order.
@@ -21,24 +22,13 @@ impl Pose {
     /// All servos at their neutral angle: the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// The pose at four chassis angles.
-    ///
-    /// # Errors
-    /// The first servo whose travel does not reach its angle.
-    pub fn at(
-        angles: &[Angle; 4],
-        neutral: &[Angle; 4],
-        calibration: &[Calibration; 4],
-    ) -> Result<Self, Servo> {
+    /// The pose at four chassis angles, 1/65536 turn; within the travel or not.
+    pub fn at<R: Robot>(angles: &[u16; 4], robot: &R) -> Self {
         let mut pose = Self::NEUTRAL;
-        for place in 0..4 {
-            let sweep = neutral[place].sweep_to(angles[place]);
-            if !calibration[place].reaches(sweep) {
-                return Err(Servo::at(place));
-            }
-            pose.0[place] = sweep;
+        for (place, (sweep, angle)) in pose.0.iter_mut().zip(angles).enumerate() {
+            *sweep = robot.neutral_of(place).sweep_to(Angle(*angle));
         }
-        Ok(pose)
+        pose
     }
 
     /// The chassis angles of the servos.
@@ -84,7 +74,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::robot::Robot;
     use crate::sample::Sample;
 
     fn posed() -> impl Strategy<Value = (Sample, Pose)> {
@@ -98,7 +87,8 @@ mod tests {
         #[test]
         fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in posed()) {
             let angles = pose.angles(&robot.neutral());
-            prop_assert_eq!(Pose::at(&angles, &robot.neutral(), &robot.calibration()), Ok(pose));
+            prop_assert_eq!(Pose::at(&angles.map(|angle| angle.0), &robot), pose);
+            prop_assert_eq!(pose.beyond(&robot.calibration()), None);
         }
 
         #[test]
@@ -111,10 +101,8 @@ mod tests {
                     pose.0[place] = Sweep(robot.calibration[place].max.0 + 1);
                 }
             }
-            let angles = pose.angles(&robot.neutral());
             let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
-            let got = Pose::at(&angles, &robot.neutral(), &robot.calibration());
-            prop_assert_eq!(got.err(), first);
+            prop_assert_eq!(pose.beyond(&robot.calibration()), first);
         }
 
         #[test]

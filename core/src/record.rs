@@ -69,10 +69,11 @@ impl Copies {
     }
 }
 
-/// Reads the settings to use into `settings`, which are robot.toml's: those saved
-/// last, if they will do. If not, robot.toml's stay.
+/// Reads the settings to use into `settings`: those saved last, if they will do. If
+/// not, robot.toml's.
 #[inline(never)]
 pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
+    *settings = Settings::of(robot);
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
         return match copies.found {
@@ -96,7 +97,6 @@ pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings)
 
 /// Begins to save settings over the older copy, and gives them their turn. None where
 /// they are what the latest copy holds.
-#[inline(never)]
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
@@ -115,7 +115,6 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
 }
 
 /// Where the robot rested last, if it has not moved since.
-#[inline(never)]
 pub fn rested<R: Robot, M: Memory>(robot: &R, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
     RESTED.fetch(memory, &mut bytes);

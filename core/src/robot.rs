@@ -36,6 +36,11 @@ pub trait Robot {
     /// The servos' angles in the neutral pose.
     fn neutral(&self) -> [Angle; 4];
 
+    /// One servo of [`Robot::neutral`], by its place.
+    fn neutral_of(&self, place: usize) -> Angle {
+        self.neutral()[place & 3]
+    }
+
     /// The servos' pulses and travel, as robot.toml has them.
     fn calibration(&self) -> [Calibration; 4];
 
@@ -104,6 +109,10 @@ impl<R: Robot + ?Sized> Robot for &R {
         (**self).neutral()
     }
 
+    fn neutral_of(&self, place: usize) -> Angle {
+        (**self).neutral_of(place)
+    }
+
     fn calibration(&self) -> [Calibration; 4] {
         (**self).calibration()
     }
@@ -170,6 +179,7 @@ mod tests {
         for place in 0..4 {
             assert_eq!((&reference).reach(place), robot.reach[place]);
             assert_eq!((&reference).servo(place), robot.calibration[place]);
+            assert_eq!((&reference).neutral_of(place), robot.neutral[place]);
         }
         assert_eq!((&reference).supplies(), robot.supplies);
         assert_eq!((&reference).hash(), robot.hash);

@@ -85,12 +85,18 @@ const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
 const BOOT_AFTER: u8 = 3 * FRAMES_PER_SECOND as u8;
 
 impl Default for Safety {
-    /// At power-on.
     fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Safety {
+    /// At power-on.
+    pub const fn new() -> Self {
         Self {
-            supply: Supply::default(),
+            supply: Supply::new(),
             fault: None,
-            led: Led::default(),
+            led: Led::new(),
             lit: true,
             late: 0,
             silence: 0,
@@ -98,9 +104,7 @@ impl Default for Safety {
             notices: 0,
         }
     }
-}
 
-impl Safety {
     /// The fault that stopped the robot last, unless it has been told to move since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
@@ -179,6 +183,7 @@ impl Safety {
     }
 
     /// A fault, from now on.
+    #[inline(never)]
     pub fn fail(&mut self, fault: Fault) -> Order {
         self.fault = Some(fault);
         self.notify(Notice::Fault);

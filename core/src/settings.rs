@@ -16,7 +16,7 @@
 use crate::adjustment::Adjustment;
 use crate::calibration::Calibration;
 use crate::gait::GaitId;
-use crate::memory::Content;
+use crate::memory::{CONTENT, Content};
 use crate::part::Servo;
 use crate::pose::Pose;
 use crate::robot::Robot;
@@ -48,10 +48,15 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Of no robot.
+    pub const NONE: Self = Self {
+        bytes: [0; CONTENT],
+    };
+
     /// Those of robot.toml.
     #[inline(never)]
     pub fn of<R: Robot>(robot: &R) -> Self {
-        let mut settings = Self { bytes: [0; _] };
+        let mut settings = Self::NONE;
         settings.set_head(robot);
         for place in 0..4 {
             settings.set_servo(place, Adjustment::of(&robot.servo(place)));
@@ -71,7 +76,7 @@ impl Settings {
     /// A pose in the trims of a record for the servos of a robot.
     #[inline(never)]
     pub fn of_pose<R: Robot>(pose: &Pose, robot: &R) -> Self {
-        let mut kept = Self { bytes: [0; _] };
+        let mut kept = Self::NONE;
         kept.set_head(robot);
         let mut at = SERVOS;
         for sweep in &pose.0 {

@@ -82,15 +82,20 @@ pub enum Step {
 }
 
 impl<R: Robot> Main<R> {
-    /// A robot that begins on a board.
-    pub fn new<B: Board>(robot: R, board: &mut B) -> Self {
-        let restart = board.restart();
-        let mut main = Self {
+    /// A robot; [`Main::begin`] has to follow.
+    pub const fn new(robot: R) -> Self {
+        Self {
             console: Console::new(robot),
-            ticks: board.ticks(),
-        };
-        main.console.begin(board.memory(), &restart);
-        main
+            ticks: 0,
+        }
+    }
+
+    /// Begins on a board. Once, before the first step.
+    #[inline(always)]
+    pub fn begin<B: Board>(&mut self, board: &mut B) {
+        self.ticks = board.ticks();
+        let restart = board.restart();
+        self.console.begin(board.memory(), &restart);
     }
 
     /// The console.
@@ -225,7 +230,9 @@ mod tests {
     }
 
     fn main_at(ticks: u8) -> Main<Sample> {
-        Main::new(Sample::odd(), &mut Fake::new(ticks, ""))
+        let mut main = Main::new(Sample::odd());
+        main.begin(&mut Fake::new(ticks, ""));
+        main
     }
 
     /// Steps until there is nothing to do.

@@ -168,6 +168,18 @@ impl Supplies {
 }
 
 impl Supply {
+    /// Nothing measured yet.
+    pub const fn new() -> Self {
+        Self {
+            reading: Reading {
+                reference: 0,
+                rail: 0,
+            },
+            level: Level::Good,
+            frames: 0,
+        }
+    }
+
     /// What was measured last.
     pub const fn reading(&self) -> Reading {
         self.reading

@@ -1,10 +1,9 @@
 //! Every sentence that the robot prints, kept in flash.
 //!
 //! A string literal of an AVR program is copied to its 2 KiB of RAM at start.
-//! The sentences here stay in flash as one run of characters, six bits each, and
-//! are fetched one by one when they are printed.
-
-use core::ops::{Range, RangeInclusive};
+//! The sentences here stay in flash, packed: a character is a code of four bits or
+//! of eight, and so is a phrase that several sentences have in common. They are
+//! unpacked one by one when they are printed.
 
 use lizard_avr::flash;
 use ufmt::uWrite;
@@ -62,32 +61,17 @@ texts! {
 
     // Help, a line each.
     HelpGaits = "# gaits:";
-    HelpWords = "# others:";
+    HelpWords = "# others: ";
     HelpHint = "# a word alone tells what it wants, the docs what it does";
 
-    // Answers, and the words of commands.
+    // Answers.
     Ok = "ok ";
     OkHelp = "ok help";
     OkGait = "ok gait=";
-    Help = "help";
     Stop = "stop";
     Rest = "rest";
     Pose = "pose";
-    Speed = "speed";
-    Watch = "watch";
-    Status = "status";
-    QuestionMark = "?";
-    Trim = "trim";
-    Limit = "limit";
-    Dir = "dir";
-    Scale = "scale";
     Cal = "cal";
-    Center = "center";
-    Save = "save";
-    Load = "load";
-    Factory = "factory";
-    Boot = "boot";
-    Deadman = "deadman";
     StatusPhase = " phase=";
     StatusMargin = " margin=";
     StatusSpeed = " speed=";
@@ -156,18 +140,61 @@ texts! {
     NothingSaved = "nothing is saved that could be loaded";
 }
 
+/// What occurs in several sentences, kept once.
+const PHRASES: &[&str] = &[
+    " wants a servo 1..4 and ",
+    ", robot.toml's is in use",
+    ", at most two decimals",
+    " wants a whole number",
+    " would not reach wh",
+    " angles in degrees",
+    "# calibration: ",
+    " margin of ",
+    "stand first",
+    " must be ",
+    "command",
+    "deadman",
+    ", send ",
+    "0..100",
+    " wants",
+    "supply",
+    "watch",
+    "speed",
+    "type-",
+    "limit",
+    " what",
+    "fault",
+    "gait",
+    " is ",
+    "the ",
+    "for ",
+    ", ",
+    "# ",
+    "he",
+];
+
+/// Every character of the sentences, the commonest first.
+const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
+
+/// How many of them have a code of four bits, which those of the others do not begin
+/// with.
+const SHORT: u8 = 12;
+
 const COUNT: usize = SENTENCES.len();
-const LENGTH: usize = starts()[COUNT] as usize;
 
-/// Bytes that hold so many characters.
-const BYTE_COUNT: usize = LENGTH.div_ceil(4) * 3;
+/// Sentences and phrases; what is packed is numbered in this order.
+const STRINGS: usize = COUNT + PHRASES.len();
 
-/// Codes of letters.
-const LETTERS: RangeInclusive<u8> = 0x21..=0x3a;
+/// Strings to a block. Only where a block starts is kept, and how long a string is.
+const BLOCK: usize = 16;
+
+const PACKED: Packed = pack();
 
 flash! {
-    const BYTES: [u8; BYTE_COUNT] = bytes();
-    const STARTS: [u16; COUNT + 1] = starts();
+    const NIBBLES: [u8; PACKED.count.div_ceil(2)] = *PACKED.nibbles.first_chunk().unwrap();
+    const LENGTHS: [u8; STRINGS] = PACKED.lengths;
+    const BLOCKS: [u16; STRINGS.div_ceil(BLOCK)] = PACKED.blocks;
+    const CHARACTERS: [u8; ALPHABET.len()] = *ALPHABET;
 }
 
 impl Text {
@@ -175,95 +202,177 @@ impl Text {
     ///
     /// # Errors
     /// Those of `out`.
+    #[inline(never)]
     pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
-        for at in self.place() {
-            out.write_char(char::from(character(at) & 0x7f))?;
+        let mut part = Part::of(self as u8);
+        // What follows the phrase that `part` is of.
+        let mut rest = Part::NONE;
+        loop {
+            if part.left == 0 {
+                part = rest;
+                rest.left = 0;
+            }
+            if part.left == 0 {
+                return Ok(());
+            }
+            let mut code = part.next();
+            if code >= SHORT {
+                code = SHORT + (code - SHORT) * 16 + part.next();
+            }
+            match code.checked_sub(ALPHABET.len() as u8) {
+                None => {
+                    let character = CHARACTERS.at(usize::from(code)).load();
+                    out.write_char(char::from(character & 0x7f))?;
+                }
+                Some(phrase) => {
+                    rest = part;
+                    part = Part::of(COUNT as u8 + phrase);
+                }
+            }
         }
-        Ok(())
     }
 
     /// Its length in bytes.
-    pub fn length(self) -> u8 {
-        self.place().len() as u8
-    }
-
-    /// True if the sentence is just this word.
-    pub fn is(self, word: &[u8]) -> bool {
-        let place = self.place();
-        place.len() == word.len() && place.zip(word).all(|(at, byte)| character(at) == *byte)
-    }
-
-    fn place(self) -> Range<usize> {
-        let start = |index: usize| usize::from(STARTS.at(index).load());
-        start(self as usize)..start(self as usize + 1)
+    pub const fn length(self) -> u8 {
+        SENTENCES[self as usize].len() as u8
     }
 }
 
-/// The character at a place among all sentences.
-#[inline(never)]
-fn character(place: usize) -> u8 {
-    let group = (place >> 2) * 3;
-    let byte = |n: usize| BYTES.at(group + n).load();
-    // Bit by bit shifts of two bytes would cost as much as sending the character.
-    let code = match place & 3 {
-        0 => byte(0) >> 2,
-        1 => (byte(0) << 4 | byte(1) >> 4) & 0x3f,
-        2 => (byte(1) << 2 | byte(2) >> 6) & 0x3f,
-        _ => byte(2) & 0x3f,
-    };
-    code + if LETTERS.contains(&code) { 0x40 } else { 0x20 }
+/// Nibbles of a string that are left.
+#[derive(Clone, Copy)]
+struct Part {
+    at: u16,
+    left: u8,
 }
 
-/// A character's six bits: ASCII from the blank to the underscore, less 32, with
-/// lower-case letters in the place of capitals, of which there are none.
-const fn code(character: u8) -> u8 {
-    match character {
-        b'a'..=b'z' => character - 0x40,
-        b' '..=b'@' | b'_' => character - 0x20,
-        _ => panic!("a sentence has lower-case letters, digits and signs below 0x40"),
-    }
-}
+impl Part {
+    const NONE: Self = Self { at: 0, left: 0 };
 
-/// All sentences, six bits a character, four characters in three bytes.
-const fn bytes() -> [u8; BYTE_COUNT] {
-    let mut bytes = [0; BYTE_COUNT];
-    let mut index = 0;
-    let mut place = 0;
-    while index < COUNT {
-        let sentence = SENTENCES[index].as_bytes();
-        let mut at = 0;
-        while at < sentence.len() {
-            let code = code(sentence[at]);
-            let group = place / 4 * 3;
-            match place & 3 {
-                0 => bytes[group] = code << 2,
-                1 => {
-                    bytes[group] |= code >> 4;
-                    bytes[group + 1] = code << 4;
-                }
-                2 => {
-                    bytes[group + 1] |= code >> 2;
-                    bytes[group + 2] = code << 6;
-                }
-                _ => bytes[group + 2] |= code,
-            }
-            place += 1;
-            at += 1;
+    /// A sentence or a phrase.
+    #[inline(never)]
+    fn of(string: u8) -> Self {
+        let string = usize::from(string);
+        let length = |string| LENGTHS.at(string).load();
+        let mut at = BLOCKS.at(string / BLOCK).load();
+        for before in string / BLOCK * BLOCK..string {
+            at += u16::from(length(before));
         }
-        index += 1;
+        Self {
+            at,
+            left: length(string),
+        }
     }
-    bytes
+
+    /// The next one.
+    #[inline(always)]
+    fn next(&mut self) -> u8 {
+        let pair = NIBBLES.at(usize::from(self.at >> 1)).load();
+        let nibble = if self.at & 1 == 0 { pair } else { pair >> 4 };
+        self.at += 1;
+        self.left -= 1;
+        nibble & 0xf
+    }
 }
 
-/// Where each sentence starts; the last entry is where the last one ends.
-const fn starts() -> [u16; COUNT + 1] {
-    let mut starts = [0; COUNT + 1];
-    let mut index = 0;
-    while index < COUNT {
-        starts[index + 1] = starts[index] + SENTENCES[index].len() as u16;
-        index += 1;
+/// All strings as nibbles, of each pair the first one in the lower half.
+struct Packed {
+    nibbles: [u8; MOST],
+    count: usize,
+    lengths: [u8; STRINGS],
+    blocks: [u16; STRINGS.div_ceil(BLOCK)],
+}
+
+/// More bytes than are needed.
+const MOST: usize = 4096;
+
+impl Packed {
+    const fn push(&mut self, nibble: u8) {
+        self.nibbles[self.count / 2] |= nibble << (4 * (self.count & 1));
+        self.count += 1;
     }
-    starts
+
+    /// Appends a character's code, or a phrase's after those of all characters.
+    const fn append(&mut self, code: usize) {
+        assert!(code < SHORT as usize + (16 - SHORT as usize) * 16);
+        let code = code as u8;
+        if code < SHORT {
+            self.push(code);
+        } else {
+            self.push(SHORT + (code - SHORT) / 16);
+            self.push((code - SHORT) % 16);
+        }
+    }
+}
+
+/// Packs all strings, in the compiler: phrases as such in sentences, and letter by
+/// letter by themselves.
+#[allow(long_running_const_eval, reason = "a second at most")]
+const fn pack() -> Packed {
+    let mut packed = Packed {
+        nibbles: [0; MOST],
+        count: 0,
+        lengths: [0; STRINGS],
+        blocks: [0; _],
+    };
+    let mut string = 0;
+    while string < STRINGS {
+        let begin = packed.count;
+        if string % BLOCK == 0 {
+            packed.blocks[string / BLOCK] = begin as u16;
+        }
+        let is_phrase = string >= COUNT;
+        let text = if is_phrase {
+            PHRASES[string - COUNT].as_bytes()
+        } else {
+            SENTENCES[string].as_bytes()
+        };
+        let mut rest = text;
+        while let [first, after @ ..] = rest {
+            match phrase_of(rest) {
+                Some((phrase, after)) if !is_phrase => {
+                    packed.append(ALPHABET.len() + phrase);
+                    rest = after;
+                }
+                _ => {
+                    packed.append(code(*first));
+                    rest = after;
+                }
+            }
+        }
+        assert!(packed.count - begin <= 255);
+        packed.lengths[string] = (packed.count - begin) as u8;
+        string += 1;
+    }
+    packed
+}
+
+/// The first phrase that a text begins with, and what follows it.
+const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
+    let mut phrase = 0;
+    while phrase < PHRASES.len() {
+        let mut pattern = PHRASES[phrase].as_bytes();
+        let mut rest = text;
+        while let ([wanted, pattern_after @ ..], [byte, after @ ..]) = (pattern, rest)
+            && *wanted == *byte
+        {
+            (pattern, rest) = (pattern_after, after);
+        }
+        if pattern.is_empty() {
+            return Some((phrase, rest));
+        }
+        phrase += 1;
+    }
+    None
+}
+
+/// The code of a character.
+const fn code(character: u8) -> usize {
+    let mut code = 0;
+    while ALPHABET[code] != character {
+        code += 1;
+        assert!(code < ALPHABET.len(), "ALPHABET lacks a character");
+    }
+    code
 }
 
 #[cfg(test)]
@@ -277,7 +386,6 @@ mod tests {
         for (text, expected) in [
             (Text::Banner, "# lizard "),
             (Text::Version, env!("CARGO_PKG_VERSION")),
-            (Text::QuestionMark, "?"),
             (Text::Unknown, "unknown command, send help for the list"),
             (Text::Resting, "servos are resting, send stand first"),
         ] {
@@ -285,14 +393,6 @@ mod tests {
             let Ok(()) = text.print(&mut printed);
             assert_eq!(printed, expected);
             assert_eq!(usize::from(text.length()), expected.len());
-        }
-    }
-
-    #[test]
-    fn a_word_is_itself_and_neither_shorter_nor_longer() {
-        assert!(Text::Stop.is(b"stop"));
-        for other in ["", "s", "sto", "stoq", "stops", "rest"] {
-            assert!(!Text::Stop.is(other.as_bytes()), "{other}");
         }
     }
 

@@ -3,8 +3,8 @@
 
 use std::collections::HashMap;
 
-use lizard_core::command::own_word;
 use lizard_core::gait::{LONGEST_NAME, MOST_GAITS};
+use lizard_core::word::Word;
 use lizard_kinematics::End;
 
 use crate::error::{Checked, Hint, Problem};
@@ -89,7 +89,7 @@ fn check_name(name: &str) -> Result<(), Problem> {
         return Err(Problem::Name("a dash stands for a blank between two words"));
     }
     let word = name.split('-').next().unwrap_or(name);
-    if own_word(word.as_bytes()).is_some() {
+    if Word::find(word.as_bytes()).is_some() {
         return Err(Problem::Command(word.to_string()));
     }
     Ok(())

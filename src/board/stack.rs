@@ -34,15 +34,16 @@ fn word() -> &'static [Byte; 4] {
 
 /// Sets the guard. Once.
 pub fn start() {
-    for (byte, value) in word().iter().zip(GUARD) {
-        byte.set(value);
-    }
+    // Byte by byte: the loop over both arrays takes four times as much flash.
+    let [a, b, c, d] = word();
+    a.set(GUARD[0]);
+    b.set(GUARD[1]);
+    c.set(GUARD[2]);
+    d.set(GUARD[3]);
 }
 
 /// Whether the stack has kept off the data.
 pub fn is_intact() -> bool {
-    word()
-        .iter()
-        .zip(GUARD)
-        .all(|(byte, value)| byte.get() == value)
+    let [a, b, c, d] = word();
+    a.get() == GUARD[0] && b.get() == GUARD[1] && c.get() == GUARD[2] && d.get() == GUARD[3]
 }

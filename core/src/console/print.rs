@@ -4,7 +4,6 @@ use ufmt::uWrite;
 
 use super::{Console, Counters, LONGEST_LINE};
 use crate::answer::{self, Answer};
-use crate::command::WORDS;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::guard::Clearance;
@@ -16,6 +15,7 @@ use crate::settings::Boot;
 use crate::supply::{Level, Voltage};
 use crate::text::Text;
 use crate::units::{Angle, Sweep, thousandths_from_phase};
+use crate::word::Word;
 
 /// Places of the lines of `cal`.
 const CAL_BOOT: u8 = 4;
@@ -47,10 +47,7 @@ impl<R: Robot> Console<R> {
             }
             Answer::Words => {
                 Text::HelpWords.print(out)?;
-                for place in 0..WORDS.as_slice().len() {
-                    out.write_char(if place == 0 { ' ' } else { '|' })?;
-                    WORDS.at(place).load().print(out)?;
-                }
+                Word::print_all(out)?;
                 return Ok(Some(Answer::Hint));
             }
             Answer::Hint => {
@@ -78,7 +75,6 @@ impl<R: Robot> Console<R> {
 
     /// `# gaits: stand|walk|...`, as many as a line takes; returns the first that
     /// it has no room for.
-    #[inline(never)]
     fn print_gaits<W>(&self, out: &mut W, first: GaitId) -> Result<Option<GaitId>, W::Error>
     where
         W: uWrite + ?Sized,
@@ -179,7 +175,7 @@ impl<R: Robot> Console<R> {
             _ => {
                 let place = usize::from(line & 3);
                 let set = settings.servo(place);
-                let neutral = self.motion.robot().neutral()[place];
+                let neutral = self.motion.robot().neutral_of(place);
                 Text::Information.print(out)?;
                 out.write_char('A')?;
                 out.write_char(char::from(b'1' + line))?;
@@ -203,7 +199,6 @@ impl<R: Robot> Console<R> {
     }
 
     /// What is said without being asked for.
-    #[inline(never)]
     pub(super) fn print_notice<W>(&self, out: &mut W, notice: Notice) -> Result<(), W::Error>
     where
         W: uWrite + ?Sized,
@@ -260,7 +255,7 @@ impl<R: Robot> Console<R> {
     pub(super) fn print_pose<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         Text::WatchPose.print(out)?;
         let motion = &self.motion;
-        answer::angles(out, &motion.pose().angles(&motion.robot().neutral()))
+        answer::angles(out, motion.pose(), motion.robot())
     }
 
     /// A gait's name as a value without a blank: `arc-left`.

@@ -69,8 +69,8 @@ pub struct Figures {
 
 /// The function of the firmware that computes a frame: the control tick.
 const TICK: &str = "Console::frame";
-/// The functions that the guard consists of.
-const GUARD: [&str; 2] = ["Clearance::of", "Clearance::hazard"];
+/// The guard.
+const GUARD: &str = "Motion::hazard_of";
 /// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
 const SERVO_VECTORS: [u8; 2] = [11, 12];
 /// And those of USART_RX and USART_UDRE.
@@ -121,10 +121,7 @@ impl Figures {
         progress("the control tick in every motion");
         let every = times(awake()?, TICK, &motions(robot))?;
         progress("the guard");
-        let mut guard = 0.0;
-        for function in GUARD {
-            guard += mean(&times(awake()?, function, &[gait])?);
-        }
+        let guard = mean(&times(awake()?, GUARD, &[gait])?);
         progress("the control tick on a saturated line");
         let tick_latency = latency(awake()?, turn)?;
         progress("serial interrupts");

@@ -124,10 +124,9 @@ impl<R: Robot> Twin<R> {
             reading: supplies::reading(&robot.supplies()),
             ..Line::default()
         };
-        Self {
-            main: Main::new(robot, &mut line),
-            line,
-        }
+        let mut main = Main::new(robot);
+        main.begin(&mut line);
+        Self { main, line }
     }
 
     /// The main loop, woken at a cycle, until it has nothing left to do.
