@@ -97,7 +97,7 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         row("servo interrupts per frame", "cycles", Some(f.servo_interrupts), Bound::None, Some("1 513")),
         row("longest serial interrupt", "cycles", count(f.serial_interrupt), AtMost(BESIDE_SERVOS), None),
         row("CPU asleep in a gait", "%", f.asleep, AtLeast(90.0), Some("0")),
-        row("flash", "bytes", count(f.flash.into()), AtMost(30_720.0), Some("5 994")),
+        row("flash", "bytes", count(f.flash.into()), AtMost(24_576.0), Some("5 994")),
         row("static RAM", "bytes", count(f.static_ram.into()), AtMost(900.0), Some("365")),
         row("between stack and static RAM", "bytes", count(f.stack_spare.into()), AtLeast(400.0), None),
         row("  with the deepest stack", "bytes", Some(f.stack_margin.into()), AtLeast(400.0), None),
