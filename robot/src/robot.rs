@@ -78,7 +78,7 @@ impl Robot {
         let root = Section::root(
             table,
             &[
-                "links", "leg", "servo", "limits", "supply", "ground", "gait",
+                "links", "leg", "servo", "limits", "supply", "body", "ground", "gait",
             ],
         )?;
         let measures = Measures::read(&root)?;
