@@ -122,6 +122,7 @@ clean: ## remove everything that was built
 	@$(LIZARD) draw --robot robots/paper.toml --output docs/lizard.svg
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
+	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
 	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
 
