@@ -9,7 +9,7 @@ use lizard_host::twin::replay::Replay;
 use lizard_host::twin::report::Report;
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
-use simulated_uno::Fidelity;
+use simulated_uno::{Fidelity, Uno};
 
 /// Every gait that moves after a second at its beginning, for three cycles.
 fn walk_all(model: ServoModel) -> Replay {
@@ -21,8 +21,10 @@ fn walk_all(model: ServoModel) -> Replay {
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
     }
     let script = Script { steps, end_ms: ms };
-    let mut bench = FirmwareBench::off(Fidelity::DataSheet);
-    let recording = play(&mut bench.uno, servo_pins(robot()), &script, false, |_| Ok(()));
+    let mut uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the firmware");
+    let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| {
+        Ok(())
+    });
     let recording = recording.expect("nothing is written");
     let spans = spans(&script, &recording.answers);
     Replay::of(robot(), &recording.frames, spans, model)
@@ -31,7 +33,11 @@ fn walk_all(model: ServoModel) -> Replay {
 #[test]
 fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
     let report = Report::of(robot(), &walk_all(ServoModel::IDEAL), false);
-    let cycles: Vec<_> = report.rows.iter().filter_map(|row| Some((row, row.cycle.as_ref()?))).collect();
+    let cycles: Vec<_> = report
+        .rows
+        .iter()
+        .filter_map(|row| Some((row, row.cycle.as_ref()?)))
+        .collect();
     let moving = robot().gaits().iter().filter(|gait| gait.moves()).count();
     assert_eq!(cycles.len(), moving, "one for each gait");
     for (row, cycle) in cycles {
@@ -41,11 +47,19 @@ fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
                 return;
             };
             let off = (ours - wanted).abs();
-            assert!(off <= least.max(0.03 * wanted.abs()), "{} {name}: {ours}, not {wanted}", row.command);
+            assert!(
+                off <= least.max(0.03 * wanted.abs()),
+                "{} {name}: {ours}, not {wanted}",
+                row.command
+            );
         };
         part("ahead", cycle.way.forward, cycle.predicted.forward, 0.5);
         part("turn", cycle.way.turn, cycle.predicted.turn, 0.3);
-        assert!(row.servo_rate <= robot().pace().gait_slew + 5.0, "{}", row.command);
+        assert!(
+            row.servo_rate <= robot().pace().gait_slew + 5.0,
+            "{}",
+            row.command
+        );
         let (name, margin) = row.margin.expect("every pose closes");
         assert!(margin > 0.29, "{} {name} {margin}", row.command);
     }

@@ -10,6 +10,7 @@ use super::replay::Replay;
 
 /// A row for each command.
 pub struct Report {
+    /// In order of time.
     pub rows: Vec<Row>,
 }
 
@@ -81,6 +82,7 @@ impl Way {
 impl Report {
     /// Sums up a replay. With `paced` gaits went at other speeds than their own, and
     /// nothing is said of their cycles.
+    #[must_use]
     pub fn of(robot: &Robot, replay: &Replay, paced: bool) -> Self {
         let rows = replay
             .stages
@@ -219,6 +221,7 @@ impl Report {
 }
 
 /// A part of a way with its sign, without that of a zero; a dash where it is unknown.
+#[must_use]
 pub fn known(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
         let scale = 10f64.powi(decimals as i32);
@@ -228,6 +231,7 @@ pub fn known(part: Option<f64>, decimals: usize) -> String {
 
 impl Row {
     /// What it came to, in words.
+    #[must_use]
     pub fn sentence(&self) -> String {
         let words = |way: &Way| {
             format!(
