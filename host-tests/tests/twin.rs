@@ -22,9 +22,7 @@ fn walk_all(model: ServoModel) -> Replay {
     }
     let script = Script { steps, end_ms: ms };
     let mut uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the firmware");
-    let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| {
-        Ok(())
-    });
+    let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));
     let recording = recording.expect("nothing is written");
     let spans = spans(&script, &recording.answers);
     Replay::of(robot(), &recording.frames, spans, model)

@@ -119,11 +119,7 @@ impl CheckedGait {
     ///
     /// Whether it hangs on ties is asked of rigid legs: ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
-        let rigid = Ground {
-            spring: None,
-            ..*ground
-        };
-        let known = rigid.predict(self.cycle(COARSE));
+        let known = ground.rigid().predict(self.cycle(COARSE));
         let travel = self.walked(ground).travel;
         Prediction {
             forward: known.forward.and(Some(travel.forward)),

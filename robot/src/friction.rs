@@ -249,10 +249,10 @@ impl Pads {
                     load * (rows[k][0] * row[0] + rows[k][1] * row[1] - along[k] * back) / length
                 }),
             };
-            for i in 0..3 {
-                gradient[i] -= leg.mixed[i] * leg.slope / leg.curvature;
-                for j in 0..3 {
-                    hessian[i][j] -= leg.mixed[i] * leg.mixed[j] / leg.curvature;
+            for (i, mixed) in leg.mixed.into_iter().enumerate() {
+                gradient[i] -= mixed * leg.slope / leg.curvature;
+                for (cell, other) in hessian[i].iter_mut().zip(leg.mixed) {
+                    *cell -= mixed * other / leg.curvature;
                 }
             }
             legs[i] = leg;

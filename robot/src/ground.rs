@@ -118,6 +118,16 @@ impl Uneven {
 }
 
 impl Ground {
+    /// The same with legs that do not lag: where a step leads then hangs on nothing
+    /// before it.
+    #[must_use]
+    pub fn rigid(&self) -> Self {
+        Self {
+            spring: None,
+            ..*self
+        }
+    }
+
     /// The friction of a foot that carries the mean, N: what a spring works against.
     #[must_use]
     pub fn grip(&self) -> f64 {

@@ -23,12 +23,8 @@ impl Sprung {
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         ground.spring?;
-        let rigid = Ground {
-            spring: None,
-            ..*ground
-        };
         let walked = gait.walked(ground);
-        let way = gait.predict(&rigid);
+        let way = gait.predict(&ground.rigid());
         let part = |sprung: f64, rigid: Option<f64>, least: f64| {
             rigid
                 .filter(|rigid| rigid.abs() > least)

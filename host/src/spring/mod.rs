@@ -150,14 +150,14 @@ fn on(robot: &Robot, spring: Spring) -> Ground {
     }
 }
 
-/// The least of what the gaits keep of their ways.
-fn least(robot: &Robot, spring: Spring) -> f64 {
+/// Whether every gait keeps enough of its way.
+fn is_enough(robot: &Robot, spring: Spring) -> bool {
     let ground = on(robot, spring);
-    let shares = robot
-        .gaits()
-        .iter()
-        .filter_map(|gait| Sprung::of(gait, &ground)?.share);
-    shares.fold(f64::INFINITY, f64::min)
+    let mut gaits = robot.gaits().iter().filter(|gait| gait.moves());
+    gaits.all(|gait| {
+        let share = Sprung::of(gait, &ground).and_then(|on| on.share);
+        share.is_none_or(|share| share >= ENOUGH)
+    })
 }
 
 impl Answer {
@@ -304,10 +304,10 @@ fn needed(robot: &Robot) -> f64 {
             rate: middle,
             preload: 0.0,
         };
-        if least(robot, spring) < ENOUGH {
-            low = middle;
-        } else {
+        if is_enough(robot, spring) {
             high = middle;
+        } else {
+            low = middle;
         }
     }
     high
