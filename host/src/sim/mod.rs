@@ -134,7 +134,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let frames = Run { robot, log };
     write_file(
         &args.svg,
-        &timeline::draw(frames, &spans, &timeline::SIMULATED),
+        timeline::draw(frames, &spans, &timeline::SIMULATED),
     )?;
     let report = Report {
         elf: elf.display().to_string(),

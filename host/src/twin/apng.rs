@@ -176,10 +176,10 @@ mod drawn {
                     ))
                     .add(bar(shape.shafts[rear], shape.arms[rear], SERVO[rear], 3.0));
             }
-            for i in 0..4 {
+            for (i, colour) in SERVO.into_iter().enumerate() {
                 group = group
                     .add(bar(shape.tips[i], shape.ends[i / 2], STEEL, 3.4))
-                    .add(bar(shape.shafts[i], shape.tips[i], SERVO[i], 4.6))
+                    .add(bar(shape.shafts[i], shape.tips[i], colour, 4.6))
                     .add(circle(at(shape.shafts[i]), 3.2 * SCALE, DARK))
                     .add(circle(at(shape.tips[i]), 2.2 * SCALE, "white").set("stroke", DARK));
             }
