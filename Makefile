@@ -24,7 +24,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash flash-test lint cli bench prove mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .mutants .fuzz .docs
+.PHONY: help sim test firmware flash flash-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .physics .mutants .fuzz .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -48,6 +48,8 @@ bench: ## measured budgets, beside the Arduino Servo library's; speed beside num
 	$(call prepared,.bench)
 prove: ## the guard against floating point at every pose there is; about a minute
 	$(call prepared,.prove)
+physics: ## the contact model against the rigid-body engine rapier
+	$(call prepared,.physics)
 mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
 	$(call prepared,.mutants)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
@@ -115,6 +117,11 @@ clean: ## remove everything that was built
 .prove: .cli
 	@$(LIZARD) prove $(FOR_ROBOT)
 
+# Apart from the other tests, because rapier takes minutes to compile.
+.physics:
+	@cd host && cargo clippy -p lizard-twin --features physics --all-targets --quiet -- -D warnings
+	@cd host && cargo test -p lizard-twin --features physics --test physics --quiet
+
 # ONLY=serial.rs narrows it down.
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
@@ -127,6 +134,7 @@ clean: ## remove everything that was built
 	@$(LIZARD) draw --robot robots/paper.toml --output docs/lizard.svg
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
+	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
 	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
 

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use crate::Failure;
 
-const SIMULATOR: [&str; 2] = ["sim", "bench"];
+const SIMULATOR: [&str; 3] = ["sim", "twin", "bench"];
 /// `replay` needs the simulator's pictures, too.
 const CONSOLE: [&str; 6] = [
     "console",

@@ -22,6 +22,9 @@ pub mod prove;
 mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
+pub mod spring;
+#[cfg(feature = "simulator")]
+pub mod twin;
 
 pub use failure::Failure;
 pub use pose_args::PoseArgs;

@@ -11,8 +11,8 @@ use lizard_host::absent;
 #[cfg(feature = "console")]
 use lizard_host::console;
 #[cfg(feature = "simulator")]
-use lizard_host::{bench, sim};
-use lizard_host::{draw, gaits};
+use lizard_host::{bench, sim, twin};
+use lizard_host::{draw, gaits, spring};
 #[cfg(feature = "paper")]
 use lizard_host::{paper, prove};
 
@@ -56,7 +56,10 @@ enum Command {
     Prove(prove::Args),
     #[cfg(feature = "simulator")]
     Sim(sim::Args),
+    #[cfg(feature = "simulator")]
+    Twin(twin::Args),
     Draw(draw::Args),
+    Spring(spring::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
     #[cfg(feature = "console")]
@@ -102,7 +105,10 @@ fn main() -> ExitCode {
         Command::Prove(args) => prove::run(args),
         #[cfg(feature = "simulator")]
         Command::Sim(args) => sim::run(args),
+        #[cfg(feature = "simulator")]
+        Command::Twin(args) => twin::run(args),
         Command::Draw(args) => draw::run(args),
+        Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),
         #[cfg(feature = "console")]

@@ -5,8 +5,9 @@ use lizard_kinematics::Pose;
 use crate::accuracy::{self, TableError};
 use crate::audit::Audit;
 use crate::gait::Stride;
-use crate::ground::{Ground, Prediction};
+use crate::ground::{Ground, Prediction, Travel};
 use crate::tabled_gait::TabledGait;
+use crate::walker::Walker;
 
 /// A gait of robot.toml whose every sample has been checked: in floating point,
 /// the truth, and as the firmware's table has it.
@@ -113,22 +114,62 @@ impl CheckedGait {
     }
 
     /// Where one cycle takes a robot on this ground, in the time order of a gait
-    /// that starts at phase 0, by the contact model.
+    /// that starts at phase 0, by the contact model. With springs it is the second
+    /// cycle, which all later ones repeat.
+    ///
+    /// Whether it hangs on ties is asked of rigid legs: ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
-        /// Steps in a cycle; twice as many change no result by 0.01 mm.
-        const STEPS: usize = 1000;
-        /// Enough to tell what hangs on a tie, which takes longer.
-        const COARSE: usize = 250;
-        let cycle = |steps: usize| {
-            (0..=steps)
-                .map(move |i| self.sweeps(self.phase(self.period() * i as f64 / steps as f64)))
-        };
-        let known = ground.predict(cycle(COARSE));
-        let travel = ground.travel(cycle(STEPS));
+        let known = ground.rigid().predict(self.cycle(COARSE));
+        let travel = self.walked(ground).travel;
         Prediction {
             forward: known.forward.and(Some(travel.forward)),
             left: known.left.and(Some(travel.left)),
             turn: known.turn.and(Some(travel.turn)),
         }
     }
+
+    /// What one cycle does on this ground, whether or not it hangs on ties; with
+    /// springs the second cycle.
+    pub fn walked(&self, ground: &Ground) -> Walked {
+        let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
+        let mut steps = STEPS;
+        if ground.spring.is_some() {
+            steps = SPRUNG;
+            self.cycle(steps).for_each(|sweeps| {
+                walker.step(sweeps);
+            });
+        }
+        let begin = walker.place();
+        let mut lag = 0.0;
+        for sweeps in self.cycle(steps) {
+            walker.step(sweeps);
+            lag = walker.lag().into_iter().map(f64::abs).fold(lag, f64::max);
+        }
+        Walked {
+            travel: walker.place().seen_from(begin),
+            lag,
+        }
+    }
+
+    /// One cycle in equal steps of time, its sweeps at both ends among them.
+    fn cycle(&self, steps: usize) -> impl Iterator<Item = [f64; 4]> {
+        (0..=steps).map(move |i| self.sweeps(self.phase(self.period() * i as f64 / steps as f64)))
+    }
+}
+
+/// Steps in a cycle; twice as many change no result by 0.01 mm.
+const STEPS: usize = 1000;
+/// Steps in a cycle of legs on springs, which take longer; four times as many change no
+/// result by 0.05 mm.
+const SPRUNG: usize = 250;
+/// Enough to tell what hangs on a tie, which takes longer.
+const COARSE: usize = 250;
+
+/// A cycle that was followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walked {
+    /// Where it led.
+    pub travel: Travel,
+    /// How far a leg was behind its servo at most, deg; 0 where legs are rigid.
+    pub lag: f64,
 }

@@ -183,6 +183,11 @@ pub enum Problem {
     /// The robot would refuse to stand.
     #[error("the neutral pose is not safe: {0}")]
     Neutral(String),
+    /// A mass centre outside the feet.
+    #[error(
+        "is so far from the middle that foot {0} is in the air at neutral; all four must carry"
+    )]
+    InTheAir(&'static str),
     /// A gait name the console cannot take.
     #[error("is no gait name: {0}")]
     Name(&'static str),

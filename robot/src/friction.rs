@@ -1,14 +1,18 @@
 //! The slide that costs the least friction: a small convex problem.
 //!
 //! Each pad's cost is the length of its slide, stretched by the friction ratio
-//! where it slides backward. A sum of lengths has kinks just where it matters,
-//! at the pads that hold. So every length is rounded off,
-//! `sqrt(length^2 + eps^2)`, minimised by Newton's method, and eps is lowered a
-//! decade at a time from the size of the slides to a hundred-millionth of it. What is
+//! where it slides backward. A leg on a spring may lag behind its servo, which
+//! costs the spring's energy; one that is rigid does not lag. A sum of lengths has
+//! kinks just where it matters, at the pads that hold. So every length is rounded
+//! off, `sqrt(length^2 + eps^2)`, minimised by Newton's method, and eps is lowered
+//! in stages from the size of the slides to a hundred-millionth of it. What is
 //! left is at most eps for each pad above the true minimum, which the dual
 //! problem proves in the tests. Where the minimum is not unique (two pads
 //! against two), this ends at the point that the rounding favours, which is the
 //! symmetric one; [`crate::Ground::predict`] finds out where that matters.
+
+use crate::linear::solve;
+use crate::spring::Yield;
 
 /// Position or slide of a pad: forward, left.
 pub(crate) type Point = [f64; 2];
@@ -16,77 +20,185 @@ pub(crate) type Point = [f64; 2];
 /// How the body moves: forward, left in mm, counter-clockwise in rad.
 pub(crate) type Twist = [f64; 3];
 
-/// Decades between the first rounding and the last.
-const DECADES: i32 = 8;
-/// Newton steps for each decade; five or six are usual.
+/// The last rounding over the size of the slides.
+const SMALLEST: f64 = 1e-8;
+/// Stages from the first rounding, the size of the slides, to the last.
+const STAGES: i32 = 5;
+/// The stage to begin with where the answer is nearly known.
+const NEARLY: i32 = 2;
+/// Newton steps for each stage; five to eight are usual.
 const STEPS: usize = 40;
 /// Forces (in units of one pad's friction) that count as balanced.
 const BALANCED: f64 = 1e-9;
 
+/// A Newton step that gains less than this (of a pad's friction times the size of
+/// the slides) gains nothing that numbers can show.
+const LEAST_GAIN: f64 = 1e-23;
+
 /// Pads on the floor.
+#[derive(Clone, Copy)]
 pub(crate) struct Pads {
     /// Where they are in the body frame, mm.
     pub at: [Point; 4],
-    /// How far their legs swing them in the body frame, mm.
+    /// How far their legs swing them in the body frame if their lags stay as they
+    /// are, mm.
     pub swing: [Point; 4],
     /// Friction backward over forward.
     pub ratio: f64,
     /// Weight that each pad carries, over the mean.
     pub load: [f64; 4],
+    /// How the legs give way; none where they are rigid.
+    pub give: Option<Give>,
+}
+
+/// Legs that lag behind their servos.
+#[derive(Clone, Copy)]
+pub(crate) struct Give {
+    /// How far each pad is back for a radian of lag, mm.
+    pub along: [Point; 4],
+    /// The lags before the step, rad.
+    pub before: [f64; 4],
+    /// What the lag costs.
+    pub spring: Yield,
+}
+
+/// What the pads do.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion {
+    /// How the body moves.
+    pub twist: Twist,
+    /// How far each leg lags behind its servo after it, rad; 0 where legs are rigid.
+    pub lag: [f64; 4],
+    /// By how much that is more than before, rad.
+    pub change: [f64; 4],
+}
+
+/// The rounded cost of a motion around it. A leg's lag touches no other leg, so
+/// its row of the Hessian is eliminated at once.
+struct Expansion {
+    cost: f64,
+    /// By the twist, lags eliminated.
+    gradient: [f64; 3],
+    hessian: [[f64; 3]; 3],
+    legs: [Row; 4],
+}
+
+/// A leg's row: slope and curvature by its lag, and how both unknowns mix.
+#[derive(Clone, Copy, Default)]
+struct Row {
+    slope: f64,
+    curvature: f64,
+    mixed: [f64; 3],
+}
+
+/// Units in which all unknowns are near 1.
+struct Scale {
+    size: f64,
+    twist: Twist,
+    lag: [f64; 4],
 }
 
 impl Pads {
-    /// The motion of the body that drags the pads over the floor at least cost.
-    pub fn least(&self) -> Twist {
-        let size = self
-            .swing
-            .iter()
-            .flatten()
-            .fold(0.0f64, |size, part| size.max(part.abs()));
-        let radius = self
-            .at
-            .iter()
-            .flatten()
-            .fold(0.0f64, |radius, part| radius.max(part.abs()));
+    /// The motion of the body and the legs that drags the pads over the floor at
+    /// least cost.
+    pub fn least(&self) -> Motion {
+        self.least_from(None)
+    }
+
+    /// The same, with a motion to begin with that is nearly the answer.
+    pub fn least_from(&self, guess: Option<&Motion>) -> Motion {
+        let size = largest(&self.swing).max(self.springs_back());
         if size == 0.0 {
-            return [0.0; 3];
+            return self.moved([0.0; 3], [0.0; 4]);
         }
-        // Turns are counted in mm at this radius, slides in units of the swing,
-        // so that all unknowns are near 1.
-        let scale = [size, size, size / radius];
-        let scaled = |x: Twist| -> Twist { std::array::from_fn(|i| x[i] * scale[i]) };
-        let mut x = [0.0; 3];
-        for decade in 0..=DECADES {
-            let eps = size * 10f64.powi(-decade);
+        // Turns are counted in mm at the pads' radius, slides in units of the swing.
+        let scale = Scale {
+            size,
+            twist: [size, size, size / largest(&self.at)],
+            lag: self
+                .give
+                .map_or([0.0; 4], |give| give.along.map(|[x, y]| size / x.hypot(y))),
+        };
+        let (mut x, mut z, first) = match guess {
+            Some(motion) => (scale.of_twist(motion), scale.of_lag(motion), NEARLY),
+            None => ([0.0; 3], [0.0; 4], 0),
+        };
+        for stage in first..=STAGES {
+            let eps = size * SMALLEST.powf(f64::from(stage) / f64::from(STAGES));
             for _ in 0..STEPS {
-                let (cost, gradient, hessian) = self.expand(scaled(x), eps, scale);
-                if gradient.iter().all(|g| g.abs() < BALANCED * size) {
+                let here = self.expand(&scale.motion(self, x, z), eps, &scale);
+                let steep = here.gradient.into_iter();
+                let steep = steep.chain(here.legs.map(|leg| leg.slope));
+                if steep.map(f64::abs).all(|g| g < BALANCED * size) {
                     break;
                 }
-                let step = solve(hessian, gradient);
-                let slope: f64 = step.iter().zip(gradient).map(|(s, g)| s * g).sum();
-                let at = |share: f64| -> Twist { std::array::from_fn(|i| x[i] - share * step[i]) };
+                let dx = solve(here.hessian, here.gradient);
+                let dz = here.legs.map(|leg| leg.step(dx));
+                let slope = dot(dx, here.gradient) + here.gained();
+                if slope < LEAST_GAIN * size {
+                    break;
+                }
+                let at = |share: f64| {
+                    let x: [f64; 3] = std::array::from_fn(|i| x[i] - share * dx[i]);
+                    let z: [f64; 4] = std::array::from_fn(|i| z[i] - share * dz[i]);
+                    (x, z)
+                };
                 // Halve until the cost falls, as far as rounding lets one see.
                 let mut share = 1.0;
                 let falls = |share: f64| {
-                    self.expand(scaled(at(share)), eps, scale).0
-                        <= cost * (1.0 + 1e-14) - 1e-4 * share * slope
+                    let (x, z) = at(share);
+                    self.expand(&scale.motion(self, x, z), eps, &scale).cost
+                        <= here.cost * (1.0 + 1e-14) - 1e-4 * share * slope
                 };
                 while share > 1e-9 && !falls(share) {
                     share /= 2.0;
                 }
-                x = at(share);
+                if share <= 1e-9 {
+                    break;
+                }
+                (x, z) = at(share);
             }
         }
-        scaled(x)
+        scale.motion(self, x, z)
+    }
+
+    /// The motion with this twist, and with lags that change by so much.
+    fn moved(&self, twist: Twist, change: [f64; 4]) -> Motion {
+        let before = self.give.map_or([0.0; 4], |give| give.before);
+        Motion {
+            twist,
+            lag: std::array::from_fn(|i| before[i] + change[i]),
+            change,
+        }
+    }
+
+    /// How far a leg may jump back, mm, since its spring pulls harder than its pad
+    /// can hold: 0 unless pads or springs were changed.
+    fn springs_back(&self) -> f64 {
+        let Some(give) = &self.give else { return 0.0 };
+        let back = |i: usize| {
+            let ([x, y], lag) = (give.along[i], give.before[i]);
+            let (_, torque, _) = give.spring.expand(lag, 0.0);
+            let holds = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
+            match torque.abs() > holds * (1.0 + 1e-6) {
+                true => x.hypot(y) * lag.abs(),
+                false => 0.0,
+            }
+        };
+        (0..4).map(back).fold(0.0, f64::max)
     }
 
     /// The slide of each pad over the floor.
-    pub fn slides(&self, twist: Twist) -> [Point; 4] {
-        let [forward, left, turn] = twist;
+    pub fn slides(&self, motion: &Motion) -> [Point; 4] {
+        let [forward, left, turn] = motion.twist;
         std::array::from_fn(|i| {
             let ([x, y], [dx, dy]) = (self.at[i], self.swing[i]);
-            [forward - turn * y + dx, left + turn * x + dy]
+            let [bx, by] = self.give.map_or([0.0; 2], |give| give.along[i]);
+            let back = motion.change[i];
+            [
+                forward - turn * y + dx - back * bx,
+                left + turn * x + dy - back * by,
+            ]
         })
     }
 
@@ -95,22 +207,24 @@ impl Pads {
         [if slide[0] < 0.0 { self.ratio } else { 1.0 }, 1.0]
     }
 
-    /// The rounded cost of a twist, its gradient and its Hessian by the scaled
+    /// The rounded cost of a motion, its gradient and its Hessian by the scaled
     /// unknowns.
-    fn expand(&self, twist: Twist, eps: f64, scale: Twist) -> (f64, [f64; 3], [[f64; 3]; 3]) {
+    fn expand(&self, motion: &Motion, eps: f64, scale: &Scale) -> Expansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
-        for (i, slide) in self.slides(twist).into_iter().enumerate() {
+        let mut legs = [Row::default(); 4];
+        for (i, slide) in self.slides(motion).into_iter().enumerate() {
             let ([x, y], load) = (self.at[i], self.load[i]);
             let [wx, wy] = self.weight(slide);
             let [ux, uy] = [wx * slide[0], wy * slide[1]];
             let length = (ux * ux + uy * uy + eps * eps).sqrt();
             // Rows: how each unknown moves the weighted slide.
             let rows = [
-                [wx * scale[0], 0.0],
-                [0.0, wy * scale[1]],
-                [-wx * y * scale[2], wy * x * scale[2]],
+                [wx * scale.twist[0], 0.0],
+                [0.0, wy * scale.twist[1]],
+                [-wx * y * scale.twist[2], wy * x * scale.twist[2]],
             ];
-            let along = rows.map(|[a, b]| (a * ux + b * uy) / length);
+            let slope = |[a, b]: Point| (a * ux + b * uy) / length;
+            let along = rows.map(slope);
             cost += load * length;
             for i in 0..3 {
                 gradient[i] += load * along[i];
@@ -119,39 +233,90 @@ impl Pads {
                     hessian[i][j] += load * (dot - along[i] * along[j]) / length;
                 }
             }
+            let Some(give) = &self.give else { continue };
+            let unit = scale.lag[i];
+            let [bx, by] = give.along[i];
+            let row = [-wx * bx * unit, -wy * by * unit];
+            let back = slope(row);
+            let (energy, torque, stiffness) =
+                give.spring.expand(motion.lag[i], eps / scale.size * unit);
+            cost += energy;
+            let leg = Row {
+                slope: load * back + torque * unit,
+                curvature: load * (row[0] * row[0] + row[1] * row[1] - back * back) / length
+                    + stiffness * unit * unit,
+                mixed: std::array::from_fn(|k| {
+                    load * (rows[k][0] * row[0] + rows[k][1] * row[1] - along[k] * back) / length
+                }),
+            };
+            for (i, mixed) in leg.mixed.into_iter().enumerate() {
+                gradient[i] -= mixed * leg.slope / leg.curvature;
+                for (cell, other) in hessian[i].iter_mut().zip(leg.mixed) {
+                    *cell -= mixed * other / leg.curvature;
+                }
+            }
+            legs[i] = leg;
         }
-        (cost, gradient, hessian)
+        Expansion {
+            cost,
+            gradient,
+            hessian,
+            legs,
+        }
     }
 }
 
-/// Solves a symmetric 3x3 system by Gauss with pivots. A direction without
-/// curvature is left alone: there the cost is flat and any point will do.
-fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
-    let largest = (0..3).fold(0.0f64, |largest, i| largest.max(a[i][i]));
-    for (i, row) in a.iter_mut().enumerate() {
-        row[i] += largest * 1e-15;
+impl Scale {
+    /// A motion in its own units.
+    fn motion(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Motion {
+        pads.moved(
+            std::array::from_fn(|i| x[i] * self.twist[i]),
+            std::array::from_fn(|i| z[i] * self.lag[i]),
+        )
     }
-    for column in 0..3 {
-        let pivot = (column..3)
-            .max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs()))
-            .unwrap_or(column);
-        a.swap(column, pivot);
-        b.swap(column, pivot);
-        for row in column + 1..3 {
-            let factor = a[row][column] / a[column][column];
-            let above = a[column];
-            for (cell, up) in a[row].iter_mut().zip(above) {
-                *cell -= factor * up;
-            }
-            b[row] -= factor * b[column];
+
+    /// The twist of a motion in these units.
+    fn of_twist(&self, motion: &Motion) -> [f64; 3] {
+        std::array::from_fn(|i| motion.twist[i] / self.twist[i])
+    }
+
+    /// The lags of a motion in these units, as changes.
+    fn of_lag(&self, motion: &Motion) -> [f64; 4] {
+        std::array::from_fn(|i| match self.lag[i] {
+            0.0 => 0.0,
+            unit => motion.change[i] / unit,
+        })
+    }
+}
+
+impl Expansion {
+    /// What the legs' own steps gain, at first order, beside the twist's.
+    fn gained(&self) -> f64 {
+        let own = |leg: &Row| match leg.curvature {
+            0.0 => 0.0,
+            curvature => leg.slope * leg.slope / curvature,
+        };
+        self.legs.iter().map(own).sum()
+    }
+}
+
+impl Row {
+    /// The leg's step beside this step of the twist.
+    fn step(&self, twist: [f64; 3]) -> f64 {
+        if self.curvature == 0.0 {
+            return 0.0;
         }
+        (self.slope - dot(self.mixed, twist)) / self.curvature
     }
-    let mut x = [0.0; 3];
-    for row in (0..3).rev() {
-        let known: f64 = (row + 1..3).map(|column| a[row][column] * x[column]).sum();
-        x[row] = (b[row] - known) / a[row][row];
-    }
-    x
+}
+
+fn largest(points: &[Point; 4]) -> f64 {
+    let parts = points.iter().flatten();
+    parts.fold(0.0f64, |most, part| most.max(part.abs()))
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -162,31 +327,30 @@ mod tests {
     const EVEN: [f64; 4] = [1.0; 4];
     const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
-    fn cost(pads: &Pads, twist: Twist) -> f64 {
+    /// The friction's work and the springs' energy.
+    fn cost(pads: &Pads, motion: &Motion) -> f64 {
         let length = |slide: Point| {
             let w = pads.weight(slide);
             (w[0] * slide[0]).hypot(w[1] * slide[1])
         };
-        let lengths = pads.slides(twist).into_iter().map(length);
-        lengths
-            .zip(pads.load)
-            .map(|(length, load)| load * length)
-            .sum()
+        let slides = pads.slides(motion).into_iter().zip(pads.load);
+        let friction: f64 = slides.map(|(slide, load)| load * length(slide)).sum();
+        let energy = |give: Give| -> f64 {
+            let each = motion.lag.iter();
+            each.map(|lag| give.spring.expand(*lag, 0.0).0).sum()
+        };
+        friction + pads.give.map_or(0.0, energy)
     }
 
     /// The lower bound of duality: forces within the pads' friction that balance
-    /// each other do at least `sum f . swing` of work, whatever the body does.
-    /// The forces at a twist, if they balance, prove how far its cost is from
-    /// the least. Returns their imbalance and that distance.
-    fn certificate(pads: &Pads, twist: Twist) -> ([f64; 3], f64) {
-        let size = pads
-            .swing
-            .iter()
-            .flatten()
-            .fold(0.0f64, |a, b| a.max(b.abs()));
-        let eps = size * 10f64.powi(-DECADES);
+    /// each other do at least `sum f . swing` of work, whatever the body does, less
+    /// what their torques can gain on the springs. The forces at a motion, if they
+    /// balance, prove how far its cost is from the least. Returns their imbalance
+    /// and that distance.
+    fn certificate(pads: &Pads, motion: &Motion) -> ([f64; 3], f64) {
+        let eps = largest(&pads.swing) * SMALLEST;
         let (mut work, mut net) = (0.0, [0.0; 3]);
-        for (i, slide) in pads.slides(twist).into_iter().enumerate() {
+        for (i, slide) in pads.slides(motion).into_iter().enumerate() {
             let w = pads.weight(slide);
             let length = (w[0] * slide[0]).hypot(w[1] * slide[1]).hypot(eps);
             let force = [w[0] * w[0] * slide[0] / length, w[1] * slide[1] / length];
@@ -195,26 +359,26 @@ mod tests {
                 "a pad cannot hold that"
             );
             let force = force.map(|part| pads.load[i] * part);
-            work += force[0] * pads.swing[i][0] + force[1] * pads.swing[i][1];
+            let along = |[x, y]: Point| force[0] * x + force[1] * y;
+            work += along(pads.swing[i]);
+            if let Some(give) = pads.give {
+                let torque = along(give.along[i]);
+                work += torque * give.before[i] - give.spring.conjugate(torque);
+            }
             net[0] += force[0];
             net[1] += force[1];
             net[2] += (pads.at[i][0] * force[1] - pads.at[i][1] * force[0]) / 100.0;
         }
-        (net, cost(pads, twist) - work)
+        (net, cost(pads, motion) - work)
     }
 
     fn assert_least(pads: &Pads) {
-        let size = pads
-            .swing
-            .iter()
-            .flatten()
-            .fold(0.0f64, |a, b| a.max(b.abs()));
-        let (net, gap) = certificate(pads, pads.least());
+        let (net, gap) = certificate(pads, &pads.least());
         assert!(
             net.iter().all(|part| part.abs() < 1e-5),
             "forces out of balance: {net:?}"
         );
-        assert!(gap.abs() < 1e-5 * size, "gap {gap}");
+        assert!(gap.abs() < 1e-5 * largest(&pads.swing), "gap {gap}");
     }
 
     #[test]
@@ -242,6 +406,7 @@ mod tests {
                 swing,
                 ratio: 1.0,
                 load: EVEN,
+                give: None,
             });
         }
     }
@@ -256,8 +421,10 @@ mod tests {
                 swing,
                 ratio: 1.0,
                 load: EVEN,
+                give: None,
             }
-            .least();
+            .least()
+            .twist;
             assert!(
                 (twist[0] - 1.0).abs() < 1e-7 && twist[1].abs() < 1e-7 && twist[2].abs() < 1e-9,
                 "{twist:?}"
@@ -272,8 +439,10 @@ mod tests {
             swing: [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]],
             ratio: 1.0,
             load: EVEN,
+            give: None,
         }
-        .least();
+        .least()
+        .twist;
         assert!(twist.iter().all(|part| part.abs() < 1e-7), "{twist:?}");
     }
 
@@ -286,8 +455,10 @@ mod tests {
             swing,
             ratio: 1.0,
             load: EVEN,
+            give: None,
         }
-        .least();
+        .least()
+        .twist;
         assert!((twist[2] - 0.01).abs() < 1e-9 && twist[0].abs() < 1e-7 && twist[1].abs() < 1e-7);
     }
 
@@ -304,7 +475,7 @@ mod tests {
             load in prop::array::uniform4(0.8f64..1.2),
         ) {
             let at = std::array::from_fn(|i| [AT[i][0] + jitter[i][0], AT[i][1] + jitter[i][1]]);
-            assert_least(&Pads { at, swing, ratio, load });
+            assert_least(&Pads { at, swing, ratio, load, give: None });
         }
 
         #[test]
@@ -314,11 +485,38 @@ mod tests {
             size in -6i32..1,
             load in prop::array::uniform4(0.8f64..1.2),
         ) {
-            let pads = Pads { at: AT, swing, ratio: 1.3, load };
-            let twist = pads.least();
-            let scale = 10f64.powi(size);
+            let pads = Pads { at: AT, swing, ratio: 1.3, load, give: None };
+            let least = pads.least();
+            let (twist, scale) = (least.twist, 10f64.powi(size));
             let other = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
-            prop_assert!(cost(&pads, twist) <= cost(&pads, other) + 1e-6);
+            let other = Motion { twist: other, ..least };
+            prop_assert!(cost(&pads, &least) <= cost(&pads, &other) + 1e-6);
+        }
+
+        // Springs from too soft to walk (.8 N mm/deg) to nearly rigid, with and without a stop.
+        #[test]
+        fn no_lag_costs_less_either(
+            sweep in prop::array::uniform4(-90.0f64..90.0),
+            swing in prop::array::uniform4(point(5.0)),
+            ratio in 0.5f64..2.0,
+            load in prop::array::uniform4(0.5f64..1.5),
+            rate in 2.0f64..6.0,
+            preload in prop::option::of(0.0f64..100.0),
+            hold in prop::array::uniform4(-0.9f64..0.9),
+        ) {
+            let along = sweep.map(|sweep: f64| {
+                let (sin, cos) = sweep.to_radians().sin_cos();
+                [45.0 * cos, 45.0 * sin]
+            });
+            prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
+            let spring = Yield { rate: 10f64.powf(rate), preload: preload.unwrap_or(0.0) };
+            // The lags that the pads could hold before.
+            let before = std::array::from_fn(|i| {
+                let torque: f64 = hold[i] * 45.0 * load[i];
+                (torque.abs() - spring.preload).max(0.0).copysign(torque) / spring.rate
+            });
+            let give = Some(Give { along, before, spring });
+            assert_least(&Pads { at: AT, swing, ratio, load, give });
         }
     }
 }

@@ -2,55 +2,42 @@
 //!
 //! Planar, quasi-static, Coulomb friction. At each instant the pads slide so
 //! that the power lost to friction is least: of all twists (vx, vy, omega) of
-//! the body, the one that minimises `sum |v + omega x r_i + dr_i/dt|` over the
+//! the body, the one that minimises `sum mu N |v + omega x r_i + dr_i/dt|` over the
 //! feet. Three feet that agree out-vote one that returns, and the body
-//! advances. Speed, weight and a common friction coefficient cancel.
+//! advances. Speed, weight and a common friction coefficient cancel, as long as
+//! the legs are rigid. Where springs pull them, each step minimises the friction's
+//! work and the springs' energy together, and friction against stiffness decides
+//! how far a leg lags behind its servo.
 //!
 //! Two feet against two are a tie: every twist between the two pairs costs the
 //! same, and the smallest difference between the pads decides. The model cannot
 //! know it, so it predicts nothing where the way hangs on ties.
 
-use crate::friction::{Pads, Point, Twist};
-
-/// Where the feet are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Feet {
-    /// Hips ahead of and behind the chassis centre, mm.
-    pub hip_forward: f64,
-    /// Hips to either side, mm.
-    pub hip_side: f64,
-    /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
-    /// back.
-    pub mount: f64,
-    /// Length of a leg's crank: from the hip to the foot, mm.
-    pub reach: f64,
-}
-
-impl Feet {
-    /// Where the feet are for sweeps in deg, servo order: (forward, left) from
-    /// the chassis centre, mm.
-    fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
-        const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
-        const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
-        std::array::from_fn(|i| {
-            let (sin, cos) = (sweeps[i] + FRONT[i] * self.mount).to_radians().sin_cos();
-            [
-                FRONT[i] * self.hip_forward + self.reach * sin,
-                LEFT[i] * (self.hip_side + self.reach * cos),
-            ]
-        })
-    }
-}
+use crate::feet::{Body, Feet};
+use crate::friction::Twist;
+use crate::spring::Spring;
+use crate::walker::Walker;
 
 /// The contact model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
     /// Where the feet are.
     pub feet: Feet,
+    /// What they carry.
+    pub body: Body,
+    /// Friction coefficient of a pad that slides forward. It matters only beside a
+    /// spring.
+    pub friction: f64,
     /// Friction of a pad that slides backward over that of one that slides
     /// forward.
     pub ratio: f64,
+    /// What pulls each leg along behind its servo's crank; none where it is rigid.
+    pub spring: Option<Spring>,
 }
+
+/// The friction coefficient that robot.toml means where it says nothing: rubber on
+/// a smooth floor.
+pub const DEFAULT_FRICTION: f64 = 0.7;
 
 /// Where the robot got to, seen from where it started.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,10 +49,6 @@ pub struct Travel {
     /// deg, counter-clockwise.
     pub turn: f64,
 }
-
-/// Legs that sweep further than this (deg) from one pose to the next are
-/// followed in equal parts.
-const PART: f64 = 0.5;
 
 /// By how much pads are made uneven to see whether a way hangs on a tie. No
 /// print and no floor is more even than that.
@@ -98,20 +81,16 @@ impl Prediction {
 
 /// A way with pads that are a little uneven, beside the even one.
 struct Uneven {
-    load: [f64; 4],
-    ratio: f64,
-    place: Place,
+    walker: Walker,
     /// All differences of its steps from the even ones: forward, left, turn.
     differs: Twist,
 }
 
 impl Uneven {
     /// Each pad in turn pressed harder, and a little more friction one way.
-    fn all() -> [Self; 6] {
+    fn all(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let uneven = |load, ratio| Self {
-            load,
-            ratio,
-            place: Place::START,
+            walker: Walker::uneven(*ground, sweeps, load, ratio),
             differs: [0.0; 3],
         };
         let even = [1.0; 4];
@@ -125,9 +104,36 @@ impl Uneven {
             }
         })
     }
+
+    /// Takes the servos to these sweeps while the even pads move by `twists`.
+    fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
+        let (mut part, differs) = (twists.iter(), &mut self.differs);
+        self.walker.parts(sweeps, |_, motion| {
+            let even = part.next().copied().unwrap_or_default();
+            for i in 0..3 {
+                differs[i] += (motion.twist[i] - even[i]).abs();
+            }
+        });
+    }
 }
 
 impl Ground {
+    /// The same with legs that do not lag: where a step leads then hangs on nothing
+    /// before it.
+    #[must_use]
+    pub fn rigid(&self) -> Self {
+        Self {
+            spring: None,
+            ..*self
+        }
+    }
+
+    /// The friction of a foot that carries the mean, N: what a spring works against.
+    #[must_use]
+    pub fn grip(&self) -> f64 {
+        self.friction * self.body.mean_load()
+    }
+
     /// Where the robot gets to when its legs take these sweeps (deg, foot
     /// forward positive, servo order) one after another, as far as that does not
     /// hang on ties.
@@ -143,36 +149,38 @@ impl Ground {
     /// legs that swing together always spread and close, and bring the body
     /// back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
-        let mut even = Place::START;
-        let mut uneven = Uneven::all();
+        let mut sweeps = sweeps.into_iter();
+        let first = sweeps.next().unwrap_or_default();
+        let mut even = Walker::new(*self, first);
+        let mut uneven = Uneven::all(self, first);
         let (mut length, mut turned) = (0.0, 0.0);
-        self.follow(sweeps, |pads| {
-            let twist @ [forward, left, turn] = pads.least();
-            even = even.moved(twist);
-            length += forward.hypot(left);
-            turned += turn.abs();
+        let mut twists = Vec::new();
+        for next in sweeps {
+            twists.clear();
+            even.parts(next, |_, motion| {
+                let [forward, left, turn] = motion.twist;
+                length += forward.hypot(left);
+                turned += turn.abs();
+                twists.push(motion.twist);
+            });
             for way in &mut uneven {
-                let other = Pads {
-                    load: way.load,
-                    ratio: pads.ratio * way.ratio,
-                    ..pads
-                }
-                .least();
-                way.place = way.place.moved(other);
-                for i in 0..3 {
-                    way.differs[i] += (other[i] - twist[i]).abs();
-                }
+                way.follow(next, &twists);
             }
-        });
+        }
         let mm = DECIDED_LENGTH.max(DECIDED_SHARE * length);
         let rad = DECIDED_TURN.max(DECIDED_SHARE * turned);
+        let place = even.place();
+        let off = |way: &Uneven| {
+            let other = way.walker.place();
+            [other.forward - place.forward, other.left - place.left].map(f64::abs)
+        };
         let all = |within: &dyn Fn(&Uneven) -> bool| uneven.iter().all(within);
         let decided = [
-            all(&|way| way.differs[0] <= mm && (way.place.forward - even.forward).abs() <= mm),
-            all(&|way| (way.place.left - even.left).abs() <= mm),
+            all(&|way| way.differs[0] <= mm && off(way)[0] <= mm),
+            all(&|way| off(way)[1] <= mm),
             all(&|way| way.differs[2] <= rad),
         ];
-        let travel = even.travel();
+        let travel = place.travel();
         Prediction {
             forward: decided[0].then_some(travel.forward),
             left: decided[1].then_some(travel.left),
@@ -183,148 +191,19 @@ impl Ground {
     /// Where the model leads, whether or not that hangs on ties: then by the
     /// twist in the middle between the two pairs of feet.
     pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
-        let mut place = Place::START;
-        self.follow(sweeps, |pads| place = place.moved(pads.least()));
-        place.travel()
-    }
-
-    /// Hands each small step of the legs to `visit`, as what their pads do.
-    fn follow(&self, sweeps: impl IntoIterator<Item = [f64; 4]>, mut visit: impl FnMut(Pads)) {
         let mut sweeps = sweeps.into_iter();
-        let Some(mut here) = sweeps.next() else {
-            return;
-        };
+        let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());
         for next in sweeps {
-            let furthest = (0..4).fold(0.0f64, |most, i| most.max((next[i] - here[i]).abs()));
-            let parts = (furthest / PART).ceil().max(1.0) as usize;
-            let at = |part: usize| -> [f64; 4] {
-                let share = part as f64 / parts as f64;
-                std::array::from_fn(|i| here[i] + share * (next[i] - here[i]))
-            };
-            for part in 0..parts {
-                visit(self.pads(at(part), at(part + 1)));
-            }
-            here = next;
+            walker.step(next);
         }
-    }
-
-    /// The pads while the legs sweep a little.
-    fn pads(&self, from: [f64; 4], to: [f64; 4]) -> Pads {
-        let (from, to) = (self.feet.at(from), self.feet.at(to));
-        let each = |f: &dyn Fn(f64, f64) -> f64| -> [Point; 4] {
-            std::array::from_fn(|i| std::array::from_fn(|j| f(from[i][j], to[i][j])))
-        };
-        // In the middle of the step, so that the way back is its exact inverse.
-        Pads {
-            at: each(&|a, b| (a + b) / 2.0),
-            swing: each(&|a, b| b - a),
-            ratio: self.ratio,
-            load: [1.0; 4],
-        }
-    }
-}
-
-/// Position and heading of the body on the floor.
-#[derive(Clone, Copy)]
-struct Place {
-    forward: f64,
-    left: f64,
-    heading: f64,
-}
-
-impl Place {
-    const START: Self = Self {
-        forward: 0.0,
-        left: 0.0,
-        heading: 0.0,
-    };
-
-    /// After a twist of the body, held for a unit of time: the screw motion, so
-    /// that the opposite twist leads back.
-    fn moved(self, [forward, left, turn]: [f64; 3]) -> Self {
-        // sin(turn)/turn and (1 - cos(turn))/turn without a division by zero.
-        let half = turn / 2.0;
-        let chord = if half == 0.0 { 1.0 } else { half.sin() / half };
-        let (sin, cos) = (self.heading + half).sin_cos();
-        Self {
-            forward: self.forward + chord * (forward * cos - left * sin),
-            left: self.left + chord * (forward * sin + left * cos),
-            heading: self.heading + turn,
-        }
-    }
-
-    fn travel(self) -> Travel {
-        Travel {
-            forward: self.forward,
-            left: self.left,
-            turn: self.heading.to_degrees(),
-        }
+        walker.place().travel()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
-
-    fn assert_at(place: Place, forward: f64, left: f64, turn: f64) {
-        let travel = place.travel();
-        let off = (travel.forward - forward).hypot(travel.left - left);
-        assert!(
-            off < 1e-12 && (travel.turn - turn).abs() < 1e-12,
-            "{travel:?}"
-        );
-    }
-
-    #[test]
-    fn a_body_moves_along_its_own_axes() {
-        assert_at(Place::START.moved([10.0, 0.0, 0.0]), 10.0, 0.0, 0.0);
-        assert_at(Place::START.moved([0.0, 10.0, 0.0]), 0.0, 10.0, 0.0);
-        // Having turned left, ahead is to the left and left is behind.
-        let turned = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
-        assert_at(turned.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
-        assert_at(turned.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);
-    }
-
-    #[test]
-    fn a_body_that_turns_as_it_moves_follows_a_circle() {
-        // A quarter and a half of a circle of radius 10 to the left.
-        assert_at(
-            Place::START.moved([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
-            10.0,
-            10.0,
-            90.0,
-        );
-        assert_at(Place::START.moved([10.0 * PI, 0.0, PI]), 0.0, 20.0, 180.0);
-    }
-
-    #[test]
-    fn feet_stand_where_the_parallelograms_put_them() {
-        let feet = Feet {
-            hip_forward: 55.0,
-            hip_side: 35.0,
-            mount: 0.0,
-            reach: 45.0,
-        };
-        assert_eq!(
-            feet.at([0.0; 4]),
-            [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
-        );
-        let ahead = feet.at([90.0; 4]);
-        let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
-        for (foot, wanted) in ahead.into_iter().zip(expected) {
-            assert!(
-                (foot[0] - wanted[0]).hypot(foot[1] - wanted[1]) < 1e-12,
-                "{foot:?}"
-            );
-        }
-        let splayed = Feet {
-            mount: 90.0,
-            ..feet
-        }
-        .at([0.0; 4]);
-        assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-12);
-    }
+    use std::f64::consts::PI;
 
     const GROUND: Ground = Ground {
         feet: Feet {
@@ -334,6 +213,9 @@ mod tests {
             reach: 45.0,
         },
         ratio: 1.0,
+        body: Body::DEFAULT,
+        friction: DEFAULT_FRICTION,
+        spring: None,
     };
 
     /// A cycle of legs that all do the same, each from a phase of its own.

@@ -4,10 +4,12 @@ use lizard_core::five_bar::SHORTEST_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::error::{Checked, Problem};
-use crate::ground::{Feet, Ground};
+use crate::feet::{Body, Feet};
+use crate::ground::{DEFAULT_FRICTION, Ground};
 use crate::reader::Section;
 use crate::scale::{self, LONGEST_BAR};
-use crate::servo::{NAMES, Pace, Servo};
+use crate::servo::{LEGS, NAMES, Pace, Servo};
+use crate::spring::Spring;
 use crate::supply::Supplies;
 
 /// Lengths of a robot that hobby servos move, mm.
@@ -42,7 +44,7 @@ impl Measures {
     /// safe.
     pub fn read(root: &Section) -> Checked<Self> {
         let links = links(root)?;
-        let (leg, feet) = leg(root)?;
+        let (leg, feet, spring) = leg(root)?;
         let servos = servos(root)?;
         let (limits, pace) = limits(root)?;
         let measures = Self {
@@ -50,7 +52,7 @@ impl Measures {
             servos,
             limits,
             pace,
-            ground: ground(root, feet)?,
+            ground: ground(root, feet, spring)?,
             supplies: Supplies::read(root, &servos)?,
         };
         measures.fits()?;
@@ -137,8 +139,8 @@ fn links(root: &Section) -> Checked<Links> {
     Ok(l)
 }
 
-/// The legs: their links, and where their feet are.
-fn leg(root: &Section) -> Checked<(Leg, Feet)> {
+/// The legs: their links, where their feet are, and what pulls them.
+fn leg(root: &Section) -> Checked<(Leg, Feet, Option<Spring>)> {
     let keys = [
         "ground",
         "crank",
@@ -147,6 +149,8 @@ fn leg(root: &Section) -> Checked<(Leg, Feet)> {
         "hip_forward",
         "hip_side",
         "mount",
+        "spring",
+        "preload",
     ];
     let section = root.section("leg", &keys)?;
     let bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
@@ -177,7 +181,38 @@ fn leg(root: &Section) -> Checked<(Leg, Feet)> {
         mount: section.number("mount", -90.0, 90.0, "deg")?,
         reach: leg.crank,
     };
-    Ok((leg, feet))
+    Ok((leg, feet, spring(&section)?))
+}
+
+/// What pulls a leg along; none, and the leg is rigid.
+fn spring(section: &Section) -> Checked<Option<Spring>> {
+    if !section.has("spring") && !section.has("preload") {
+        return Ok(None);
+    }
+    Ok(Some(Spring {
+        rate: section.number("spring", 0.01, 10_000.0, "N mm/deg")?,
+        preload: section.number_or("preload", 0.0, 0.0, 10_000.0, "N mm")?,
+    }))
+}
+
+/// What stands on the feet. A mass centre that leaves a foot in the air at neutral is
+/// refused.
+fn body(root: &Section, feet: &Feet) -> Checked<Body> {
+    if !root.has("body") {
+        return Ok(Body::DEFAULT);
+    }
+    let section = root.section("body", &["mass", "centre"])?;
+    let mass = section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?;
+    let centre = match section.has("centre") {
+        true => section.pair("centre", -500.0, 500.0, "mm")?,
+        false => Body::DEFAULT.centre,
+    };
+    let body = Body { mass, centre };
+    let loads = body.loads(feet.at([0.0; 4]));
+    match loads.iter().position(|load| *load <= 0.0) {
+        Some(foot) => Err(Problem::InTheAir(LEGS[foot]).at(section.path("centre"))),
+        None => Ok(body),
+    }
 }
 
 /// The four servos.
@@ -301,11 +336,16 @@ fn limits(root: &Section) -> Checked<(Limits, Pace)> {
 }
 
 /// The contact model.
-fn ground(root: &Section, feet: Feet) -> Checked<Ground> {
-    const KEY: &str = "friction_back_over_forward";
-    let section = root.section("ground", &[KEY])?;
-    let ratio = section.number(KEY, 0.1, 10.0, "(a ratio)")?;
-    Ok(Ground { feet, ratio })
+fn ground(root: &Section, feet: Feet, spring: Option<Spring>) -> Checked<Ground> {
+    const RATIO: &str = "friction_back_over_forward";
+    let section = root.section("ground", &[RATIO, "friction"])?;
+    Ok(Ground {
+        feet,
+        body: body(root, &feet)?,
+        friction: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, "(a coefficient)")?,
+        ratio: section.number(RATIO, 0.1, 10.0, "(a ratio)")?,
+        spring,
+    })
 }
 
 fn equal(

@@ -12,6 +12,7 @@ use crate::checked_gait::CheckedGait;
 use crate::ground::Prediction;
 use crate::robot::Robot;
 use crate::servo::NAMES;
+use crate::sprung::Sprung;
 
 /// One gait's figures.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,8 @@ pub struct Row {
     pub error: TableError,
     /// Where one cycle takes the robot, by the contact model.
     pub way: Prediction,
+    /// What the springs of its legs take from it; none where legs are rigid.
+    pub sprung: Option<Sprung>,
 }
 
 /// The figures of all gaits.
@@ -59,6 +62,7 @@ impl Report {
             audit: *gait.audit(),
             error: gait.table_error(),
             way: robot.predict(gait),
+            sprung: Sprung::of(gait, robot.ground()),
         };
         let firmware = robot.firmware();
         let (waves, gaits) = (firmware.waves().len(), firmware.gaits().len());
@@ -81,16 +85,19 @@ impl fmt::Display for Report {
             self.flash,
             self.hash
         )?;
+        let springs = self.rows.iter().any(|row| row.sprung.is_some());
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
-            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg",
-            ""
+            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg{}",
+            "",
+            if springs { "   springs, deg and %" } else { "" }
         )?;
         writeln!(
             f,
-            "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn",
-            "gait"
+            "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn{}",
+            "gait",
+            if springs { "      lag  of rigid" } else { "" }
         )?;
         for row in &self.rows {
             let Row {
@@ -99,6 +106,7 @@ impl fmt::Display for Report {
                 audit,
                 error,
                 way,
+                sprung,
             } = row;
             write!(
                 f,
@@ -113,13 +121,18 @@ impl fmt::Display for Report {
                 tidy(audit.stroke.0, 1),
                 tidy(audit.stroke.1, 1),
             )?;
-            writeln!(
+            write!(
                 f,
                 "{:>7} {:>6} {:>7}",
                 known(way.forward, 2),
                 known(way.left, 2),
                 known(way.turn, 2)
             )?;
+            if let Some(Sprung { lag, share }) = sprung {
+                let share = share.map_or("-".to_string(), |share| format!("{:.0}", 100.0 * share));
+                write!(f, "   {lag:>6.2} {share:>9}")?;
+            }
+            writeln!(f)?;
         }
         if self.rows.iter().any(|row| !row.way.is_decided()) {
             write!(f, "\n{UNDECIDED}")?;

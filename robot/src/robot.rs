@@ -78,7 +78,7 @@ impl Robot {
         let root = Section::root(
             table,
             &[
-                "links", "leg", "servo", "limits", "supply", "ground", "gait",
+                "links", "leg", "servo", "limits", "supply", "body", "ground", "gait",
             ],
         )?;
         let measures = Measures::read(&root)?;
@@ -167,10 +167,11 @@ impl Robot {
     }
 
     /// Where the robot gets to when its servos take these angles (deg, chassis
-    /// frame, servo order) one after another, by the contact model, whether or
-    /// not that hangs on ties.
+    /// frame, servo order) one after another, by the contact model with rigid legs,
+    /// whether or not that hangs on ties.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
+            .rigid()
             .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
     }
 

@@ -3,7 +3,8 @@
 
 use std::fmt;
 
-use crate::ground::{Feet, Ground, Prediction};
+use crate::feet::Feet;
+use crate::ground::{Ground, Prediction};
 use crate::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 

@@ -90,7 +90,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
     let gaits: Vec<&str> = robot().gaits().iter().map(|gait| gait.name()).collect();
     for_each(&gaits, |&name| {
         let gait = robot().gait(name).expect("it is in robot.toml");
-        let meant = robot().predict(gait);
+        let meant = gait.predict(&robot().ground().rigid());
         let (Some(forward), Some(turn)) = (meant.forward, meant.turn) else {
             println!("{name:<10} hangs on a tie");
             return;

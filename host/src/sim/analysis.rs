@@ -239,7 +239,8 @@ impl Safety {
 }
 
 /// Where each command took the robot by the contact model, and the whole run as
-/// the last one. Feet are never lifted: see [`lizard_robot::Ground`].
+/// the last one. Legs count as rigid, so that each pair of frames is computed once; `lizard
+/// twin` lets them lag. Feet are never lifted: see [`lizard_robot::Ground`].
 #[must_use]
 pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
     let mut steps = Steps {
@@ -322,7 +323,7 @@ impl Steps<'_> {
             return *travel;
         }
         let sweeps = self.run.within(n..n + 2).filter_map(|at| at.sweeps);
-        let travel = self.run.robot.ground().travel(sweeps);
+        let travel = self.run.robot.ground().rigid().travel(sweeps);
         if self.known.len() < KEPT {
             self.known.insert(pair, travel);
         }

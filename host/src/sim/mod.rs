@@ -137,7 +137,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let frames = Run { robot, log };
     write_file(
         &args.svg,
-        &timeline::draw(frames, &spans, &timeline::SIMULATED),
+        timeline::draw(frames, &spans, &timeline::SIMULATED),
     )?;
     let report = Report {
         elf: elf.display().to_string(),
@@ -234,11 +234,7 @@ fn ended(state: &State) -> String {
 fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let given = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
-        let name = path.display();
-        let text = read_script(path)
-            .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
-        let script =
-            Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        let script = read_script(path)?;
         return Ok(Script {
             end_ms: given.unwrap_or(script.end_ms),
             ..script
@@ -266,8 +262,16 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     ))
 }
 
+/// A script from its file.
+pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
+    let name = path.display();
+    let text = script_text(path)
+        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
+}
+
 /// The text of a script; no script is longer than 1 MiB.
-fn read_script(path: &Path) -> io::Result<String> {
+fn script_text(path: &Path) -> io::Result<String> {
     const LONGEST: u64 = 1 << 20;
     let mut text = String::new();
     let file = std::fs::File::open(path)?;
@@ -312,7 +316,7 @@ fn analysis_progress() -> ProgressBar {
 }
 
 /// Writes a file and the folders it needs.
-pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
+pub(crate) fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     let failure =
         |error: io::Error| Failure::Impossible(format!("cannot write {}: {error}", path.display()));
     if let Some(folder) = path
@@ -321,5 +325,5 @@ pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
     {
         std::fs::create_dir_all(folder).map_err(failure)?;
     }
-    std::fs::write(path, text).map_err(failure)
+    std::fs::write(path, bytes).map_err(failure)
 }

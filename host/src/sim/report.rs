@@ -119,6 +119,12 @@ impl Report<'_> {
                 cell(leg.turn, 2)
             )?;
         }
+        if self.frames.robot.ground().spring.is_some() {
+            writeln!(
+                out,
+                "Legs count as rigid here; `lizard twin` lets their springs lag."
+            )?;
+        }
         let parts = |leg: &Leg| [leg.forward, leg.left, leg.turn];
         if self.way.iter().any(|leg| parts(leg).contains(&None)) {
             write!(out, "{UNDECIDED}")?;

@@ -1,38 +1,11 @@
 //! docs/gaits.md shows what the commands print.
 
-use std::fmt::Write;
-
 use lizard_robot::{Report, Sensitivity};
 
 use crate::paper;
-use crate::predictions::{EXPECTED, predict};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gaits.md");
 const END: &str = "<!-- end -->";
-
-fn predictions() -> String {
-    let mut rows =
-        "| gait | predicted here | chosen by | rigid bodies |\n|---|---|---|---|\n".to_string();
-    for (name, forward, turn, far_forward, far_turn) in EXPECTED {
-        let here = predict(paper(), name);
-        let cell = |forward: f64, turn: f64, decimals: usize| match (
-            forward.abs() > 0.01,
-            turn.abs() > 0.01,
-        ) {
-            (false, false) => "stays".to_string(),
-            (true, false) => format!("{forward:+.decimals$} mm"),
-            (false, true) => format!("{turn:+.decimals$} deg"),
-            (true, true) => format!("{forward:+.decimals$} mm, {turn:+.2} deg"),
-        };
-        let (here, chosen, far) = (
-            cell(here.forward, here.turn, 2),
-            cell(forward, turn, 2),
-            cell(far_forward, far_turn, 1),
-        );
-        writeln!(rows, "| {name} | {here} | {chosen} | {far} |").expect("a String takes all");
-    }
-    rows
-}
 
 fn fenced(text: String) -> String {
     format!("```text\n{text}```\n")
@@ -59,7 +32,6 @@ fn the_page_on_gaits_shows_what_the_commands_print() {
         "lizard gaits --sensitivity",
         &fenced(Sensitivity::of(paper()).to_string()),
     );
-    now = filled(&now, "predictions", &predictions());
     if std::env::var_os("BLESS_GAITS").is_some() {
         std::fs::write(PAGE, &now).expect(PAGE);
     } else if let Some((was, is)) = page.lines().zip(now.lines()).find(|(was, is)| was != is) {

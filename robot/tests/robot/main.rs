@@ -10,6 +10,7 @@ mod golden;
 mod predictions;
 mod refusals;
 mod robots;
+mod springs;
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml");
 

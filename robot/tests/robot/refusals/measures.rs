@@ -75,6 +75,46 @@ pub const MISTAKES: &[Mistake] = &[
         r#"leg.hip_sdie is not a known key; did you mean "hip_side"?"#,
     ),
     (
+        "mount = 0.0 ",
+        "spring = 0\nmount = 0.0 ",
+        "leg.spring is 0; it must be within 0.01 to 10000 N mm/deg",
+    ),
+    (
+        "mount = 0.0 ",
+        "preload = 60.0\nmount = 0.0 ",
+        "leg.spring is missing; it must be a number",
+    ),
+    (
+        "mount = 0.0 ",
+        "spring = 2\npreload = -1\nmount = 0.0 ",
+        "leg.preload is -1; it must be within 0 to 10000 N mm",
+    ),
+    (
+        "[ground]",
+        "[body]\nweight = 280\n[ground]",
+        "body.weight is not a known key; allowed are mass, centre",
+    ),
+    (
+        "[ground]",
+        "[body]\nmass = 0.28\n[ground]",
+        "body.mass is 0.28; it must be within 10 to 10000 g",
+    ),
+    (
+        "[ground]",
+        "[body]\ncentre = [56.0, 0.0]\n[ground]",
+        "body.centre is so far from the middle that foot RH is in the air at neutral; all four must carry",
+    ),
+    (
+        "[ground]",
+        "[body]\ncentre = 5.0\n[ground]",
+        "body.centre is 5.0; it must be an array of two numbers",
+    ),
+    (
+        "friction_back_over_forward",
+        "friction = 0\nfriction_back_over_forward",
+        "ground.friction is 0; it must be within 0.05 to 5 (a coefficient)",
+    ),
+    (
         "[servo.A4]",
         "[servo.A5]",
         "servo.A5 is not a known key; allowed are A1, A2, A3, A4",

@@ -1,0 +1,77 @@
+//! The image walks: from power-on to where the body is on the floor.
+
+use lizard_host::sim::frame::servo_pins;
+use lizard_host::sim::script::{Script, Step};
+use lizard_host::sim::session::play;
+use lizard_host::sim::spans::spans;
+use lizard_host::twin::html::page;
+use lizard_host::twin::replay::Replay;
+use lizard_host::twin::report::Report;
+use lizard_host_tests::{FirmwareBench, robot};
+use lizard_twin::ServoModel;
+use simulated_uno::{Fidelity, Uno};
+
+/// Every gait that moves after a second at its beginning, for three cycles.
+fn walk_all(model: ServoModel) -> Replay {
+    let mut ms = 1000;
+    let mut steps = Vec::new();
+    for gait in robot().gaits().iter().filter(|gait| gait.moves()) {
+        let command = gait.name().replace('-', " ");
+        steps.push(Step { ms, command });
+        ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
+    }
+    let script = Script { steps, end_ms: ms };
+    let mut uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the firmware");
+    let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));
+    let recording = recording.expect("nothing is written");
+    let spans = spans(&script, &recording.answers);
+    Replay::of(robot(), &recording.frames, spans, model)
+}
+
+#[test]
+fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
+    let report = Report::of(robot(), &walk_all(ServoModel::IDEAL), false);
+    let cycles: Vec<_> = report
+        .rows
+        .iter()
+        .filter_map(|row| Some((row, row.cycle.as_ref()?)))
+        .collect();
+    let moving = robot().gaits().iter().filter(|gait| gait.moves()).count();
+    assert_eq!(cycles.len(), moving, "one for each gait");
+    for (row, cycle) in cycles {
+        let part = |name: &str, ours: Option<f64>, wanted: Option<f64>, least: f64| {
+            let (Some(ours), Some(wanted)) = (ours, wanted) else {
+                assert_eq!(ours, wanted, "{} {name}", row.command);
+                return;
+            };
+            let off = (ours - wanted).abs();
+            assert!(
+                off <= least.max(0.03 * wanted.abs()),
+                "{} {name}: {ours}, not {wanted}",
+                row.command
+            );
+        };
+        part("ahead", cycle.way.forward, cycle.predicted.forward, 0.5);
+        part("turn", cycle.way.turn, cycle.predicted.turn, 0.3);
+        assert!(
+            row.servo_rate <= robot().pace().gait_slew + 5.0,
+            "{}",
+            row.command
+        );
+        let (name, margin) = row.margin.expect("every pose closes");
+        assert!(margin > 0.29, "{} {name} {margin}", row.command);
+    }
+}
+
+#[test]
+fn a_replay_is_one_page_that_asks_no_network() {
+    let replay = walk_all(ServoModel::SG90);
+    let report = Report::of(robot(), &replay, false);
+    let page = page(&replay, &report).expect("a page");
+    for word in ["http:", "https:", "src=", "import(", "url(", "/*RUN*/"] {
+        assert!(!page.contains(word), "{word}");
+    }
+    let frames = format!("\"to\":{}", replay.states.len());
+    assert!(page.contains(&frames), "the last command ends with the run");
+    assert!(page.len() < 3_000_000, "{}", page.len());
+}

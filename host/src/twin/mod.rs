@@ -1,0 +1,183 @@
+//! `lizard twin`: the real firmware on the simulated UNO moves a robot that nobody
+//! has built yet, and shows where it goes.
+
+mod apng;
+pub mod html;
+pub mod replay;
+pub mod report;
+mod robust;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lizard_robot::Robot;
+use lizard_twin::ServoModel;
+use simulated_uno::{Fidelity, State, Uno};
+
+use crate::sim::script::{Script, Step};
+use crate::sim::session::{self, Event, Recording};
+use crate::sim::{elf, frame, read_script, spans, tour, write_file};
+use crate::{Failure, RobotFile};
+use replay::Replay;
+use report::Report;
+
+/// Walk the real firmware: servos, linkage, springs, feet, the way over the floor
+///
+/// Runs the image on the simulated UNO and gives its pulses to servos that turn the
+/// linkage; springs pull the legs, and the contact model says how the body moves.
+/// Without a script every gait of robot.toml is walked for some cycles. Beside each
+/// gait's last whole cycle stands what `lizard gaits` predicts for it.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard twin
+  lizard twin dance.txt --html out/dance.html
+  lizard twin --gait walk --apng out/walk.png
+  lizard twin --gait crawl --robust 200
+
+A script is a file of lines `<ms since power-on> <command>`.")]
+pub struct Args {
+    /// What is said to the robot, and when [default: every gait]
+    #[arg(value_name = "SCRIPT")]
+    script: Option<PathBuf>,
+    /// Walk one gait of robot.toml
+    #[arg(long, value_name = "NAME", conflicts_with = "script")]
+    gait: Option<String>,
+    /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
+    /// folder or one above it]
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// What the servos can do
+    #[arg(long, value_enum, default_value_t)]
+    servo: ServoArg,
+    /// One JSON object a command and line
+    #[arg(long)]
+    json: bool,
+    /// Write a replay to look at in a browser: one file, no network
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Write a moving picture (APNG) of the first gait, two cycles of it
+    #[arg(long, value_name = "FILE")]
+    apng: Option<PathBuf>,
+    /// Then walk each gait again N times with random friction, loads, mounting, hips
+    /// and springs, and say how far its way spreads
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    robust: Option<u32>,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum ServoArg {
+    /// 60 degrees in 0.12 s, dead band 10 us
+    #[default]
+    Sg90,
+    /// Where its pulse says, at once
+    Ideal,
+}
+
+/// Walks and tells.
+///
+/// # Errors
+/// No firmware, a wrong script, a firmware that dies, a file that cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let script = script(&args, &robot)?;
+    let elf = elf(args.elf.as_deref())?;
+    let mut uno = Uno::load(&elf, Fidelity::DataSheet)
+        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    let recording = record(&mut uno, &robot, &script)?;
+    if recording.state != State::Alive {
+        return Err(Failure::Impossible(
+            "the firmware ended; `lizard sim` says how".to_owned(),
+        ));
+    }
+    let model = match args.servo {
+        ServoArg::Sg90 => ServoModel::SG90,
+        ServoArg::Ideal => ServoModel::IDEAL,
+    };
+    let spans = spans::spans(&script, &recording.answers);
+    let paced = script
+        .steps
+        .iter()
+        .any(|step| step.command.starts_with("speed"));
+    let replay = Replay::of(&robot, &recording.frames, spans, model);
+    let report = Report::of(&robot, &replay, paced);
+
+    let mut out = io::stdout().lock();
+    if args.json {
+        report.json(&mut out)?;
+    } else {
+        report.print(&mut out)?;
+    }
+    if let Some(path) = &args.html {
+        write_file(path, html::page(&replay, &report)?)?;
+    }
+    if let Some(path) = &args.apng {
+        write_file(path, apng::draw(&replay)?)?;
+    }
+    if let Some(times) = args.robust {
+        robust::run(&robot, &replay, times, args.json, &mut out)?;
+    }
+    Ok(out.flush()?)
+}
+
+/// Plays the script without a word.
+fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> io::Result<Recording> {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
+        .expect("the template is well formed");
+    let bar = ProgressBar::new(script.end_ms).with_style(style);
+    let pins = frame::servo_pins(robot);
+    let recording = session::play(uno, pins, script, false, |event| {
+        if let Event::Time(ms) = event {
+            bar.set_position(ms);
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    Ok(recording)
+}
+
+fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
+    if let Some(path) = &args.script {
+        return read_script(path);
+    }
+    let gaits = tour::moving(robot);
+    match &args.gait {
+        None => Ok(every(robot, &gaits)),
+        Some(name) => match robot.gait(name) {
+            Some(gait) if gait.moves() => Ok(every(robot, &[gait.name()])),
+            Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
+            None => {
+                let gaits = gaits.join(", ");
+                Err(Failure::Input(format!(
+                    "robot.toml has no gait `{name}`; those that move are {gaits}"
+                )))
+            }
+        },
+    }
+}
+
+/// Each of these gaits after a second at its beginning, for three cycles.
+fn every(robot: &Robot, gaits: &[&str]) -> Script {
+    const CYCLES: f64 = 3.0;
+    const STAND_MS: u64 = 1000;
+    let mut ms = STAND_MS;
+    let mut steps = Vec::new();
+    for name in gaits {
+        steps.push(Step {
+            ms,
+            command: name.replace('-', " "),
+        });
+        let period = robot.gait(name).map_or(1.0, |gait| gait.period());
+        ms += STAND_MS + (1000.0 * CYCLES * period).ceil() as u64;
+    }
+    steps.push(Step {
+        ms,
+        command: "stop".to_owned(),
+    });
+    Script {
+        steps,
+        end_ms: ms + STAND_MS,
+    }
+}

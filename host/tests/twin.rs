@@ -1,0 +1,104 @@
+//! `lizard twin` and `lizard spring` on good and wrong input.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The paper's robot: what these tests say is its.
+const PAPER: &str = concat!(
+    "--robot=",
+    env!("CARGO_MANIFEST_DIR"),
+    "/../robots/paper.toml"
+);
+
+fn lizard(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lizard"))
+        .args(arguments)
+        .arg(PAPER)
+        .current_dir(Path::new(env!("CARGO_TARGET_TMPDIR")))
+        .output()
+        .expect("the program starts")
+}
+
+fn complaint(arguments: &[&str]) -> String {
+    let output = lizard(arguments);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty(), "nothing is half written");
+    String::from_utf8_lossy(&output.stderr).trim().to_owned()
+}
+
+fn json(arguments: &[&str]) -> serde_json::Value {
+    let output = lizard(arguments);
+    assert!(output.status.success(), "{output:?}");
+    serde_json::from_slice(&output.stdout).expect("one object")
+}
+
+#[test]
+fn a_gait_that_there_is_not_is_refused_with_those_there_are() {
+    assert_eq!(
+        complaint(&["twin", "--gait", "jump"]),
+        "lizard: robot.toml has no gait `jump`; those that move are walk, trot, crawl, back, left, right, arc-left, arc-right, look"
+    );
+    assert_eq!(
+        complaint(&["twin", "--gait", "stand"]),
+        "lizard: the gait `stand` moves no servo"
+    );
+}
+
+#[test]
+fn a_spring_that_cannot_be_wound_or_hung_is_refused() {
+    for (arguments, words) in [
+        (
+            ["--wire", "2", "--outer", "5.55"],
+            "a coil of 5.55 mm is too narrow for a wire of 2 mm: it needs three times that",
+        ),
+        (
+            ["--wire", "0.6", "--length", "8"],
+            "between its hooks a spring of 8 mm has no room for two coils of this wire",
+        ),
+        (
+            ["--wire", "0.6", "--installed", "20"],
+            "--installed is 20 mm, but without load the spring is 25.4 mm long already",
+        ),
+    ] {
+        let all = [&["spring"], &arguments[..]].concat();
+        assert_eq!(complaint(&all), format!("lizard: {words}"));
+    }
+}
+
+#[test]
+fn a_strut_of_the_papers_size_carries_every_gait_and_a_radial_spring_none() {
+    let shares = |geometry: &str| -> Vec<f64> {
+        let answer = json(&["spring", "--wire=0.6", "--geometry", geometry, "--json"]);
+        let gaits = answer["gaits"].as_array().expect("gaits").iter();
+        gaits.filter_map(|gait| gait["share"].as_f64()).collect()
+    };
+    let (strut, radial) = (shares("strut"), shares("radial"));
+    assert_eq!(strut.len(), 8);
+    assert!(strut.iter().all(|share| *share > 0.99), "{strut:?}");
+    assert!(radial.iter().all(|share| *share < 0.9), "{radial:?}");
+}
+
+#[test]
+fn what_is_advised_does() {
+    let output = lizard(&["spring", "--wire=0.6", "--geometry=pair"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    let advice = text
+        .split_once("two springs against each other: ")
+        .expect("advice")
+        .1;
+    let numbers: Vec<&str> = advice
+        .split_whitespace()
+        .filter(|word| word.starts_with(|c: char| c.is_ascii_digit()))
+        .collect();
+    let [wire, _, _, radius, ..] = numbers[..] else {
+        panic!("{advice}")
+    };
+    let (wire, radius) = (format!("--wire={wire}"), format!("--radius={radius}"));
+    let answer = json(&["spring", &wire, &radius, "--geometry=pair", "--json"]);
+    for gait in answer["gaits"].as_array().expect("gaits") {
+        assert!(
+            gait["share"].as_f64().is_none_or(|share| share >= 0.9),
+            "{gait}"
+        );
+    }
+}

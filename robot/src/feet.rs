@@ -1,0 +1,225 @@
+//! Where the feet are, and how much of the body each of them carries.
+
+use crate::friction::Point;
+use crate::linear::solve;
+
+/// Which legs are in front, servo order.
+const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
+/// Which legs are on the left, servo order.
+const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
+
+/// Standard gravity, m/s^2.
+pub const GRAVITY: f64 = 9.80665;
+
+/// Where the feet are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Feet {
+    /// Hips ahead of and behind the chassis centre, mm.
+    pub hip_forward: f64,
+    /// Hips to either side, mm.
+    pub hip_side: f64,
+    /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
+    /// back.
+    pub mount: f64,
+    /// Length of a leg's crank: from the hip to the foot, mm.
+    pub reach: f64,
+}
+
+impl Feet {
+    /// The hips in servo order: (forward, left) from the chassis centre, mm.
+    #[must_use]
+    pub fn hips(&self) -> [Point; 4] {
+        std::array::from_fn(|i| [FRONT[i] * self.hip_forward, LEFT[i] * self.hip_side])
+    }
+
+    /// Where the feet are for sweeps in deg, servo order: (forward, left) from
+    /// the chassis centre, mm.
+    #[must_use]
+    pub fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
+        let hips = self.hips();
+        std::array::from_fn(|i| {
+            let (sin, cos) = self.swept(i, sweeps[i]);
+            [
+                hips[i][0] + self.reach * sin,
+                LEFT[i] * (self.hip_side + self.reach * cos),
+            ]
+        })
+    }
+
+    /// How far the feet go for each radian of sweep, mm.
+    pub(crate) fn along(&self, sweeps: [f64; 4]) -> [Point; 4] {
+        std::array::from_fn(|i| {
+            let (sin, cos) = self.swept(i, sweeps[i]);
+            [self.reach * cos, -LEFT[i] * self.reach * sin]
+        })
+    }
+
+    fn swept(&self, leg: usize, sweep: f64) -> (f64, f64) {
+        (sweep + FRONT[leg] * self.mount).to_radians().sin_cos()
+    }
+}
+
+/// What stands on the feet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// All of the robot, g.
+    pub mass: f64,
+    /// Its mass centre: forward, left from the chassis centre, mm.
+    pub centre: Point,
+}
+
+impl Body {
+    /// What robot.toml means where it says nothing.
+    pub const DEFAULT: Self = Self {
+        mass: 280.0,
+        centre: [0.0; 2],
+    };
+
+    /// What a foot carries on average, N.
+    #[must_use]
+    pub fn mean_load(&self) -> f64 {
+        self.mass / 1000.0 * GRAVITY / 4.0
+    }
+
+    /// What each foot carries over the mean.
+    ///
+    /// Feet that give a little under a chassis that does not: the chassis sinks and
+    /// tilts, so the load is linear in the foot's place, and three equations of
+    /// balance say how. A foot that would have to pull is in the air.
+    #[must_use]
+    pub fn loads(&self, feet: [Point; 4]) -> [f64; 4] {
+        let mut carries = [true; 4];
+        loop {
+            let loads = linear(feet, self.centre, carries);
+            let Some(pulls) = (0..4).find(|&i| carries[i] && loads[i] < 0.0) else {
+                return loads;
+            };
+            carries[pulls] = false;
+            // Two feet carry a robot that falls over; the rest is no walking.
+            if carries.iter().filter(|carries| **carries).count() < 3 {
+                return loads.map(|load| load.max(0.0));
+            }
+        }
+    }
+}
+
+/// The loads over the mean of the feet that carry.
+fn linear(feet: [Point; 4], centre: Point, carries: [bool; 4]) -> [f64; 4] {
+    let (mut matrix, mut whole) = ([[0.0; 3]; 3], [0.0; 3]);
+    for i in (0..4).filter(|&i| carries[i]) {
+        let row = [1.0, feet[i][0], feet[i][1]];
+        for j in 0..3 {
+            for k in 0..3 {
+                matrix[j][k] += row[j] * row[k];
+            }
+        }
+    }
+    for (part, arm) in whole.iter_mut().zip([1.0, centre[0], centre[1]]) {
+        *part = 4.0 * arm;
+    }
+    let [sinks, nods, rolls] = solve(matrix, whole);
+    std::array::from_fn(|i| match carries[i] {
+        true => sinks + nods * feet[i][0] + rolls * feet[i][1],
+        false => 0.0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn feet_stand_where_the_parallelograms_put_them() {
+        let feet = Feet {
+            hip_forward: 55.0,
+            hip_side: 35.0,
+            mount: 0.0,
+            reach: 45.0,
+        };
+        assert_eq!(
+            feet.at([0.0; 4]),
+            [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
+        );
+        let ahead = feet.at([90.0; 4]);
+        let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
+        for (foot, wanted) in ahead.into_iter().zip(expected) {
+            assert!(
+                (foot[0] - wanted[0]).hypot(foot[1] - wanted[1]) < 1e-12,
+                "{foot:?}"
+            );
+        }
+        let splayed = Feet {
+            mount: 90.0,
+            ..feet
+        }
+        .at([0.0; 4]);
+        assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-9);
+    }
+
+    const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
+
+    fn body(centre: Point) -> Body {
+        Body {
+            centre,
+            ..Body::DEFAULT
+        }
+    }
+
+    #[test]
+    fn what_the_feet_carry_balances_the_body() {
+        let feet = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
+        for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
+            let loads = body(centre).loads(feet);
+            let sum = |arm: fn(Point) -> f64| -> f64 {
+                loads
+                    .iter()
+                    .zip(feet)
+                    .map(|(load, at)| load * arm(at))
+                    .sum()
+            };
+            assert!((sum(|_| 1.0) - 4.0).abs() < 1e-9);
+            assert!((sum(|at| at[0]) - 4.0 * centre[0]).abs() < 1e-9);
+            assert!((sum(|at| at[1]) - 4.0 * centre[1]).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn feet_in_a_rectangle_share_by_lever() {
+        // A quarter of the way ahead: the front feet carry half as much again.
+        let loads = body([27.5, 0.0]).loads(AT);
+        for (load, wanted) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
+            assert!((load - wanted).abs() < 1e-9, "{loads:?}");
+        }
+        for load in Body::DEFAULT.loads(AT) {
+            assert!((load - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_foot_never_pulls() {
+        // Beyond the line through two feet the third leaves the floor.
+        let loads = body([30.0, 50.0]).loads(AT);
+        assert_eq!(loads[2], 0.0);
+        assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
+        assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_foot_goes_along_its_circle() {
+        let feet = Feet {
+            hip_forward: 55.0,
+            hip_side: 35.0,
+            mount: 12.0,
+            reach: 45.0,
+        };
+        let sweeps = [10.0, -5.0, 20.0, -15.0];
+        let step = 1e-5;
+        let (before, after) = (feet.at(sweeps), feet.at(sweeps.map(|s| s + step)));
+        for (i, along) in feet.along(sweeps).into_iter().enumerate() {
+            for part in 0..2 {
+                let slope = (after[i][part] - before[i][part]) / step.to_radians();
+                assert!((along[part] - slope).abs() < 1e-3, "{along:?}");
+            }
+        }
+    }
+}

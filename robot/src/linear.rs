@@ -1,0 +1,31 @@
+//! Three linear equations.
+
+/// Solves a symmetric 3x3 system by Gauss with pivots. A direction without
+/// curvature is left alone: of a cost it is flat and any point will do.
+pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
+    let largest = (0..3).fold(0.0f64, |largest, i| largest.max(a[i][i]));
+    for (i, row) in a.iter_mut().enumerate() {
+        row[i] += largest * 1e-15;
+    }
+    for column in 0..3 {
+        let pivot = (column..3)
+            .max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs()))
+            .unwrap_or(column);
+        a.swap(column, pivot);
+        b.swap(column, pivot);
+        for row in column + 1..3 {
+            let factor = a[row][column] / a[column][column];
+            let above = a[column];
+            for (cell, up) in a[row].iter_mut().zip(above) {
+                *cell -= factor * up;
+            }
+            b[row] -= factor * b[column];
+        }
+    }
+    let mut x = [0.0; 3];
+    for row in (0..3).rev() {
+        let known: f64 = (row + 1..3).map(|column| a[row][column] * x[column]).sum();
+        x[row] = (b[row] - known) / a[row][row];
+    }
+    x
+}

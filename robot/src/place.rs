@@ -1,0 +1,124 @@
+//! Where the body is on the floor.
+
+use crate::friction::Twist;
+use crate::ground::Travel;
+
+/// Position and heading of the body on the floor, seen from where it started.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Ahead, mm.
+    pub forward: f64,
+    /// To the left, mm.
+    pub left: f64,
+    /// Counter-clockwise, rad.
+    pub heading: f64,
+}
+
+impl Place {
+    /// Where it started.
+    pub const START: Self = Self {
+        forward: 0.0,
+        left: 0.0,
+        heading: 0.0,
+    };
+
+    /// After a twist of the body, held for a unit of time: the screw motion, so
+    /// that the opposite twist leads back.
+    pub(crate) fn moved(self, [forward, left, turn]: Twist) -> Self {
+        // sin(turn)/turn and (1 - cos(turn))/turn without a division by zero.
+        let half = turn / 2.0;
+        let chord = if half == 0.0 { 1.0 } else { half.sin() / half };
+        let (sin, cos) = (self.heading + half).sin_cos();
+        Self {
+            forward: self.forward + chord * (forward * cos - left * sin),
+            left: self.left + chord * (forward * sin + left * cos),
+            heading: self.heading + turn,
+        }
+    }
+
+    /// This place as seen from an earlier one.
+    #[must_use]
+    pub fn seen_from(self, earlier: Self) -> Travel {
+        let (sin, cos) = earlier.heading.sin_cos();
+        let (x, y) = (self.forward - earlier.forward, self.left - earlier.left);
+        Travel {
+            forward: x * cos + y * sin,
+            left: y * cos - x * sin,
+            turn: (self.heading - earlier.heading).to_degrees(),
+        }
+    }
+
+    /// A point of the body (forward, left, mm) on the floor.
+    #[must_use]
+    pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.heading.sin_cos();
+        [
+            self.forward + forward * cos - left * sin,
+            self.left + forward * sin + left * cos,
+        ]
+    }
+
+    /// The way from the start.
+    #[must_use]
+    pub fn travel(self) -> Travel {
+        self.seen_from(Self::START)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn assert_at(place: Place, forward: f64, left: f64, turn: f64) {
+        let travel = place.travel();
+        let off = (travel.forward - forward).hypot(travel.left - left);
+        assert!(
+            off < 1e-12 && (travel.turn - turn).abs() < 1e-12,
+            "{travel:?}"
+        );
+    }
+
+    #[test]
+    fn a_body_moves_along_its_own_axes() {
+        assert_at(Place::START.moved([10.0, 0.0, 0.0]), 10.0, 0.0, 0.0);
+        assert_at(Place::START.moved([0.0, 10.0, 0.0]), 0.0, 10.0, 0.0);
+        // Having turned left, ahead is to the left and left is behind.
+        let turned = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
+        assert_at(turned.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
+        assert_at(turned.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);
+    }
+
+    #[test]
+    fn a_body_that_turns_as_it_moves_follows_a_circle() {
+        // A quarter and a half of a circle of radius 10 to the left.
+        assert_at(
+            Place::START.moved([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
+            10.0,
+            10.0,
+            90.0,
+        );
+        assert_at(Place::START.moved([10.0 * PI, 0.0, PI]), 0.0, 20.0, 180.0);
+    }
+
+    #[test]
+    fn a_way_is_seen_from_where_it_began() {
+        let begin = Place::START.moved([3.0, 4.0, FRAC_PI_2]);
+        let twist = [10.0, -2.0, 0.3];
+        let way = begin.moved(twist).seen_from(begin);
+        let same = Place::START.moved(twist).travel();
+        assert!((way.forward - same.forward).abs() < 1e-12 && (way.left - same.left).abs() < 1e-12);
+        assert!((way.turn - same.turn).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_point_of_the_body_goes_with_it() {
+        let at = Place {
+            forward: 1.0,
+            left: 2.0,
+            heading: FRAC_PI_2,
+        };
+        let [forward, left] = at.on_floor([10.0, 3.0]);
+        assert!((forward + 2.0).abs() < 1e-12 && (left - 12.0).abs() < 1e-12);
+    }
+}

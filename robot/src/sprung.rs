@@ -1,0 +1,40 @@
+//! What springs take from a gait: how far its legs lag, and how much of the way of
+//! rigid legs is left.
+
+use crate::checked_gait::CheckedGait;
+use crate::ground::Ground;
+
+/// A gait on springs beside the same gait on rigid legs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sprung {
+    /// How far a leg is behind its servo at most, deg.
+    pub lag: f64,
+    /// Its way in a cycle over that of rigid legs: ahead, or the turn of a gait that
+    /// turns in place, or the smaller of both. None where rigid legs get nowhere or
+    /// their way hangs on ties.
+    pub share: Option<f64>,
+}
+
+/// Less than this in a cycle is no way: mm ahead, deg of turn.
+const NOWHERE: (f64, f64) = (1.0, 0.5);
+
+impl Sprung {
+    /// What this ground's springs do to a gait; none if its legs are rigid.
+    #[must_use]
+    pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
+        ground.spring?;
+        let walked = gait.walked(ground);
+        let way = gait.predict(&ground.rigid());
+        let part = |sprung: f64, rigid: Option<f64>, least: f64| {
+            rigid
+                .filter(|rigid| rigid.abs() > least)
+                .map(|rigid| sprung / rigid)
+        };
+        let ahead = part(walked.travel.forward, way.forward, NOWHERE.0);
+        let turn = part(walked.travel.turn, way.turn, NOWHERE.1);
+        Some(Self {
+            lag: walked.lag,
+            share: [ahead, turn].into_iter().flatten().reduce(f64::min),
+        })
+    }
+}

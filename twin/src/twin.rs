@@ -1,0 +1,117 @@
+//! Pulses in, the robot out, frame by frame.
+
+use lizard_robot::servo::FORWARD;
+use lizard_robot::{Ground, Place, Robot, Walker};
+
+use crate::FRAME;
+use crate::servo::ServoModel;
+use crate::shape::Shape;
+use crate::state::State;
+
+/// A robot on a floor.
+#[derive(Debug, Clone)]
+pub struct Twin {
+    robot: Robot,
+    model: ServoModel,
+    /// Where the servos are: sweeps from neutral, deg, counter-clockwise positive.
+    sweeps: [f64; 4],
+    walker: Walker,
+    frame: u64,
+}
+
+impl Twin {
+    /// A robot that stands at neutral without pulses, its springs at rest.
+    #[must_use]
+    pub fn new(robot: &Robot, model: ServoModel) -> Self {
+        Self {
+            robot: robot.clone(),
+            model,
+            sweeps: [0.0; 4],
+            walker: Walker::new(*robot.ground(), [0.0; 4]),
+            frame: 0,
+        }
+    }
+
+    /// Takes a frame of 20 ms: the width of each servo's pulse in us, none where there
+    /// was no pulse. A servo without pulses stays where its gears hold it.
+    pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
+        let before = self.sweeps;
+        let mut errors = [0.0; 4];
+        for i in 0..4 {
+            let Some(width) = pulses[i] else { continue };
+            let servo = &self.robot.servos()[i];
+            let (least, most) = servo.travel();
+            let target = servo.sweep(width).clamp(least, most);
+            self.sweeps[i] = self.model.turned(before[i], target, servo.us_per_degree);
+            errors[i] = target - self.sweeps[i];
+        }
+        let slip = self.walker.step(self.leg_sweeps());
+        self.frame += 1;
+        let angles = self.angles();
+        let solved = self.robot.lizard().solve(&angles.into()).ok();
+        let place = self.walker.place();
+        let ground = self.walker.ground();
+        let load = ground.body.mean_load();
+        State {
+            frame: self.frame,
+            pulsed: pulses.map(|pulse| pulse.is_some()),
+            place,
+            angles,
+            rates: std::array::from_fn(|i| (self.sweeps[i] - before[i]) / FRAME),
+            errors,
+            lag: self.walker.lag(),
+            feet: ground
+                .feet
+                .at(self.walker.legs())
+                .map(|foot| place.on_floor(foot)),
+            slip: slip.feet,
+            loads: slip.loads.map(|share| share * load),
+            margins: solved.map(|solved| solved.margins),
+            strokes: solved.map(|solved| [solved.left.s, solved.right.s]),
+        }
+    }
+
+    /// The robot.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Where each joint is now, chassis frame; none where a loop does not close.
+    #[must_use]
+    pub fn shape(&self) -> Option<Shape> {
+        Shape::of(&self.robot, self.angles(), self.walker.legs())
+    }
+
+    /// The servo angles now, deg, chassis frame.
+    #[must_use]
+    pub fn angles(&self) -> [f64; 4] {
+        std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
+    }
+
+    /// The floor, the pads and the springs.
+    #[must_use]
+    pub fn ground(&self) -> &Ground {
+        self.walker.ground()
+    }
+
+    /// Changes floor, pads or springs from the next frame on.
+    pub fn set_ground(&mut self, ground: Ground) {
+        self.walker.set_ground(ground);
+    }
+
+    /// Changes what the servos can do, from the next frame on.
+    pub fn set_servos(&mut self, model: ServoModel) {
+        self.model = model;
+    }
+
+    /// Puts the robot elsewhere on the floor.
+    pub fn set_place(&mut self, place: Place) {
+        self.walker.set_place(place);
+    }
+
+    /// What the servos ask of the legs: foot forward positive, deg.
+    fn leg_sweeps(&self) -> [f64; 4] {
+        std::array::from_fn(|i| FORWARD[i] * self.sweeps[i])
+    }
+}

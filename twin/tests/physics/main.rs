@@ -1,0 +1,123 @@
+//! The contact model against a rigid-body engine that others wrote.
+//!
+//! The model is quasi-static, the engine is not: where a gait leans on inertia, it is
+//! played slower. Gaits that are another one reversed or mirrored are played at one
+//! friction only. `look` hangs on ties and is left out, as is `stand`.
+
+mod docs;
+mod engine;
+
+use std::sync::LazyLock;
+
+use engine::{Setup, Yaw, walked};
+use lizard_robot::{Feet, Ground, Robot, Spring, Travel};
+
+fn paper() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+    });
+    &ROBOT
+}
+
+/// The gaits that no other one gives by symmetry.
+const KINDS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
+
+/// A cycle of a gait by the engine, at a share of its pace.
+fn engine(name: &str, ground: &Ground, yaw: Yaw, pace: f64) -> Travel {
+    let setup = Setup {
+        feet: ground.feet,
+        friction: ground.friction,
+        yaw,
+        pace,
+    };
+    walked(paper().gait(name).expect(name), &setup)
+}
+
+/// Asserts that engine and model differ by no more than this, and returns what the
+/// engine says.
+fn agree(name: &str, ground: &Ground, yaw: Yaw, pace: f64, mm: f64, deg: f64) -> Travel {
+    let theirs = engine(name, ground, yaw, pace);
+    let ours = paper().gait(name).expect(name).walked(ground).travel;
+    let off = (theirs.forward - ours.forward).hypot(theirs.left - ours.left);
+    println!(
+        "{name} {theirs:?} off {off:.2} mm, {:.2} deg",
+        theirs.turn - ours.turn
+    );
+    assert!(
+        off <= mm && (theirs.turn - ours.turn).abs() <= deg,
+        "{name} goes {theirs:?} by the engine, {ours:?} by the model, with {:?}",
+        ground.spring
+    );
+    theirs
+}
+
+#[test]
+fn rigid_legs_on_a_slippery_floor_go_where_the_engine_goes() {
+    let ground = Ground {
+        friction: 0.4,
+        ..*paper().ground()
+    };
+    for name in KINDS {
+        agree(name, &ground, Yaw::RIGID, 1.0, 0.5, 0.3);
+    }
+}
+
+#[test]
+fn rigid_legs_on_a_rough_floor_go_where_the_engine_goes() {
+    let ground = Ground {
+        friction: 1.0,
+        ..*paper().ground()
+    };
+    let ways = paper().gaits().iter().map(|gait| gait.name());
+    let ways: Vec<_> = ways
+        .filter(|name| !["stand", "look"].contains(name))
+        .map(|name| (name, agree(name, &ground, Yaw::RIGID, 1.0, 0.5, 0.3)))
+        .collect();
+    docs::check(&ways);
+}
+
+fn springs(rate: f64) {
+    let ground = Ground {
+        spring: Some(Spring { rate, preload: 0.0 }),
+        ..*paper().ground()
+    };
+    for name in KINDS {
+        agree(name, &ground, Yaw::spring(rate), 0.25, 1.0, 0.3);
+    }
+}
+
+#[test]
+fn soft_springs_lag_as_in_the_engine() {
+    springs(2.0);
+}
+
+#[test]
+fn springs_lag_as_in_the_engine() {
+    springs(5.0);
+}
+
+#[test]
+fn hard_springs_lag_as_in_the_engine() {
+    springs(10.0);
+}
+
+#[test]
+fn legs_mounted_outward_lose_what_they_lose_in_the_engine() {
+    let ground = *paper().ground();
+    let ground = Ground {
+        feet: Feet {
+            mount: 45.0,
+            ..ground.feet
+        },
+        ..ground
+    };
+    for name in KINDS {
+        agree(name, &ground, Yaw::RIGID, 0.5, 0.5, 0.3);
+    }
+}
+
+#[test]
+fn the_engine_gives_the_same_bits_twice() {
+    let once = || engine("arc-left", paper().ground(), Yaw::RIGID, 1.0);
+    assert_eq!(once(), once());
+}
