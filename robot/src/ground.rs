@@ -29,7 +29,7 @@ pub struct Feet {
 impl Feet {
     /// Where the feet are for sweeps in deg, servo order: (forward, left) from
     /// the chassis centre, mm.
-    fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
+    pub(crate) fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
         const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
         const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
         std::array::from_fn(|i| {

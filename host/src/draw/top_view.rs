@@ -1,7 +1,7 @@
 //! The mechanism from above, head up: chassis, five-bars, sliders and legs.
 
-use lizard_kinematics::{End, Side, Solution, Vector, wrap};
-use lizard_robot::Robot;
+use lizard_kinematics::{End, Side, Solution, Vector};
+use lizard_robot::{LegPlace, Robot};
 use svg::Document;
 use svg::node::element::{Group, Path};
 
@@ -214,54 +214,27 @@ impl View<'_> {
         )
     }
 
-    /// Where the middle of a leg's ground link is, and the directions of its
-    /// ground link and its crank, deg.
-    ///
-    /// The paper gives no mounting. Drawn is what the contact model takes: at
-    /// neutral the foot is straight beside the hip, swept by `mount`.
-    fn leg_frame(&self, servo: usize) -> (Joint, f64, f64) {
-        let feet = &self.robot.ground().feet;
-        let left = matches!(servo, 0 | 3);
-        let front = servo < 2;
-        let hip = Vector::new(
-            if left { -feet.hip_side } else { feet.hip_side },
-            if front {
-                feet.hip_forward
-            } else {
-                -feet.hip_forward
-            },
-        );
-        // Outward sweep turns a left front leg clockwise, and so on.
-        let straight = if left { 180.0 } else { 0.0 };
-        let mount = if left == front {
-            -feet.mount
-        } else {
-            feet.mount
-        };
-        let turned = straight + mount - self.robot.servos()[servo].neutral;
-        (hip, wrap(turned), wrap(turned + self.angles()[servo]))
+    pub(super) fn foot(&self, servo: usize) -> Joint {
+        self.place(servo).foot()
     }
 
-    pub(super) fn foot(&self, servo: usize) -> Joint {
-        let (hip, _, crank) = self.leg_frame(servo);
-        hip + Vector::direction(crank) * self.robot.lizard().leg.crank
+    fn place(&self, servo: usize) -> LegPlace {
+        self.robot.leg(servo, self.angles()[servo])
     }
 
     fn leg(&self, mut group: Group, servo: usize) -> Group {
-        let leg = self.robot.lizard().leg;
-        let (hip, ground, crank) = self.leg_frame(servo);
-        let half = Vector::direction(ground) * (leg.ground / 2.0);
-        let reach = Vector::direction(crank) * leg.crank;
+        let place = self.place(servo);
+        let (pivots, joints) = (place.pivots(), place.joints());
         let colour = SERVO[servo];
-        group = group.add(bar(hip - half, hip + half, "#c9c3b6", 5.0));
-        for end in [hip - half, hip + half] {
-            group = group.add(bar(end, end + reach, colour, 3.2).set("stroke-opacity", 0.8));
+        group = group.add(bar(pivots[0], pivots[1], "#c9c3b6", 5.0));
+        for (pivot, joint) in pivots.into_iter().zip(joints) {
+            group = group.add(bar(pivot, joint, colour, 3.2).set("stroke-opacity", 0.8));
         }
-        group = group.add(bar(hip - half + reach, hip + half + reach, colour, 4.2));
-        for end in [hip - half, hip + half] {
-            group = group.add(pivot(end, 1.7)).add(pivot(end + reach, 1.7));
+        group = group.add(bar(joints[0], joints[1], colour, 4.2));
+        for (at, joint) in pivots.into_iter().zip(joints) {
+            group = group.add(pivot(at, 1.7)).add(pivot(joint, 1.7));
         }
-        let foot = page(hip + reach);
+        let foot = page(place.foot());
         let pad = (8.0 * PIXELS_PER_MM, 11.0 * PIXELS_PER_MM);
         group.add(rectangle((foot.0 - pad.0 / 2.0, foot.1 - pad.1 / 2.0), pad, DARK).set("rx", 10))
     }
@@ -270,7 +243,7 @@ impl View<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lizard_kinematics::Pose;
+    use lizard_kinematics::{Pose, wrap};
 
     fn check(pose: Option<Pose>, verdict: impl Fn(&View)) {
         let robot =
