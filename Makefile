@@ -89,7 +89,8 @@ clean: ## remove everything that was built
 .web-test:
 	@scripts/setup-web --test
 	@scripts/build-web
-	@$$(cat target/web-node) --test web/tests/*.test.js
+	@cd host && cargo build --workspace --bin lizard --quiet
+	@LIZARD=$(HOST)/debug/lizard LIZARD_ELF=$(ELF) $$(cat target/web-node) --test --test-concurrency=1 web/tests/*.test.js
 
 # The second line puts the program where the documentation says it is.
 .cli:

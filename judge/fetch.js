@@ -35,7 +35,7 @@ function* files(tar) {
 /** Whether a package is for this machine. */
 function suits({ os, cpu, libc }) {
   const glibc = process.report.getReport().header.glibcVersionRuntime !== undefined;
-  const among = (list, mine) => !list || list.includes(mine);
+  const among = (list, mine) => !list || [list].flat().includes(mine);
   return among(os, process.platform) && among(cpu, process.arch) && among(libc, glibc ? 'glibc' : 'musl');
 }
 

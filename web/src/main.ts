@@ -115,7 +115,7 @@ async function start(): Promise<void> {
 
   const select = element<HTMLSelectElement>('robot');
   for (const { name, image } of choices) {
-    select.add(new Option(image ? name : `${name} (no image)`, name));
+    select.add(new Option(`${name}.toml${image ? '' : ' (no image)'}`, name));
   }
   const choose = async () => {
     const choice = choices.find(({ name }) => name === select.value) ?? choices[0];

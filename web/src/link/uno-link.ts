@@ -38,7 +38,8 @@ export class UnoLink implements Simulated {
   }
 
   advance(ms: number): void {
-    this.owed += ms * CYCLES_PER_MS;
+    // Whole cycles: a part of one could not be run.
+    this.owed += Math.round(ms * CYCLES_PER_MS);
     while (this.owed > 0) {
       const slice = Math.min(this.owed, SLICE * CYCLES_PER_MS);
       const before = this.board.cycle;

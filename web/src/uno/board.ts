@@ -2,6 +2,7 @@
 // avr8js simulates, in a board that outlives it.
 import { corrections } from '../../../judge/src/corrections/index.js';
 import { load } from '../../../judge/src/hex.js';
+import { receiveBuffer } from '../../../judge/src/receive-buffer.js';
 import { Scope } from '../../../judge/src/scope.js';
 import { selfProgramming } from '../../../judge/src/self-programming.js';
 import { Uno } from '../../../judge/src/uno.js';
@@ -11,10 +12,6 @@ export const FREQUENCY = 16_000_000;
 /** A byte at 115200 baud: ten bits. */
 const BYTE_CYCLES = Math.round((10 * FREQUENCY) / 115_200);
 const MCUSR = 0x54;
-const UCSR0A = 0xc0;
-const UCSR0B = 0xc1;
-const RXC = 0x80;
-const RXEN = 0x10;
 /** RAM of the chip, after its registers. */
 const RAM = 0x100;
 /** Where a boot loader of 512 bytes begins: byte and word. */
@@ -33,10 +30,10 @@ export class Board {
   onPulse: (pin: number, rise: number, width: number) => void = () => {};
   /** Called with each byte when the UNO has got it. */
   onReceived: (byte: number, cycle: number) => void = () => {};
-  /** Bytes that came before the UNO had read the one before. */
+  /** Bytes that the UNO had no room for. */
   lost = 0;
 
-  private uno!: Uno;
+  private uno!: Uno & { receive?(byte: number): boolean };
   /** Cycles of the chips before this one. */
   private before = 0;
   private readonly line: number[] = [];
@@ -103,7 +100,7 @@ export class Board {
   }
 
   private begin(cause: Cause, flash: Uint8Array, eeprom?: Uint8Array): void {
-    const uno = new Uno([...corrections, selfProgramming]);
+    const uno = new Uno([...corrections, selfProgramming, receiveBuffer]);
     this.uno = uno;
     uno.flash.set(flash);
     if (eeprom) uno.memory.set(eeprom);
@@ -126,9 +123,7 @@ export class Board {
       this.lineIsBusy = false;
       const byte = this.line.shift();
       if (uno !== this.uno || byte === undefined) return;
-      const { data } = uno.cpu;
-      if (!(data[UCSR0B] & RXEN) || data[UCSR0A] & RXC) this.lost += 1;
-      else uno.usart.writeByte(byte, true);
+      if (!uno.receive?.(byte)) this.lost += 1;
       this.onReceived(byte, this.cycle);
       this.carry();
     }, BYTE_CYCLES);
