@@ -12,7 +12,9 @@ import { type Status, status, watched } from './status';
 import { Board, FREQUENCY } from './uno/board';
 
 /** How often a board on USB says where it is, in frames of 20 ms. */
-const WATCH = 3;
+const WATCH = 2;
+/** A board that has not greeted within this, ms, is asked nevertheless. */
+const PATIENCE = 8000;
 const FRAME_SECONDS = 0.02;
 /** The way of the last seconds that is kept to measure a cycle. */
 const KEPT_SECONDS = 12;
@@ -56,6 +58,8 @@ export class Session {
   private bootLoader: string | null = null;
   private way: { time: number; place: Place }[] = [];
   private time = 0;
+  private step = FRAME_SECONDS;
+  private onBanner: () => void = () => {};
 
   constructor(
     readonly robot: Robot,
@@ -142,8 +146,8 @@ export class Session {
       void this.simulate();
     };
     await this.attach(link);
-    // Opening the port has reset the board; the boot loader listens for a second.
-    await link.wait(2000);
+    // Opening the port has reset the board. What comes before its banner goes to the boot loader.
+    await Promise.race([new Promise<void>((greeted) => (this.onBanner = greeted)), link.wait(PATIENCE)]);
     await this.ask(`watch ${WATCH}`);
   }
 
@@ -174,7 +178,10 @@ export class Session {
     const doing = [...this.description.gaits.map(({ command }) => command), 'stop', 'rest', 'center'];
     if (doing.includes(word)) this.doing(word);
     else if (word.startsWith('pose ')) this.doing('pose');
-    else if (line.startsWith('# lizard ')) this.doing('stand');
+    else if (line.startsWith('# lizard ')) {
+      this.doing('stand');
+      this.onBanner();
+    }
     else if (line.startsWith('# fault')) this.doing('stop');
   }
 
@@ -239,6 +246,7 @@ export class Session {
 
   private moved(frame: Frame, widths: Four<number> | null, seconds: number): void {
     this.time += seconds;
+    this.step = seconds;
     this.last = frame;
     this.way.push({ time: this.time, place: frame.place });
     while (this.way[0].time < this.time - KEPT_SECONDS) this.way.shift();
@@ -250,8 +258,10 @@ export class Session {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     const now = this.way[this.way.length - 1];
     if (!gait?.moves || !now) return null;
-    const from = this.way.find(({ time }) => time >= now.time - gait.period - 1e-6);
-    if (!from || from.time > now.time - gait.period + FRAME_SECONDS / 2) return null;
+    // The nearest that is known: a board on USB does not tell every frame.
+    const begun = now.time - gait.period;
+    const from = this.way.findLast(({ time }) => time <= begun + this.step / 2);
+    if (!from) return null;
     return this.robot.between(from.place, now.place);
   }
 

@@ -72,8 +72,8 @@ export async function page(options = {}, before = undefined, argument = undefine
 export async function advance(opened, ms) {
   // In parts, so that answers and what follows from them come in between.
   await opened.evaluate(async (ms) => {
-    for (let left = ms; left > 0; left -= 20) {
-      window.lizard.advance(Math.min(20, left));
+    for (let left = ms; left > 0; left -= 4) {
+      window.lizard.advance(Math.min(4, left));
       await Promise.resolve();
     }
   }, ms);

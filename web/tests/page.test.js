@@ -192,8 +192,8 @@ test('a HEX file that is none is refused before anything is written', async () =
   assert.equal((await type(opened, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
 });
 
-/** A Web Serial whose one port is a second simulated UNO, in real time times `pace`. */
-function fakeSerial(pace) {
+/** A Web Serial whose one port is a second simulated UNO. */
+function fakeSerial() {
   let board;
   const port = {
     readable: null,
@@ -206,11 +206,16 @@ function fakeSerial(pace) {
       board = new first.constructor(image, loader);
       let out;
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });
-      port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
+      // It answers at once, however slow the machine is.
+      const write = (bytes) => {
+        board.send(bytes);
+        board.run(16_000 * 30);
+      };
+      port.writable = new WritableStream({ write });
       board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
       board.reset('external');
       window.otherBoard = board;
-      port.timer = setInterval(() => board.run(16_000 * 10 * pace), 10);
+      port.timer = setInterval(() => board.run(16_000 * 20), 10);
     },
     async setSignals({ dataTerminalReady }) {
       if (dataTerminalReady) board.reset('external');
@@ -223,14 +228,17 @@ function fakeSerial(pace) {
 }
 
 test('a board by Web Serial is driven, mirrored, calibrated and flashed', async () => {
-  const opened = await page({}, fakeSerial, 2);
+  const opened = await page({}, fakeSerial);
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.locator('#where', { hasText: 'board on USB' }).waitFor();
-  await opened.locator('#log div', { hasText: 'ok watch 3' }).waitFor();
+  await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   await gait(opened, 'walk').click();
-  await opened.waitForFunction(() => window.lizard.measured()?.forward > 20);
-  const { predicted, measured } = await ways(opened, 'walk');
-  near(measured.forward, predicted.forward, 0.15, 'mm ahead in a cycle, from poses of every third frame');
+  const { predicted } = await ways(opened, 'walk');
+  // Once it has gathered pace; poses come of every second frame alone.
+  await opened.waitForFunction(
+    (wanted) => Math.abs(window.lizard.measured()?.forward - wanted) < 0.05 * wanted,
+    predicted.forward,
+  );
   await opened.keyboard.press('Escape');
   const wait = (ms) => opened.waitForTimeout(ms);
   await calibrates(opened, wait);
@@ -243,7 +251,7 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
 test('a supply that sinks stops the robot, and its fault is shown', async () => {
   const opened = await standing();
   await walks(opened, 'walk');
-  await opened.getByLabel('Supply').fill('3.9');
+  await opened.locator('#supply').fill('3.9');
   await advance(opened, 2000);
   await opened.locator('#log div', { hasText: '# supply: ' }).first().waitFor();
   await opened.locator('#health dd', { hasText: 'supply' }).waitFor();

@@ -21,9 +21,13 @@ const FLASH_SIZE = 32 * 1024;
 
 /** An answer comes within this time, ms. */
 const PATIENCE = 500;
-/** How often the loader is called, ms apart: it listens for a second after a reset. */
-const CALLS = 12;
-const CALL = 80;
+/** The loader blinks so long after a reset and does not listen, ms. */
+const BLINKS = 400;
+/** Then it listens for what is left of a second: how often it is called, ms apart. */
+const CALLS = 5;
+const CALL = 110;
+/** An answer that is late has come within this, ms. */
+const QUIET = 40;
 
 export type Progress = (done: number, of: number, what: 'writing' | 'verifying') => void;
 
@@ -76,11 +80,14 @@ class Loader {
   }
 }
 
-async function call(loader: Loader): Promise<void> {
+async function call(link: Link, loader: Loader): Promise<void> {
+  await link.wait(BLINKS);
   for (let n = 1; ; n++) {
     loader.forget();
     try {
       await loader.command([GET_SYNC], 0, CALL);
+      await link.wait(QUIET);
+      loader.forget();
       return;
     } catch (error) {
       if (n === CALLS) throw error;
@@ -95,7 +102,7 @@ async function call(loader: Loader): Promise<void> {
 export async function flash(link: Link, image: Uint8Array, progress: Progress): Promise<void> {
   const loader = new Loader(link);
   await link.reset();
-  await call(loader);
+  await call(link, loader);
   const signature = await loader.command([READ_SIGNATURE], 3);
   if (signature.some((byte, i) => byte !== SIGNATURE[i])) {
     const hex = signature.map((byte) => byte.toString(16).padStart(2, '0')).join(' ');
