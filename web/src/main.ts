@@ -79,11 +79,17 @@ async function start(): Promise<void> {
       drive.doing(gait);
       texts();
     },
+    tables(hash) {
+      const { link, description } = session;
+      element('where').textContent = !link.canFlash
+        ? `${link.name}: no image has these lengths, tables ${hash}`
+        : hash === description.hash
+          ? `on a ${link.name}, tables ${hash}`
+          : `on a ${link.name} with the image of another robot, tables ${hash}: choose that robot, or flash this one's`;
+    },
     link(link) {
       latest = 0;
-      element('where').textContent = link.canFlash
-        ? `on a ${link.name}, tables ${session.description.hash}`
-        : `${link.name}: no image has these lengths, tables ${session.description.hash}`;
+      element('where').textContent = `waiting for the ${link.name}`;
       element('connect').textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
       flash.update();
     },

@@ -15,6 +15,8 @@ import { Board, FREQUENCY } from './uno/board';
 const WATCH = 2;
 /** A board that has not greeted within this, ms, is asked nevertheless. */
 const PATIENCE = 8000;
+/** `boot` acts three seconds after a reset, ms. */
+const BOOTS = 4000;
 const FRAME_SECONDS = 0.02;
 /** The way of the last seconds that is kept to measure a cycle. */
 const KEPT_SECONDS = 12;
@@ -28,6 +30,8 @@ export interface Listener {
   came(line: string): void;
   /** What the robot does, as its answers say. */
   doing(gait: string): void;
+  /** The hash of the tables that the image has, as its banner says. */
+  tables(hash: string): void;
   /** Another end of the line. */
   link(link: Link): void;
   trouble(sentence: string | null): void;
@@ -42,6 +46,8 @@ export interface Measured {
 
 export class Session {
   description!: Description;
+  /** The name of its file. */
+  file = '';
   /** The robot.toml of the page's robot. */
   toml = '';
   /** The robot.toml as its file has it. */
@@ -51,6 +57,8 @@ export class Session {
   last: Frame | null = null;
   gait = '';
   volts = 5;
+  /** Whether the page may ask on its own. */
+  mayAsk = false;
   link!: Link;
   dialogue!: Dialogue;
   private originalImage: string | null = null;
@@ -75,6 +83,7 @@ export class Session {
     const refused = this.take();
     if (refused) throw new Error(refused.refused);
     await this.simulate();
+    this.file = name;
   }
 
   /** Takes a changed robot.toml; the core runs it, unless it is that of the file. */
@@ -178,11 +187,19 @@ export class Session {
     const doing = [...this.description.gaits.map(({ command }) => command), 'stop', 'rest', 'center'];
     if (doing.includes(word)) this.doing(word);
     else if (word.startsWith('pose ')) this.doing('pose');
-    else if (line.startsWith('# lizard ')) {
-      this.doing('stand');
-      this.onBanner();
-    }
+    else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
+    else if (line.startsWith('# lizard ')) this.greeted(line);
     else if (line.startsWith('# fault')) this.doing('stop');
+  }
+
+  private greeted(banner: string): void {
+    this.doing('stand');
+    this.onBanner();
+    const tables = / tables ([0-9a-f]{8})/.exec(banner)?.[1];
+    if (tables !== undefined) this.listener.tables(tables);
+    // A byte would call off what `boot` is set to.
+    this.mayAsk = false;
+    void this.link.wait(BOOTS).then(() => (this.mayAsk = true));
   }
 
   private doing(gait: string): void {
@@ -193,6 +210,7 @@ export class Session {
 
   /** Asks the robot; what goes wrong is shown. */
   async ask(line: string, quiet = false): Promise<{ ok: boolean; text: string; notes: string[] } | null> {
+    if (!quiet) this.mayAsk = true;
     try {
       const answer = await this.dialogue.ask(line, quiet);
       this.listener.trouble(null);

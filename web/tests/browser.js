@@ -53,8 +53,11 @@ export async function close() {
   server?.close();
 }
 
-/** The page, loaded; `before` runs in it before anything else. */
-export async function page(options = {}, before = undefined, argument = undefined) {
+/**
+ * The page, loaded; `before` runs in it before anything else, and then its timers only run when
+ * the test says so.
+ */
+export async function page(options = {}, before = undefined) {
   const opened = await browser.newPage(options);
   pages.push(opened);
   opened.setDefaultTimeout(PATIENCE);
@@ -62,7 +65,10 @@ export async function page(options = {}, before = undefined, argument = undefine
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
   opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
-  if (before) await opened.addInitScript(before, argument);
+  if (before) {
+    await opened.clock.install();
+    await opened.addInitScript(before);
+  }
   await opened.goto(`http://127.0.0.1:${server.address().port}${FOLDER}`);
   await opened.waitForFunction(() => window.lizard);
   return opened;

@@ -103,12 +103,10 @@ test('every robot of robots/ can be chosen, and runs its own image', async () =>
   assert.ok(names.length >= 5, names.join());
   for (const name of names) {
     await opened.locator('#robot').selectOption({ label: name });
-    await opened.waitForFunction((toml) => {
-      const { description, link } = window.lizard;
-      return toml && link.canFlash && document.querySelector('#where').textContent.includes(description.hash);
-    }, name);
+    await opened.waitForFunction((name) => `${window.lizard.file}.toml` === name, name);
     await advance(opened, 2500);
     const hash = await opened.evaluate(() => window.lizard.description.hash);
+    assert.equal(await text(opened, '#where'), `on a simulated UNO, tables ${hash}`);
     await opened.locator('#log div', { hasText: `tables ${hash}` }).last().waitFor();
   }
 });
@@ -144,6 +142,17 @@ test('a calibration is set, saved and kept', async () => {
   await calibrates(opened, (ms) => advance(opened, ms));
 });
 
+test('what boot is set to is done after a reset', async () => {
+  const opened = await standing();
+  await type(opened, 'boot walk', 'ok boot walk');
+  await type(opened, 'save', '> save');
+  await advance(opened, 2000);
+  await opened.evaluate(() => window.lizard.link.reset());
+  await advance(opened, 7000);
+  await opened.locator('#log div', { hasText: '# boot: walk' }).waitFor();
+  assert.ok((await ways(opened, 'walk')).measured.forward > 20, 'the page knows that it walks');
+});
+
 test('a refused setting shows why and takes the slider back', async () => {
   const opened = await standing();
   await opened.getByText('Calibrate', { exact: true }).click();
@@ -176,6 +185,7 @@ test('an image is flashed by the real boot loader', async () => {
   const before = await text(opened, '#log');
   const banner = await flashes(opened, (ms) => advance(opened, ms));
   assert.ok(!before.includes(banner), banner);
+  assert.match(await text(opened, '#where'), /with the image of another robot/);
   const written = await opened.evaluate(() => Array.from(window.lizard.link.board.flash.subarray(0, 256)));
   const hex = await readFile(new URL('large.hex', FILES), 'utf8');
   const first = hex.split('\n')[0].slice(9, -3);
@@ -206,16 +216,11 @@ function fakeSerial() {
       board = new first.constructor(image, loader);
       let out;
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });
-      // It answers at once, however slow the machine is.
-      const write = (bytes) => {
-        board.send(bytes);
-        board.run(16_000 * 30);
-      };
-      port.writable = new WritableStream({ write });
+      port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
       board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
       board.reset('external');
       window.otherBoard = board;
-      port.timer = setInterval(() => board.run(16_000 * 20), 10);
+      port.timer = setInterval(() => board.run(16_000 * 2), 2);
     },
     async setSignals({ dataTerminalReady }) {
       if (dataTerminalReady) board.reset('external');
@@ -229,23 +234,24 @@ function fakeSerial() {
 
 test('a board by Web Serial is driven, mirrored, calibrated and flashed', async () => {
   const opened = await page({}, fakeSerial);
+  const forward = (ms) => opened.clock.runFor(ms);
   await opened.getByRole('button', { name: 'Connect a board' }).click();
-  await opened.locator('#where', { hasText: 'board on USB' }).waitFor();
+  await opened.waitForFunction(() => window.otherBoard);
+  await forward(4000);
+  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
   await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   await gait(opened, 'walk').click();
-  const { predicted } = await ways(opened, 'walk');
-  // Once it has gathered pace; poses come of every second frame alone.
-  await opened.waitForFunction(
-    (wanted) => Math.abs(window.lizard.measured()?.forward - wanted) < 0.05 * wanted,
-    predicted.forward,
-  );
+  await forward(5000);
+  const { predicted, measured } = await ways(opened, 'walk');
+  near(measured.forward, predicted.forward, 0.05, 'mm ahead in a cycle, from poses of every second frame');
   await opened.keyboard.press('Escape');
-  const wait = (ms) => opened.waitForTimeout(ms);
-  await calibrates(opened, wait);
-  const banner = await flashes(opened, wait);
-  assert.match(banner, /tables/);
+  await forward(200);
+  await calibrates(opened, forward);
+  assert.match(await flashes(opened, forward), /tables/);
+  assert.match(await text(opened, '#where'), /with the image of another robot/);
   await opened.getByRole('button', { name: 'Back to the simulation' }).click();
-  await opened.locator('#where', { hasText: 'simulated UNO' }).waitFor();
+  await forward(2000);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
 });
 
 test('a supply that sinks stops the robot, and its fault is shown', async () => {

@@ -25,7 +25,7 @@ export class Health {
   held = false;
 
   private async ask(): Promise<void> {
-    if (this.asking || this.held || document.hidden || this.session().gait === '') return;
+    if (this.asking || this.held || document.hidden || !this.session().mayAsk) return;
     this.asking = true;
     const status = await this.session().status();
     this.asking = false;
