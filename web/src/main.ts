@@ -169,12 +169,14 @@ async function start(): Promise<void> {
     },
     () => {
       floor.draw(session.last);
-      scope.draw(latest, session.last?.scene ?? null);
+      scope.draw(latest);
       margins.draw(session.last?.scene ?? null);
       maps.draw();
       if (sinceTexts >= 1000 / TEXTS) {
         sinceTexts = 0;
         texts();
+        scope.write(session.last?.scene ?? null);
+        margins.write(session.last?.scene ?? null);
       }
     },
   );

@@ -43,31 +43,33 @@ function simulated() {
 }
 
 test('every width is that of the simulated UNO', async () => {
-  const opened = await page();
+  // With the page's timers at rest, only this test lets time pass.
+  const opened = await page({}, () => {});
   const { frames, rises } = await opened.evaluate(
-    async ([script, end]) => {
+    ([script, end]) => {
       const { lizard } = window;
-      const { Board } = { Board: lizard.link.board.constructor };
-      const [image, loader] = [lizard.image, await (await fetch('files/optiboot.hex')).text()];
-      const board = new Board(image, loader);
-      const pins = lizard.description.servos.map(({ pin }) => pin);
+      const { board } = lizard.link;
+      const { pin } = lizard.description.servos[3];
       const frames = [];
       const rises = [];
-      let widths = [0, 0, 0, 0];
-      board.onPulse = (pin, rise, width) => {
-        const servo = pins.indexOf(pin);
-        if (servo < 0) return;
-        widths[servo] = width;
-        if (servo !== 3) return;
-        rises.push(rise);
-        if (widths.every((width) => width > 0)) frames.push(lizard.robot.pulses(widths).scene.angles);
-        widths = [0, 0, 0, 0];
+      // What the page itself follows, frame by frame.
+      const follow = lizard.robot.pulses.bind(lizard.robot);
+      lizard.robot.pulses = (widths) => {
+        const frame = follow(widths);
+        if (widths.every((width) => width > 0)) frames.push(frame.scene.angles);
+        return frame;
       };
-      for (const [ms, line] of script) {
-        board.run(ms * 16_000 - board.cycle);
-        board.send(new TextEncoder().encode(`${line}\n`));
+      const pulse = board.onPulse;
+      board.onPulse = (which, rise, width) => {
+        if (which === pin) rises.push(rise);
+        pulse(which, rise, width);
+      };
+      let now = 0;
+      for (const [ms, line] of [...script, [end, '']]) {
+        lizard.advance(ms - now);
+        now = ms;
+        if (line !== '') void lizard.link.write(new TextEncoder().encode(`${line}\n`));
       }
-      board.run(end * 16_000 - board.cycle);
       return { frames, rises };
     },
     [SCRIPT, END],

@@ -92,7 +92,8 @@ export class Floor {
       pen.restore();
     }
     pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
-    this.ruler(pen, height);
+    // Above the buttons, where the floor is narrow.
+    this.ruler(pen, width < 520 ? height - 46 : height);
   }
 
   private grid(pen: CanvasRenderingContext2D, width: number, height: number): void {

@@ -25,13 +25,18 @@ export class MarginsView {
   }
 
   draw(scene: Scene | null): void {
-    this.bars.forEach(({ row, fill, value, limit }, n) => {
+    this.bars.forEach(({ row, fill, limit }, n) => {
       const margin = scene?.margins[n]?.value;
-      const text = margin === undefined ? '–' : margin.toFixed(3);
-      if (value.textContent === text) return;
-      value.textContent = text;
-      fill.style.transform = `scaleX(${Math.max(0, margin ?? 0)})`;
+      fill.style.transform = `scaleX(${Math.max(0, margin ?? 0).toFixed(3)})`;
       row.classList.toggle('low', margin !== undefined && margin < limit);
+    });
+  }
+
+  /** Writes the numbers, which costs a layout. */
+  write(scene: Scene | null): void {
+    this.bars.forEach(({ value }, n) => {
+      const text = scene?.margins[n]?.value.toFixed(3) ?? '–';
+      if (value.textContent !== text) value.textContent = text;
     });
   }
 }

@@ -61,7 +61,8 @@ export class ScopeView {
     this.widths = [...widths];
   }
 
-  draw(now: number, scene: Scene | null): void {
+  /** Writes the numbers, which costs a layout. */
+  write(scene: Scene | null): void {
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];
       const text = cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
@@ -69,6 +70,9 @@ export class ScopeView {
       const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
       if (angle.textContent !== degrees) angle.textContent = degrees;
     });
+  }
+
+  draw(now: number): void {
     const area = surface(this.canvas);
     if (!area) return;
     const { pen, width, height } = area;

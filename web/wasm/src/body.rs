@@ -197,7 +197,9 @@ mod tests {
         );
         assert_eq!(moved.heading, 95.0);
         let way = start.way_to(moved);
-        let off = (way.forward - 10.0).hypot(way.left - 2.0).hypot(way.turn - 5.0);
+        let off = (way.forward - 10.0)
+            .hypot(way.left - 2.0)
+            .hypot(way.turn - 5.0);
         assert!(off < 1e-12, "{way:?}");
     }
 }
