@@ -134,6 +134,8 @@ async function start(): Promise<void> {
   };
   select.addEventListener('change', () => void choose());
 
+  element('reset').addEventListener('click', () => void session.reset());
+
   const connect = element<HTMLButtonElement>('connect');
   if (!hasSerial()) {
     connect.disabled = true;

@@ -2,7 +2,7 @@
 // look at it and ask it to do things.
 import { files } from './files';
 import { CoreLink } from './link/core-link';
-import { Dialogue } from './link/dialogue';
+import { Dialogue, Forgotten } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
 import { flash, imageOf, type Progress } from './link/stk500';
@@ -216,6 +216,7 @@ export class Session {
       this.listener.trouble(null);
       return answer;
     } catch (error) {
+      if (error instanceof Forgotten) return null;
       this.listener.trouble(error instanceof Error ? `${error.message}.` : String(error));
       return null;
     }
@@ -224,6 +225,13 @@ export class Session {
   async status(): Promise<Status | null> {
     const answer = await this.ask('status', true);
     return answer && status(answer.text);
+  }
+
+  /** Presses the reset button of the board. */
+  async reset(): Promise<void> {
+    this.dialogue.forget();
+    this.doing('');
+    await this.link.reset();
   }
 
   /** Writes an image by the boot loader and starts it. Throws a sentence. */

@@ -123,7 +123,7 @@ async function calibrates(opened, forward) {
   await opened.getByRole('button', { name: 'Save', exact: true }).click();
   await forward(2500);
   await opened.locator('#log div', { hasText: /^ok save$/ }).waitFor();
-  await opened.evaluate(() => window.lizard.link.reset());
+  await opened.getByRole('button', { name: 'reset' }).click();
   await forward(4000);
   await opened.getByRole('button', { name: 'Factory' }).click();
   await forward(500);
@@ -147,7 +147,7 @@ test('what boot is set to is done after a reset', async () => {
   await type(opened, 'boot walk', 'ok boot walk');
   await type(opened, 'save', '> save');
   await advance(opened, 2000);
-  await opened.evaluate(() => window.lizard.link.reset());
+  await opened.getByRole('button', { name: 'reset' }).click();
   await advance(opened, 7000);
   await opened.locator('#log div', { hasText: '# boot: walk' }).waitFor();
   assert.ok((await ways(opened, 'walk')).measured.forward > 20, 'the page knows that it walks');

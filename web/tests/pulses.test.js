@@ -12,6 +12,11 @@ before(open);
 afterEach(tidy);
 after(close);
 
+const ROOT = new URL('../../', import.meta.url).pathname;
+const ROBOT = join(ROOT, 'robot.toml');
+/** What the page's image of it was made of. */
+const ELF = join(ROOT, 'target/web/robot.elf');
+
 /** ms since power-on, and what is said then. */
 const SCRIPT = [
   [1503, 'walk'],
@@ -32,7 +37,7 @@ function simulated() {
   try {
     const script = join(folder, 'script');
     writeFileSync(script, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
-    const files = ['--elf', process.env.LIZARD_ELF, '--svg', join(folder, 'x.svg')];
+    const files = ['--robot', ROBOT, '--elf', ELF, '--svg', join(folder, 'x.svg')];
     const said = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', script, ...files], {
       maxBuffer: 1 << 26,
     });

@@ -22,6 +22,9 @@ export interface Heard {
   came(line: string): void;
 }
 
+/** What was asked is of no interest any more. */
+export class Forgotten extends Error {}
+
 interface Question {
   line: string;
   quiet: boolean;
@@ -53,20 +56,20 @@ export class Dialogue {
     });
   }
 
-  /** Forgets what was asked: the board has begun anew, or the line serves another purpose. */
-  forget(why: string): void {
+  /** Forgets what was asked: the board begins anew, or the line serves another purpose. */
+  forget(): void {
     const questions = [...(this.asked ? [this.asked] : []), ...this.waiting];
     this.asked = null;
     this.waiting.length = 0;
     this.text = '';
     this.notes = [];
-    for (const { failed } of questions) failed(new Error(why));
+    for (const { failed } of questions) failed(new Forgotten());
   }
 
   /** Ends it; the link may then have another listener. */
   end(): void {
     this.over = true;
-    this.forget('the console is closed');
+    this.forget();
   }
 
   private async next(): Promise<void> {
