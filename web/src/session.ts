@@ -151,8 +151,7 @@ export class Session {
   async connect(): Promise<void> {
     const link = await PortLink.open();
     link.onGone = (why) => {
-      this.listener.trouble(`The board is gone: ${why}. The simulation goes on.`);
-      void this.simulate();
+      void this.simulate().then(() => this.listener.trouble(`The board is gone: ${why} The simulation goes on.`));
     };
     await this.attach(link);
     // Opening the port has reset the board. What comes before its banner goes to the boot loader.

@@ -216,6 +216,11 @@ function fakeSerial() {
       board = new first.constructor(image, loader);
       let out;
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });
+      window.unplug = () => {
+        clearInterval(port.timer);
+        port.readable = null;
+        out.error(new Error('The device has been lost.'));
+      };
       port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
       board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
       board.reset('external');
@@ -251,6 +256,17 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
   assert.match(await text(opened, '#where'), /with the image of another robot/);
   await opened.getByRole('button', { name: 'Back to the simulation' }).click();
   await forward(2000);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+});
+
+test('a board that is unplugged is said to be gone, and the simulation goes on', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(4000);
+  await opened.evaluate(() => window.unplug());
+  await opened.locator('#trouble', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
+  await opened.clock.runFor(2000);
   assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
 });
 

@@ -76,10 +76,13 @@ export class PortLink implements Link {
   }
 
   private async listen(): Promise<void> {
-    let why = 'the port is closed';
-    // A line error (a break, a framing error) ends a stream and leaves the port open.
-    while (this.port.readable && !this.closing) {
-      this.reader = this.port.readable.getReader();
+    let why = 'its port is closed.';
+    // A line error (a break, a framing error) ends a stream, and the port has another; a board that
+    // is unplugged leaves none.
+    let ended: ReadableStream<Uint8Array> | null = null;
+    while (this.port.readable && this.port.readable !== ended && !this.closing) {
+      ended = this.port.readable;
+      this.reader = ended.getReader();
       try {
         for (;;) {
           const { value, done } = await this.reader.read();
