@@ -46,7 +46,7 @@ export interface Measured {
 
 export class Session {
   description!: Description;
-  /** The name of its file. */
+  /** The name of its file; empty until that is there. */
   file = '';
   /** The robot.toml of the page's robot. */
   toml = '';
@@ -76,6 +76,7 @@ export class Session {
 
   /** Takes a robot of the files, on a simulated UNO if it has an image. */
   async choose(name: string, hasImage: boolean): Promise<void> {
+    this.file = '';
     this.toml = await files.toml(name);
     this.original = this.toml;
     this.image = hasImage ? await files.image(name) : null;

@@ -125,6 +125,12 @@ impl<C: Contact> Body<C> {
         [0, 1, 2, 3].map(|i| (feet[i][0] - from[i][0]).hypot(feet[i][1] - from[i][1]))
     }
 
+    /// The angles of its legs, deg, chassis frame, servo order; none before the first step.
+    #[must_use]
+    pub fn legs(&self) -> Option<[f64; 4]> {
+        self.legs
+    }
+
     /// Puts it somewhere without walking there.
     pub fn put(&mut self, place: Place) {
         self.place = place;

@@ -111,11 +111,14 @@ impl Page {
 
     fn frame(&mut self, angles: [f64; 4]) -> Option<Frame> {
         let (robot, body) = (self.robot.as_ref()?, self.body.as_mut()?);
-        let scene = Scene::of(robot, angles);
-        let slides = match scene {
-            Ok(_) => body.follow(robot, angles),
-            Err(_) => [0.0; 4],
+        // A pose that does not close is none that a robot can walk to.
+        let closes = robot.lizard().solve(&angles.into()).is_ok();
+        let slides = if closes {
+            body.follow(robot, angles)
+        } else {
+            [0.0; 4]
         };
+        let scene = Scene::of(robot, angles, body.legs().unwrap_or(angles));
         let fault = scene.as_ref().err().cloned();
         Some(Frame {
             scene: scene.ok(),

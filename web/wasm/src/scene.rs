@@ -80,11 +80,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Of servo angles in deg, chassis frame, servo order.
+    /// Of servo angles, and of the angles that the legs have, which springs may hold back:
+    /// deg, chassis frame, servo order.
     ///
     /// # Errors
     /// The sentence of the loop that does not close.
-    pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, String> {
+    pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Result<Self, String> {
         let pose = Pose::from(angles);
         let solution = robot
             .lizard()
@@ -100,9 +101,7 @@ impl Scene {
             tips: solution.crank_tips().map(Spot::from),
             points: End::ALL.map(|end| solution.point(end).into()),
             sliders: Side::ALL.map(|side| slider(robot, &solution, side)).into(),
-            legs: (0..4)
-                .map(|servo| leg(robot, servo, angles[servo]))
-                .collect(),
+            legs: (0..4).map(|servo| leg(robot, servo, legs[servo])).collect(),
             margins: solution.margins.iter().map(named).collect(),
             smallest: named(solution.margins.min()),
             refusal: refusal(robot.limits(), &solution),
@@ -153,10 +152,14 @@ mod tests {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
     }
 
+    fn at(robot: &Robot, angles: [f64; 4]) -> Result<Scene, String> {
+        Scene::of(robot, angles, angles)
+    }
+
     #[test]
     fn the_neutral_pose_is_the_papers() {
         let robot = paper();
-        let scene = Scene::of(&robot, robot.neutral().into()).expect("closes");
+        let scene = at(&robot, robot.neutral().into()).expect("closes");
         assert!(
             (scene.points[0].1 - (67.5 + 57.840)).abs() < 1e-3,
             "{:?}",
@@ -175,10 +178,10 @@ mod tests {
     #[test]
     fn a_pose_near_a_singularity_says_why_not() {
         let robot = paper();
-        let scene = Scene::of(&robot, [75.0, 105.0, 318.59, 221.41]).expect("closes");
+        let scene = at(&robot, [75.0, 105.0, 318.59, 221.41]).expect("closes");
         let refusal = scene.refusal.expect("refused");
         assert!(refusal.contains("type2_head"), "{refusal}");
-        let fault = Scene::of(&robot, [f64::NAN, 41.0, 318.0, 221.0]).expect_err("no pose");
+        let fault = at(&robot, [f64::NAN, 41.0, 318.0, 221.0]).expect_err("no pose");
         assert!(fault.contains("not a finite number"), "{fault}");
     }
 }
