@@ -24,7 +24,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash flash-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .tests .test .bench .prove .physics .mutants .fuzz .docs
+.PHONY: help sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -40,6 +40,10 @@ flash: ## build, write to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
 flash-test: ## what `make flash` does, and says when it cannot, with a simulated board
 	$(call prepared,.flash-test)
+web: ## the robot in the browser: a folder for any web server, web/dist
+	$(call prepared,.web)
+web-test: ## the page in a real browser: it walks, turns, refuses, calibrates, flashes
+	$(call prepared,.web-test)
 lint: ## rustfmt and clippy, warnings are errors
 	$(call prepared,.lint)
 cli: ## build the host program, host/target/release/lizard
@@ -57,7 +61,7 @@ fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, 
 docs: ## write anew the pages and pictures that programs make
 	$(call prepared,.docs)
 clean: ## remove everything that was built
-	rm -rf target host/target out judge/node_modules
+	rm -rf target host/target out judge/node_modules web/node_modules web/node/node_modules web/dist web/public
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:
@@ -81,6 +85,16 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@scripts/setup-flash-test
 	@cd host && cargo test -p lizard-host-tests --test flash --test flash_troubles --quiet -- --include-ignored
+
+.web:
+	@scripts/setup-web
+	@scripts/build-web
+
+.web-test:
+	@scripts/setup-web --test
+	@scripts/build-web
+	@cd host && cargo build --workspace --bin lizard --quiet
+	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=1 web/tests/*.test.js
 
 # The second line puts the program where the documentation says it is.
 .cli:

@@ -26,7 +26,7 @@ function run(file, script) {
   uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${hex(byte)}`);
   uno.deliver(bytes);
   uno.run(end);
-  lines.push(`eeprom ${Array.from(uno.eeprom.backend.memory, hex).join('')}`);
+  lines.push(`eeprom ${Array.from(uno.memory, hex).join('')}`);
   return lines;
 }
 

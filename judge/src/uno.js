@@ -53,6 +53,8 @@ export class Uno {
     const cycles = { eraseCycles: EEPROM_CYCLES, writeCycles: EEPROM_CYCLES };
     const memory = new EEPROMMemoryBackend(EEPROM);
     this.eeprom = new AVREEPROM(cpu, memory, { ...eepromConfig, ...cycles });
+    /** What the EEPROM holds, bytes. */
+    this.memory = memory.memory;
     new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY));
     cpu.data[MCUSR] = PORF;
     // avr8js resets the processor alone and leaves every peripheral as it was.

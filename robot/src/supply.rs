@@ -83,6 +83,18 @@ impl Supplies {
     }
 }
 
+/// The voltage that a servos' rail in good order leaves at its divided pin, mV: for
+/// simulations, since a rail of 0 V ends the pulses. It is 5 V, or well above what the
+/// robot reacts to. None where no rail is measured.
+pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
+    const RESERVE: f64 = 500.0;
+    const BOARD: f64 = 5_000.0;
+    let rail = supplies.rail?;
+    let ratio = f64::from(rail.reference) / f64::from(supplies.reference);
+    let mv = f64::from(rail.thresholds.slow) + RESERVE;
+    Some((mv.max(BOARD) / ratio).min(BOARD - 1.0).floor())
+}
+
 fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     if !supply.has("rail") {
         return Ok(None);

@@ -2,6 +2,7 @@
 
 use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::Robot;
+use lizard_robot::servo::FORWARD;
 
 /// The joints of a robot, mm, chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,32 +65,19 @@ impl Shape {
 impl LegShape {
     /// A servo's leg at a sweep from neutral (deg, foot forward positive), its spring
     /// hooked to this point of the crank.
-    ///
-    /// The paper gives no mounting. This is what the contact model takes: at neutral
-    /// the foot is straight beside the hip, swept by `mount`, and the ground link stands
-    /// where it then makes the servo's neutral angle with the leg.
     #[must_use]
     pub fn of(robot: &Robot, servo: usize, sweep: f64, hook: Vector) -> Self {
-        let feet = &robot.ground().feet;
-        let point = |[forward, left]: [f64; 2]| Vector::new(-left, forward);
-        let hip = point(feet.hips()[servo]);
-        let reach = |sweep: f64| {
-            let mut sweeps = [0.0; 4];
-            sweeps[servo] = sweep;
-            point(feet.at(sweeps)[servo]) - hip
-        };
-        let link = reach(0.0).angle() - robot.servos()[servo].neutral;
-        let half = Vector::direction(link) * (robot.lizard().leg.ground / 2.0);
-        let reach = reach(sweep);
-        let pivots = [hip - half, hip + half];
+        let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
+        let place = robot.leg(servo, angle);
+        let pivots = place.pivots();
         // The leg's own link is the one nearer to the servo.
         let away = pivots.map(|pivot| (pivot - hook).length());
         let driven = pivots[usize::from(away[1] < away[0])];
         Self {
             pivots,
-            joints: pivots.map(|pivot| pivot + reach),
-            foot: hip + reach,
-            spring: [hook, driven + reach * 0.5],
+            joints: place.joints(),
+            foot: place.foot(),
+            spring: [hook, driven + place.reach * 0.5],
         }
     }
 }

@@ -1,8 +1,7 @@
 //! The mechanism from above, head up: chassis, five-bars, sliders and legs.
 
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_robot::Robot;
-use lizard_twin::LegShape;
+use lizard_robot::{LegPlace, Robot};
 use svg::Document;
 use svg::node::element::{Group, Path};
 
@@ -215,23 +214,17 @@ impl View<'_> {
         )
     }
 
-    /// A servo's leg, which does not lag.
-    fn leg_shape(&self, servo: usize) -> LegShape {
-        let sweeps = self.robot.sweeps(self.angles());
-        LegShape::of(self.robot, servo, sweeps[servo], self.shafts()[servo])
+    pub(super) fn foot(&self, servo: usize) -> Joint {
+        self.place(servo).foot()
     }
 
-    pub(super) fn foot(&self, servo: usize) -> Joint {
-        self.leg_shape(servo).foot
+    fn place(&self, servo: usize) -> LegPlace {
+        self.robot.leg(servo, self.angles()[servo])
     }
 
     fn leg(&self, mut group: Group, servo: usize) -> Group {
-        let LegShape {
-            pivots,
-            joints,
-            foot,
-            ..
-        } = self.leg_shape(servo);
+        let place = self.place(servo);
+        let (pivots, joints) = (place.pivots(), place.joints());
         let colour = SERVO[servo];
         group = group.add(bar(pivots[0], pivots[1], "#c9c3b6", 5.0));
         for (pivot, joint) in pivots.into_iter().zip(joints) {
@@ -241,7 +234,7 @@ impl View<'_> {
         for (at, joint) in pivots.into_iter().zip(joints) {
             group = group.add(pivot(at, 1.7)).add(pivot(joint, 1.7));
         }
-        let foot = page(foot);
+        let foot = page(place.foot());
         let pad = (8.0 * PIXELS_PER_MM, 11.0 * PIXELS_PER_MM);
         group.add(rectangle((foot.0 - pad.0 / 2.0, foot.1 - pad.1 / 2.0), pad, DARK).set("rx", 10))
     }

@@ -17,7 +17,7 @@ use simulated_uno::{Fidelity, State, Uno};
 
 use crate::sim::script::{Script, Step};
 use crate::sim::session::{self, Event, Recording};
-use crate::sim::{elf, frame, read_script, spans, tour, write_file};
+use crate::sim::{elf, frame, read_script, spans, supplies, tour, write_file};
 use crate::{Failure, RobotFile};
 use replay::Replay;
 use report::Report;
@@ -86,6 +86,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let elf = elf(args.elf.as_deref())?;
     let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    supplies::connect(&mut uno, &robot);
     let recording = record(&mut uno, &robot, &script)?;
     if recording.state != State::Alive {
         return Err(Failure::Impossible(

@@ -1,0 +1,38 @@
+// A boot loader writes the flash that it does not run from, page by page (data sheet, chapter 26). avr8js
+// takes SPM for a NOP. Here an erase and a write take no time, so a loader's wait for their end is short.
+const SPM = 0x95e8;
+const SPMCSR = 0x57;
+const COMMAND = 0x1f;
+const FILL = 0x01;
+const ERASE = 0x03;
+const WRITE = 0x05;
+const PAGE = 128;
+const Z = 30;
+
+export function selfProgramming(uno) {
+  const { cpu, flash } = uno;
+  const { data } = cpu;
+  const instruction = uno.instruction;
+  const page = new Uint8Array(PAGE).fill(0xff);
+  uno.instruction = () => {
+    const programs = cpu.progMem[cpu.pc] === SPM;
+    instruction();
+    if (!programs) return;
+    const address = data[Z] | (data[Z + 1] << 8);
+    const start = address & ~(PAGE - 1) & (flash.length - 1);
+    switch (data[SPMCSR] & COMMAND) {
+      case FILL:
+        page.set(data.subarray(0, 2), address & (PAGE - 2));
+        break;
+      case ERASE:
+        flash.fill(0xff, start, start + PAGE);
+        break;
+      case WRITE:
+        // A cell can only be cleared; a set bit needs an erase.
+        page.forEach((byte, at) => (flash[start + at] &= byte));
+        page.fill(0xff);
+        break;
+    }
+    data[SPMCSR] &= ~COMMAND;
+  };
+}

@@ -1,0 +1,31 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { receiveBuffer } from '../src/receive-buffer.js';
+import { uno } from './program.js';
+
+// Switches the receiver on, waits, and reads four bytes into r20 to r23 as long as there are any.
+const PROGRAM = `
+    ldi r16, 0x10
+    sts 0xc1, r16     ; UCSR0B: RXEN
+    ldi r17, 50
+  wait:
+    dec r17
+    brne wait
+    lds r20, 0xc6     ; UDR0
+    lds r21, 0xc6
+    lds r22, 0xc6
+    lds r24, 0xc0     ; UCSR0A
+  stop:
+    rjmp stop`;
+
+test('three bytes wait until they are read, in order, and a fourth is lost', () => {
+  const board = uno([receiveBuffer], PROGRAM);
+  assert.equal(board.receive(1), false, 'the receiver is off');
+  board.run(20);
+  assert.deepEqual([11, 12, 13, 14].map(board.receive), [true, true, true, false]);
+  board.run(1000);
+  const { data } = board.cpu;
+  assert.deepEqual([...data.subarray(20, 23)], [11, 12, 13]);
+  assert.equal(data[24] & 0x80, 0, 'RXC has fallen');
+});

@@ -1,0 +1,44 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { selfProgramming } from '../src/self-programming.js';
+import { run } from './program.js';
+
+// Fills the first word of the page at 0x200, erases the page, writes it.
+const program = (erase) => `
+    ldi r30, 0x00
+    ldi r31, 0x02
+    ldi r16, 0x34
+    mov r0, r16
+    ldi r16, 0x12
+    mov r1, r16
+    ldi r16, 1
+    out 0x37, r16     ; SPMCSR: fill
+    spm
+    ldi r16, ${erase ? 3 : 0}
+    out 0x37, r16     ; erase
+    spm
+    ldi r16, 5
+    out 0x37, r16     ; write
+    spm
+    in r20, 0x37
+  stop:
+    rjmp stop`;
+
+test('a page is filled, erased and written', () => {
+  const words = (corrections) => run(corrections, program(true), 100).cpu.progMem.subarray(0x100, 0x102);
+  assert.equal(words([])[0], 0xffff, 'avr8js itself can do it now: self-programming.js can go');
+  assert.deepEqual([...words([selfProgramming])], [0x1234, 0xffff]);
+});
+
+test('SPMCSR says that it is done', () => {
+  assert.equal(run([selfProgramming], program(true), 100).cpu.data[20] & 0x1f, 0);
+});
+
+test('a write without an erase only clears bits', () => {
+  const twice = (board) => {
+    board.flash[0x200] = 0xf0;
+    selfProgramming(board);
+  };
+  assert.equal(run([twice], program(false), 100).cpu.progMem[0x100] & 0xff, 0x30);
+});

@@ -1,0 +1,116 @@
+// The console's rule: every line gets exactly one answer, `ok ...` or `err ...`; lines that begin
+// with # come before it, or unasked. One line is sent at a time.
+import type { Link } from './link';
+
+/** The console takes lines of at most so many characters. */
+export const LONGEST_LINE = 63;
+/** No answer within this time, ms, is none. */
+const PATIENCE = 3000;
+
+export interface Answer {
+  ok: boolean;
+  /** The line itself. */
+  text: string;
+  /** The # lines that came before it. */
+  notes: string[];
+}
+
+export interface Heard {
+  /** A line that was sent. */
+  sent(line: string): void;
+  /** A line that came. */
+  came(line: string): void;
+}
+
+/** What was asked is of no interest any more. */
+export class Forgotten extends Error {}
+
+interface Question {
+  line: string;
+  quiet: boolean;
+  answered: (answer: Answer) => void;
+  failed: (error: Error) => void;
+}
+
+export class Dialogue {
+  private readonly encoder = new TextEncoder();
+  private readonly decoder = new TextDecoder('latin1');
+  private text = '';
+  private readonly waiting: Question[] = [];
+  private asked: Question | null = null;
+  private notes: string[] = [];
+  private over = false;
+
+  constructor(
+    readonly link: Link,
+    private readonly heard: Heard,
+  ) {
+    link.onBytes = (bytes) => this.bytes(bytes);
+  }
+
+  /** Sends a line and waits for its answer. A quiet one is not shown. */
+  ask(line: string, quiet = false): Promise<Answer> {
+    return new Promise((answered, failed) => {
+      this.waiting.push({ line, quiet, answered, failed });
+      void this.next();
+    });
+  }
+
+  /** Forgets what was asked: the board begins anew, or the line serves another purpose. */
+  forget(): void {
+    const questions = [...(this.asked ? [this.asked] : []), ...this.waiting];
+    this.asked = null;
+    this.waiting.length = 0;
+    this.text = '';
+    this.notes = [];
+    for (const { failed } of questions) failed(new Forgotten());
+  }
+
+  /** Ends it; the link may then have another listener. */
+  end(): void {
+    this.over = true;
+    this.forget();
+  }
+
+  private async next(): Promise<void> {
+    if (this.asked || this.over) return;
+    const question = this.waiting.shift();
+    if (!question) return;
+    this.asked = question;
+    this.notes = [];
+    if (!question.quiet) this.heard.sent(question.line);
+    try {
+      await this.link.write(this.encoder.encode(`${question.line}\n`));
+      await this.link.wait(PATIENCE);
+      if (this.asked === question) throw new Error(`no answer to "${question.line}"`);
+    } catch (error) {
+      if (this.asked !== question) return;
+      this.asked = null;
+      question.failed(error instanceof Error ? error : new Error(String(error)));
+      void this.next();
+    }
+  }
+
+  private bytes(bytes: Uint8Array): void {
+    if (this.over) return;
+    this.text += this.decoder.decode(bytes);
+    const lines = this.text.split(/\r?\n/);
+    this.text = lines.pop() ?? '';
+    for (const line of lines) if (line !== '') this.line(line);
+  }
+
+  private line(line: string): void {
+    const question = this.asked;
+    const answers = /^(ok|err)\b/.test(line);
+    if (!(question?.quiet && answers)) this.heard.came(line);
+    if (!answers) {
+      this.notes.push(line);
+    } else if (question) {
+      this.asked = null;
+      const { notes } = this;
+      this.notes = [];
+      question.answered({ ok: line.startsWith('ok'), text: line, notes });
+      void this.next();
+    }
+  }
+}

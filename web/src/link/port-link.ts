@@ -1,0 +1,100 @@
+// The link to a board on USB, by Web Serial. Chromium and its kin have it, over https or on localhost.
+import type { Link } from './link';
+
+/** The parts of Web Serial that are used; TypeScript's own library does not have them. */
+interface SerialPort {
+  readonly readable: ReadableStream<Uint8Array> | null;
+  readonly writable: WritableStream<Uint8Array> | null;
+  open(options: { baudRate: number; bufferSize?: number }): Promise<void>;
+  close(): Promise<void>;
+  setSignals(signals: { dataTerminalReady?: boolean; requestToSend?: boolean }): Promise<void>;
+}
+
+interface Serial {
+  requestPort(): Promise<SerialPort>;
+}
+
+const BAUD = 115_200;
+/** How long the reset line is pulled, ms. */
+const RESET = 50;
+
+function serial(): Serial | undefined {
+  return (navigator as Navigator & { serial?: Serial }).serial;
+}
+
+/** Whether this browser can open a port. */
+export function hasSerial(): boolean {
+  return serial() !== undefined;
+}
+
+const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
+
+export class PortLink implements Link {
+  readonly name = 'board on USB';
+  readonly canFlash = true;
+  onBytes: (bytes: Uint8Array) => void = () => {};
+  onGone: (why: string) => void = () => {};
+  private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
+  private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
+  private closing = false;
+
+  private constructor(private readonly port: SerialPort) {}
+
+  /** Lets the user pick a port and opens it, which resets an UNO. */
+  static async open(): Promise<PortLink> {
+    const ports = serial();
+    if (!ports) throw new Error('this browser has no Web Serial');
+    const port = await ports.requestPort();
+    await port.open({ baudRate: BAUD, bufferSize: 4096 });
+    const link = new PortLink(port);
+    void link.listen();
+    return link;
+  }
+
+  async write(bytes: Uint8Array): Promise<void> {
+    if (!this.port.writable) throw new Error('the port is closed');
+    this.writer ??= this.port.writable.getWriter();
+    await this.writer.write(bytes);
+  }
+
+  async reset(): Promise<void> {
+    await this.port.setSignals({ dataTerminalReady: false, requestToSend: false });
+    await sleep(RESET);
+    await this.port.setSignals({ dataTerminalReady: true, requestToSend: true });
+    await sleep(RESET);
+  }
+
+  wait(ms: number): Promise<void> {
+    return sleep(ms);
+  }
+
+  async close(): Promise<void> {
+    this.closing = true;
+    await this.reader?.cancel().catch(() => {});
+    this.writer?.releaseLock();
+    await this.port.close().catch(() => {});
+  }
+
+  private async listen(): Promise<void> {
+    let why = 'its port is closed.';
+    // A line error (a break, a framing error) ends a stream, and the port has another; a board that
+    // is unplugged leaves none.
+    let ended: ReadableStream<Uint8Array> | null = null;
+    while (this.port.readable && this.port.readable !== ended && !this.closing) {
+      ended = this.port.readable;
+      this.reader = ended.getReader();
+      try {
+        for (;;) {
+          const { value, done } = await this.reader.read();
+          if (done) break;
+          if (value) this.onBytes(value);
+        }
+      } catch (error) {
+        why = error instanceof Error ? error.message : String(error);
+      } finally {
+        this.reader.releaseLock();
+      }
+    }
+    if (!this.closing) this.onGone(why);
+  }
+}

@@ -1,0 +1,125 @@
+// Writing an image by the boot loader of an UNO, optiboot: STK500 version 1, as avrdude's
+// `-c arduino` speaks it.
+import { load } from '../../../judge/src/hex.js';
+import { BOOT } from '../uno/board';
+import type { Link } from './link';
+
+const OK = 0x10;
+const IN_SYNC = 0x14;
+const GET_SYNC = 0x30;
+const LOAD_ADDRESS = 0x55;
+const PROGRAM_PAGE = 0x64;
+const READ_PAGE = 0x74;
+const READ_SIGNATURE = 0x75;
+const LEAVE = 0x51;
+const END = 0x20;
+const FLASH = 0x46;
+
+const PAGE = 128;
+const SIGNATURE = [0x1e, 0x95, 0x0f];
+const FLASH_SIZE = 32 * 1024;
+
+/** An answer comes within this time, ms. */
+const PATIENCE = 500;
+/** The loader blinks so long after a reset and does not listen, ms. */
+const BLINKS = 400;
+/** Then it listens for what is left of a second: how often it is called, ms apart. */
+const CALLS = 5;
+const CALL = 110;
+/** An answer that is late has come within this, ms. */
+const QUIET = 40;
+
+export type Progress = (done: number, of: number, what: 'writing' | 'verifying') => void;
+
+/** Bytes of an image up to its end, in whole pages. Throws a sentence. */
+export function imageOf(hex: string): Uint8Array {
+  const flash = new Uint8Array(FLASH_SIZE).fill(0xff);
+  load(hex, flash);
+  let end = flash.length;
+  while (end > 0 && flash[end - 1] === 0xff) end -= 1;
+  if (end === 0) throw new Error('the HEX file is empty');
+  if (end > BOOT) throw new Error('the HEX file reaches into the boot loader, which cannot write itself');
+  return flash.subarray(0, Math.ceil(end / PAGE) * PAGE);
+}
+
+class Loader {
+  private received: number[] = [];
+  private arrived: () => void = () => {};
+
+  constructor(private readonly link: Link) {
+    link.onBytes = (bytes) => {
+      this.received.push(...bytes);
+      this.arrived();
+    };
+  }
+
+  forget(): void {
+    this.received = [];
+  }
+
+  /** So many bytes, or a sentence why not. */
+  async take(count: number, patience: number): Promise<number[]> {
+    let late = false;
+    void this.link.wait(patience).then(() => {
+      late = true;
+      this.arrived();
+    });
+    while (this.received.length < count) {
+      if (late) throw new Error('the board does not answer');
+      await new Promise<void>((arrived) => (this.arrived = arrived));
+    }
+    return this.received.splice(0, count);
+  }
+
+  /** A command and its answer of so many bytes. */
+  async command(bytes: number[], answer = 0, patience = PATIENCE): Promise<number[]> {
+    await this.link.write(Uint8Array.from([...bytes, END]));
+    const got = await this.take(answer + 2, patience);
+    if (got[0] !== IN_SYNC || got[got.length - 1] !== OK) throw new Error('the board answers out of step');
+    return got.slice(1, -1);
+  }
+}
+
+async function call(link: Link, loader: Loader): Promise<void> {
+  await link.wait(BLINKS);
+  for (let n = 1; ; n++) {
+    loader.forget();
+    try {
+      await loader.command([GET_SYNC], 0, CALL);
+      await link.wait(QUIET);
+      loader.forget();
+      return;
+    } catch (error) {
+      if (n === CALLS) throw error;
+    }
+  }
+}
+
+/**
+ * Resets the board, writes an image, reads it back and starts it. The link's bytes belong to
+ * this until it is done. Throws a sentence.
+ */
+export async function flash(link: Link, image: Uint8Array, progress: Progress): Promise<void> {
+  const loader = new Loader(link);
+  await link.reset();
+  await call(link, loader);
+  const signature = await loader.command([READ_SIGNATURE], 3);
+  if (signature.some((byte, i) => byte !== SIGNATURE[i])) {
+    const hex = signature.map((byte) => byte.toString(16).padStart(2, '0')).join(' ');
+    throw new Error(`this is no ATmega328P, its signature is ${hex}`);
+  }
+  const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
+  for (let at = 0; at < image.length; at += PAGE) {
+    await goTo(at);
+    await loader.command([PROGRAM_PAGE, 0, PAGE, FLASH, ...image.subarray(at, at + PAGE)]);
+    progress(at + PAGE, image.length, 'writing');
+  }
+  for (let at = 0; at < image.length; at += PAGE) {
+    await goTo(at);
+    const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
+    const wrong = read.findIndex((byte, i) => byte !== image[at + i]);
+    if (wrong >= 0) throw new Error(`the flash does not keep byte ${at + wrong}: try another board`);
+    progress(at + PAGE, image.length, 'verifying');
+  }
+  await loader.command([LEAVE]);
+}

@@ -1,0 +1,213 @@
+// The robot in WebAssembly (wasm/): everything that is computed of it. Types are those that
+// wasm/src writes as JSON; no formula is in this language.
+
+/** mm, chassis frame: to the right, forward. */
+export type Spot = [number, number];
+export type Four<T> = [T, T, T, T];
+
+export interface Gait {
+  name: string;
+  command: string;
+  period: number;
+  moves: boolean;
+}
+
+export interface Servo {
+  name: string;
+  leg: string;
+  pin: number;
+  neutral: number;
+  /** deg from neutral. */
+  travel: [number, number];
+}
+
+export interface Length {
+  key: string;
+  label: string;
+  /** The key of its mirror image, or of the length that must equal it. */
+  twin: string;
+  unit: string;
+  value: number;
+}
+
+export interface Description {
+  hash: string;
+  servos: Four<Servo>;
+  gaits: Gait[];
+  lengths: Length[];
+  margins: { name: string; limit: number }[];
+  stroke: [number, number];
+  supply: [number, number, number];
+  /** The converter's channel of the servos' rail, and the volts there. */
+  rail: [number, number] | null;
+  friction: number;
+}
+
+export interface Refused {
+  refused: string;
+  line: number | null;
+  key: string;
+}
+
+export interface Scene {
+  angles: Four<number>;
+  shafts: Four<Spot>;
+  tips: Four<Spot>;
+  points: [Spot, Spot];
+  sliders: { shafts: [Spot, Spot]; tips: [Spot, Spot]; tube: Spot; travel: number }[];
+  legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot }>;
+  margins: { name: string; value: number }[];
+  smallest: { name: string; value: number };
+  refusal: string | null;
+  map: [[number, number], [number, number]];
+}
+
+/** Where the body is on the floor: mm, and deg counter-clockwise. */
+export interface Place {
+  x: number;
+  y: number;
+  heading: number;
+}
+
+export interface Frame {
+  scene: Scene | null;
+  fault: string | null;
+  place: Place;
+  slides: Four<number>;
+}
+
+/** What a cycle of a gait makes, mm and deg; null where that is undecided. */
+export interface Way {
+  forward: number | null;
+  left: number | null;
+  turn: number | null;
+}
+
+export interface SingularityMap {
+  end: string;
+  from: number;
+  to: number;
+  size: number;
+  margins: (number | null)[];
+  safe: boolean[];
+  curves: { kind: string; points: [number, number][] }[];
+}
+
+export interface Said {
+  widths: Four<number>;
+  text: string;
+}
+
+/** What wasm/src/abi.rs exports. */
+interface Exports {
+  memory: WebAssembly.Memory;
+  lizard_input(length: number): number;
+  lizard_output(): number;
+  lizard_output_length(): number;
+  lizard_read(): void;
+  lizard_edit(value: number): void;
+  lizard_pulses(a1: number, a2: number, a3: number, a4: number): void;
+  lizard_pose(a1: number, a2: number, a3: number, a4: number): void;
+  lizard_restart(): void;
+  lizard_way(x0: number, y0: number, h0: number, x1: number, y1: number, h1: number): void;
+  lizard_set_friction(ratio: number): void;
+  lizard_predict(gait: number): void;
+  lizard_map(end: number): void;
+  lizard_run_core(): void;
+  lizard_core_frame(volts: number): void;
+}
+
+export function isRefused(answer: object): answer is Refused {
+  return 'refused' in answer;
+}
+
+export class Robot {
+  private readonly wasm: Exports;
+  private readonly encoder = new TextEncoder();
+  private readonly decoder = new TextDecoder();
+
+  private constructor(wasm: Exports) {
+    this.wasm = wasm;
+  }
+
+  static async load(bytes: BufferSource): Promise<Robot> {
+    const { instance } = await WebAssembly.instantiate(bytes, {});
+    return new Robot(instance.exports as unknown as Exports);
+  }
+
+  /** Takes the robot of a robot.toml. If that is refused, the one of before stays. */
+  read(toml: string): Description | Refused {
+    this.give(toml);
+    this.wasm.lizard_read();
+    return this.answer();
+  }
+
+  /** A robot.toml with another number at a key, and whether it will do. */
+  edit(toml: string, key: string, value: number): { text: string; refusal: Refused | null } | Refused {
+    this.give(`${key}\n${toml}`);
+    this.wasm.lizard_edit(value);
+    return this.answer();
+  }
+
+  /** The next frame's pulse widths, CPU cycles; 0 for none. */
+  pulses(widths: Four<number>): Frame | null {
+    this.wasm.lizard_pulses(...widths);
+    return this.answer();
+  }
+
+  /** The next pose, deg. */
+  pose(angles: Four<number>): Frame | null {
+    this.wasm.lizard_pose(...angles);
+    return this.answer();
+  }
+
+  /** Back to the start of the way. */
+  restart(): void {
+    this.wasm.lizard_restart();
+  }
+
+  /** The way from one place to another, seen from the first: mm and deg. */
+  between(from: Place, to: Place): { forward: number; left: number; turn: number } {
+    this.wasm.lizard_way(from.x, from.y, from.heading, to.x, to.y, to.heading);
+    return this.answer();
+  }
+
+  setFriction(ratio: number): void {
+    this.wasm.lizard_set_friction(ratio);
+  }
+
+  predict(gait: number): Way | null {
+    this.wasm.lizard_predict(gait);
+    return this.answer();
+  }
+
+  /** Of the head (0) or the tail (1). */
+  map(end: number): SingularityMap | null {
+    this.wasm.lizard_map(end);
+    return this.answer();
+  }
+
+  /** Begins to run the firmware's core with this robot's numbers. */
+  runCore(): void {
+    this.wasm.lizard_run_core();
+  }
+
+  /** A frame of the core, 20 ms. */
+  coreFrame(line: string, volts: number): Said | null {
+    this.give(line);
+    this.wasm.lizard_core_frame(volts);
+    return this.answer();
+  }
+
+  private give(text: string): void {
+    const bytes = this.encoder.encode(text);
+    const at = this.wasm.lizard_input(bytes.length);
+    new Uint8Array(this.wasm.memory.buffer).set(bytes, at);
+  }
+
+  private answer<T>(): T {
+    const { wasm } = this;
+    const bytes = new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), wasm.lizard_output_length());
+    return JSON.parse(this.decoder.decode(bytes)) as T;
+  }
+}

@@ -1,0 +1,69 @@
+// The answer to `status`, `# t=` lines and `cal` lines, read.
+import type { Four } from './robot';
+
+export interface Status {
+  gait: string;
+  pose: Four<number>;
+  margin: number;
+  guard: string;
+  fault: string;
+  late: number;
+  lost: number;
+  reset: string;
+  resets: number;
+  vcc: number | null;
+  speed: number | null;
+}
+
+function four(text: string | undefined): Four<number> | null {
+  const numbers = (text ?? '').split(',').map(Number);
+  return numbers.length === 4 && numbers.every(Number.isFinite) ? (numbers as Four<number>) : null;
+}
+
+/** Reads `ok gait=...`; null for any other line. */
+export function status(line: string): Status | null {
+  if (!line.startsWith('ok gait=')) return null;
+  const pairs = new Map(line.slice(3).split(' ').map((pair) => pair.split('=') as [string, string]));
+  const pose = four(pairs.get('pose'));
+  if (!pose) return null;
+  const number = (key: string): number | null => (pairs.has(key) ? parseFloat(pairs.get(key)!) : null);
+  return {
+    gait: pairs.get('gait') ?? '',
+    pose,
+    margin: number('margin') ?? 0,
+    guard: pairs.get('guard') ?? '',
+    fault: pairs.get('fault') ?? 'none',
+    late: number('late') ?? 0,
+    lost: number('rx_lost') ?? 0,
+    reset: pairs.get('reset') ?? '',
+    resets: number('resets') ?? 0,
+    vcc: number('vcc'),
+    speed: number('speed'),
+  };
+}
+
+/** The pose of a `# t=<frame> pose=...` line. */
+export function watched(line: string): Four<number> | null {
+  const match = /^# t=\d+ pose=(\S+)/.exec(line);
+  return match ? four(match[1]) : null;
+}
+
+export interface ServoSettings {
+  trim: number;
+  limit: [number, number];
+  dir: '+' | '-';
+  scale: number;
+}
+
+/** Reads the four `# A1 trim ...` lines of `cal`. */
+export function calibration(lines: string[]): ServoSettings[] | null {
+  const pattern = /^# A([1-4]) trim (\S+) limit (\S+) (\S+) dir ([+-]) scale (\S+)/;
+  const found = lines.flatMap((line) => {
+    const match = pattern.exec(line);
+    if (!match) return [];
+    const [, , trim, least, most, dir, scale] = match;
+    const limit: [number, number] = [Number(least), Number(most)];
+    return [{ trim: Number(trim), limit, dir: dir as '+' | '-', scale: Number(scale) }];
+  });
+  return found.length === 4 ? found : null;
+}

@@ -1,0 +1,139 @@
+// An Arduino UNO that can be reset, flashed and left without bytes: the judge's chip, which
+// avr8js simulates, in a board that outlives it.
+import { corrections } from '../../../judge/src/corrections/index.js';
+import { load } from '../../../judge/src/hex.js';
+import { receiveBuffer } from '../../../judge/src/receive-buffer.js';
+import { Scope } from '../../../judge/src/scope.js';
+import { selfProgramming } from '../../../judge/src/self-programming.js';
+import { Uno } from '../../../judge/src/uno.js';
+
+export const FREQUENCY = 16_000_000;
+
+/** A byte at 115200 baud: ten bits. */
+const BYTE_CYCLES = Math.round((10 * FREQUENCY) / 115_200);
+const MCUSR = 0x54;
+/** RAM of the chip, after its registers. */
+const RAM = 0x100;
+/** Where a boot loader of 512 bytes begins: byte and word. */
+export const BOOT = 0x7e00;
+
+/** Why a chip begins anew, as MCUSR has it. */
+const CAUSES = { power: 0x01, external: 0x02, watchdog: 0x08 };
+export type Cause = keyof typeof CAUSES;
+
+class ChipReset extends Error {}
+
+export class Board {
+  /** Called with each byte that the UNO has sent. */
+  onByte: (byte: number) => void = () => {};
+  /** Called when a pulse has ended: pin, cycle of its rise, width in cycles. */
+  onPulse: (pin: number, rise: number, width: number) => void = () => {};
+  /** Called with each byte when the UNO has got it. */
+  onReceived: (byte: number, cycle: number) => void = () => {};
+  /** Bytes that the UNO had no room for. */
+  lost = 0;
+
+  private uno!: Uno & { receive?(byte: number): boolean };
+  /** Cycles of the chips before this one. */
+  private before = 0;
+  private readonly line: number[] = [];
+  private lineIsBusy = false;
+  private volts = 5;
+
+  /**
+   * At power-on. `bootLoader` and `image` are HEX files; `rail` a channel of the converter and the volts
+   * that it measures.
+   */
+  constructor(
+    image: string | null,
+    bootLoader: string | null,
+    private readonly rail: [number, number] | null,
+  ) {
+    const flash = new Uint8Array(32 * 1024).fill(0xff);
+    if (image !== null) load(image, flash);
+    if (bootLoader !== null) load(bootLoader, flash);
+    this.begin('power', flash);
+  }
+
+  /** Cycles since power-on. */
+  get cycle(): number {
+    return this.before + this.uno.cpu.cycles;
+  }
+
+  /** All of flash. */
+  get flash(): Uint8Array {
+    return this.uno.flash;
+  }
+
+  /** All of the EEPROM. */
+  get eeprom(): Uint8Array {
+    return this.uno.memory;
+  }
+
+  /** Runs so many cycles. */
+  run(cycles: number): void {
+    const end = this.cycle + cycles;
+    while (this.cycle < end) {
+      try {
+        this.uno.run(end - this.before);
+      } catch (error) {
+        if (!(error instanceof ChipReset)) throw error;
+        this.reset('watchdog');
+      }
+    }
+  }
+
+  /** Puts bytes on the line to the UNO; they arrive one after the other. */
+  send(bytes: Iterable<number>): void {
+    this.line.push(...bytes);
+    this.carry();
+  }
+
+  /** The voltage of the board. */
+  supply(volts: number): void {
+    this.volts = volts;
+    this.uno.adc.avcc = volts;
+  }
+
+  /** Begins anew, with the flash, the EEPROM and the RAM as they are. */
+  reset(cause: Cause): void {
+    const { cpu, flash, memory } = this.uno;
+    this.before += cpu.cycles;
+    this.line.length = 0;
+    this.lineIsBusy = false;
+    const ram = cpu.data.slice(RAM);
+    this.begin(cause, flash, memory);
+    if (cause !== 'power') this.uno.cpu.data.set(ram, RAM);
+  }
+
+  private begin(cause: Cause, flash: Uint8Array, eeprom?: Uint8Array): void {
+    const uno = new Uno([...corrections, selfProgramming, receiveBuffer]);
+    this.uno = uno;
+    uno.flash.set(flash);
+    if (eeprom) uno.memory.set(eeprom);
+    uno.cpu.data[MCUSR] = CAUSES[cause];
+    uno.cpu.pc = flash[BOOT] === 0xff && flash[BOOT + 1] === 0xff ? 0 : BOOT / 2;
+    uno.cpu.reset = () => {
+      throw new ChipReset();
+    };
+    uno.adc.avcc = this.volts;
+    if (this.rail) uno.adc.channelValues[this.rail[0]] = this.rail[1];
+    uno.usart.onByteTransmit = (byte: number) => this.onByte(byte);
+    const before = this.before;
+    new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, before + rise, width));
+  }
+
+  private carry(): void {
+    const { uno } = this;
+    if (this.lineIsBusy || this.line.length === 0) return;
+    this.lineIsBusy = true;
+    uno.cpu.addClockEvent(() => {
+      this.lineIsBusy = false;
+      const byte = this.line.shift();
+      if (uno !== this.uno || byte === undefined) return;
+      if (!uno.receive?.(byte)) this.lost += 1;
+      this.onReceived(byte, this.cycle);
+      this.carry();
+    }, BYTE_CYCLES);
+  }
+}

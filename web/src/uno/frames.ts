@@ -1,0 +1,43 @@
+// From single pulses to frames: what the four servos are told within 20 ms.
+import type { Four } from '../robot';
+import { FREQUENCY } from './board';
+
+/** Servos get their pulses one after the other, 4 ms each. A frame is over after four of these. */
+const FOUR_SLOTS = 0.0165 * FREQUENCY;
+
+export class Frames {
+  private widths: Four<number> = [0, 0, 0, 0];
+  private begun: number | null = null;
+  private last = -1;
+
+  /** `pins` are the servos' Arduino numbers, A1 to A4. */
+  constructor(
+    private readonly pins: number[],
+    private readonly onFrame: (widths: Four<number>, cycle: number) => void,
+  ) {}
+
+  pulse(pin: number, rise: number, width: number): void {
+    const servo = this.pins.indexOf(pin);
+    if (servo < 0) return;
+    // The same servo again, or one before it: the frame before is complete.
+    if (servo <= this.last) this.close();
+    this.begun ??= rise;
+    this.last = servo;
+    this.widths[servo] = width;
+    if (servo === 3) this.close();
+  }
+
+  /** Closes a frame in which not all servos have a pulse. */
+  at(cycle: number): void {
+    if (this.begun !== null && cycle - this.begun > FOUR_SLOTS) this.close();
+  }
+
+  private close(): void {
+    if (this.begun === null) return;
+    const { widths, begun } = this;
+    this.widths = [0, 0, 0, 0];
+    this.begun = null;
+    this.last = -1;
+    this.onFrame(widths, begun);
+  }
+}

@@ -1,0 +1,99 @@
+// The servos' calibration: read by `cal`, set as it is moved, kept by `save`.
+import type { Session } from '../session';
+import { calibration, type ServoSettings } from '../status';
+import { element } from './canvas';
+
+interface Row {
+  trim: HTMLInputElement;
+  scale: HTMLInputElement;
+  least: HTMLInputElement;
+  most: HTMLInputElement;
+  dir: HTMLSelectElement;
+}
+
+export class Calibrate {
+  private readonly box = element('calibration');
+  private readonly said = element('cal-said');
+  private rows: Row[] = [];
+
+  constructor(private readonly session: () => Session) {
+    element('cal-read').addEventListener('click', () => void this.read());
+    element('cal-save').addEventListener('click', () => void this.set('save'));
+    this.box.closest('details')?.addEventListener('toggle', (event) => {
+      if ((event.target as HTMLDetailsElement).open) void this.read();
+    });
+  }
+
+  /** Asks the robot for its settings, and shows them. */
+  async read(): Promise<void> {
+    const answer = await this.session().ask('cal', true);
+    const settings = answer && calibration(answer.notes);
+    if (!settings) return;
+    if (this.rows.length === 0) this.build();
+    settings.forEach((servo, n) => this.show(n, servo));
+  }
+
+  private show(servo: number, { trim, limit, dir, scale }: ServoSettings): void {
+    const row = this.rows[servo];
+    row.trim.value = String(trim);
+    row.trim.dispatchEvent(new Event('shown'));
+    row.scale.value = String(scale);
+    [row.least.value, row.most.value] = limit.map(String);
+    row.dir.value = dir;
+  }
+
+  private async set(line: string): Promise<void> {
+    const answer = await this.session().ask(line);
+    this.said.textContent = answer?.text ?? '';
+    if (answer && !answer.ok) await this.read();
+  }
+
+  private build(): void {
+    this.rows = [1, 2, 3, 4].map((servo) => {
+      const group = this.box.appendChild(document.createElement('fieldset'));
+      group.appendChild(document.createElement('legend')).textContent = `A${servo}`;
+      const trim = this.trim(group, servo);
+      const numbers = group.appendChild(document.createElement('div'));
+      numbers.className = 'numbers';
+      const number = (label: string, step: string) => {
+        const box = numbers.appendChild(document.createElement('label'));
+        box.append(label);
+        const input = box.appendChild(document.createElement('input'));
+        input.type = 'number';
+        input.step = step;
+        return input;
+      };
+      const least = number('from, deg', '1');
+      const most = number('to, deg', '1');
+      const scale = number('µs per deg', '0.01');
+      const box = numbers.appendChild(document.createElement('label'));
+      box.append('longer pulse turns it');
+      const dir = box.appendChild(document.createElement('select'));
+      dir.add(new Option('left (+)', '+'));
+      dir.add(new Option('right (−)', '-'));
+      for (const input of [least, most]) {
+        input.addEventListener('change', () => void this.set(`limit ${servo} ${least.value} ${most.value}`));
+      }
+      scale.addEventListener('change', () => void this.set(`scale ${servo} ${scale.value}`));
+      dir.addEventListener('change', () => void this.set(`dir ${servo} ${dir.value}`));
+      return { trim, scale, least, most, dir };
+    });
+  }
+
+  private trim(group: HTMLElement, servo: number): HTMLInputElement {
+    const label = group.appendChild(document.createElement('label'));
+    label.className = 'slider';
+    label.append('trim ');
+    const trim = label.appendChild(document.createElement('input'));
+    trim.type = 'range';
+    trim.min = '-20';
+    trim.max = '20';
+    trim.step = '0.25';
+    const out = label.appendChild(document.createElement('output'));
+    const show = () => (out.textContent = `${Number(trim.value).toFixed(2)}°`);
+    trim.addEventListener('input', show);
+    trim.addEventListener('shown', show);
+    trim.addEventListener('change', () => void this.set(`trim ${servo} ${trim.value}`));
+    return trim;
+  }
+}

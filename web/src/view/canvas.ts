@@ -1,0 +1,32 @@
+// A canvas as sharp as the screen, that follows the size of its element.
+
+export interface Surface {
+  pen: CanvasRenderingContext2D;
+  /** CSS pixels. */
+  width: number;
+  height: number;
+}
+
+/** The canvas, cleared, in CSS pixels; null while it is not shown. */
+export function surface(canvas: HTMLCanvasElement): Surface | null {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  if (width === 0 || height === 0) return null;
+  const scale = devicePixelRatio;
+  const [w, h] = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== w || canvas.height !== h) {
+    canvas.width = w;
+    canvas.height = h;
+  }
+  const pen = canvas.getContext('2d');
+  if (!pen) return null;
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height };
+}
+
+/** An element of the page, which index.html has. */
+export function element<T extends HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no #${id}`);
+  return found as T;
+}

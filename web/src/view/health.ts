@@ -1,0 +1,51 @@
+// What the robot says of itself, asked twice a second while it is to be seen.
+import type { Session } from '../session';
+import type { Status } from '../status';
+import { element } from './canvas';
+
+const PERIOD = 500;
+
+export class Health {
+  private readonly list = element('health');
+  private readonly values = new Map<string, HTMLElement>();
+  private asking = false;
+
+  constructor(private readonly session: () => Session) {
+    for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'began by', 'begun again']) {
+      const entry = this.list.appendChild(document.createElement('div'));
+      entry.appendChild(document.createElement('dt')).textContent = name;
+      const value = entry.appendChild(document.createElement('dd'));
+      value.textContent = '–';
+      this.values.set(name, value);
+    }
+    setInterval(() => void this.ask(), PERIOD);
+  }
+
+  /** Held while the line serves another purpose. */
+  held = false;
+
+  private async ask(): Promise<void> {
+    if (this.asking || this.held || document.hidden || !this.session().mayAsk) return;
+    this.asking = true;
+    const status = await this.session().status();
+    this.asking = false;
+    if (status) this.show(status);
+  }
+
+  private show(status: Status): void {
+    const shown: Record<string, string> = {
+      fault: status.fault,
+      guard: status.guard,
+      margin: status.margin.toFixed(3),
+      vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
+      'late edges': String(status.late),
+      'bytes lost': String(status.lost),
+      'began by': status.reset,
+      'begun again': String(status.resets),
+    };
+    for (const [name, text] of Object.entries(shown)) {
+      const value = this.values.get(name);
+      if (value && value.textContent !== text) value.textContent = text;
+    }
+  }
+}

@@ -1,0 +1,81 @@
+// The robot's lengths: a change builds its tables and gaits anew, or is refused.
+import { isRefused, type Length, type Refused } from '../robot';
+import type { Session } from '../session';
+import { element } from './canvas';
+
+export class Lengths {
+  private readonly list = element('lengths');
+  private readonly alike = element<HTMLInputElement>('alike');
+  private readonly refusal = element('lengths-refusal');
+  private inputs = new Map<string, HTMLInputElement>();
+
+  constructor(private readonly session: () => Session) {
+    element('lengths-reset').addEventListener('click', () => void this.reset());
+    element('lengths-save').addEventListener('click', () => this.download());
+  }
+
+  /** Shows the lengths of the session's robot. */
+  take(lengths: Length[]): void {
+    if (lengths.length !== this.inputs.size) this.build(lengths);
+    for (const { key, value } of lengths) {
+      const input = this.inputs.get(key);
+      if (input) {
+        input.value = String(value);
+        input.removeAttribute('aria-invalid');
+      }
+    }
+    this.say(null);
+  }
+
+  private build(lengths: Length[]): void {
+    this.list.replaceChildren();
+    this.inputs.clear();
+    for (const { key, label, unit } of lengths) {
+      const box = this.list.appendChild(document.createElement('label'));
+      box.append(`${label} (${key.replace('links.', '')}, ${unit})`);
+      const input = box.appendChild(document.createElement('input'));
+      input.type = 'number';
+      input.step = '0.5';
+      input.name = key;
+      input.addEventListener('change', () => void this.change(key));
+      this.inputs.set(key, input);
+    }
+  }
+
+  private async change(key: string): Promise<void> {
+    const session = this.session();
+    const input = this.inputs.get(key);
+    const value = input?.valueAsNumber;
+    if (!input || value === undefined || !Number.isFinite(value)) return;
+    const twin = session.description.lengths.find((length) => length.key === key)?.twin ?? key;
+    const keys = this.alike.checked && twin !== key ? [key, twin] : [key];
+    let text = session.toml;
+    for (const each of keys) {
+      const edited = session.robot.edit(text, each, value);
+      if (isRefused(edited)) return this.say(edited);
+      text = edited.text;
+      const other = this.inputs.get(each);
+      if (other) other.value = String(value);
+    }
+    const refused = await session.change(text);
+    for (const each of keys) this.inputs.get(each)?.setAttribute('aria-invalid', String(refused !== null));
+    this.say(refused);
+  }
+
+  private async reset(): Promise<void> {
+    await this.session().restore();
+  }
+
+  private download(): void {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([this.session().toml], { type: 'application/toml' }));
+    link.download = 'robot.toml';
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+
+  private say(refused: Refused | null): void {
+    this.refusal.hidden = refused === null;
+    this.refusal.textContent = refused?.refused ?? '';
+  }
+}

@@ -1,0 +1,50 @@
+// What is said on the serial line, and a line to type.
+import { element } from './canvas';
+
+/** Lines that are kept. */
+const MOST = 400;
+
+export class Log {
+  private readonly box = element('log');
+  private readonly typed = element<HTMLInputElement>('typed');
+  private readonly history: string[] = [];
+  private at = 0;
+
+  constructor(onLine: (line: string) => void) {
+    element<HTMLFormElement>('line').addEventListener('submit', (event) => {
+      event.preventDefault();
+      const line = this.typed.value.trim();
+      if (line === '') return;
+      this.history.push(line);
+      this.at = this.history.length;
+      this.typed.value = '';
+      onLine(line);
+    });
+    this.typed.addEventListener('keydown', (event) => {
+      const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+      if (step === undefined) return;
+      event.preventDefault();
+      this.at = Math.min(this.history.length, Math.max(0, this.at + step));
+      this.typed.value = this.history[this.at] ?? '';
+    });
+  }
+
+  sent(line: string): void {
+    this.add(`> ${line}`, 'sent');
+  }
+
+  came(line: string): void {
+    this.add(line, line.startsWith('err') ? 'err' : line.startsWith('#') ? 'note' : 'ok');
+  }
+
+  private add(text: string, kind: string): void {
+    const { box } = this;
+    // Whoever has scrolled up wants to read.
+    const atEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
+    const line = box.appendChild(document.createElement('div'));
+    line.className = kind;
+    line.textContent = text;
+    while (box.childElementCount > MOST) box.firstElementChild?.remove();
+    if (atEnd) box.scrollTop = box.scrollHeight;
+  }
+}

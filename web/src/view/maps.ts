@@ -1,0 +1,108 @@
+// The maps of singularities of head and tail, and where the robot is on them.
+import type { Robot, Scene, SingularityMap } from '../robot';
+import { element, surface } from './canvas';
+import { onPaletteChange, palette } from './palette';
+
+/** Positions of the last frames that are drawn as a trail. */
+const TRAIL = 100;
+
+class MapView {
+  private readonly canvas: HTMLCanvasElement;
+  private map: SingularityMap | null = null;
+  private trail: [number, number][] = [];
+  /** The map without the dot; drawn once for a size. */
+  private still: HTMLCanvasElement | null = null;
+
+  constructor(private readonly end: number) {
+    this.canvas = element<HTMLCanvasElement>(`map-${end}`);
+    onPaletteChange(() => (this.still = null));
+  }
+
+  robot(robot: Robot): void {
+    this.map = robot.map(this.end);
+    this.still = null;
+    this.trail = [];
+  }
+
+  at(scene: Scene): void {
+    this.trail.push(scene.map[this.end]);
+    if (this.trail.length > TRAIL) this.trail.shift();
+  }
+
+  draw(): void {
+    const { map } = this;
+    const area = surface(this.canvas);
+    if (!area || !map) return;
+    const { pen, width, height } = area;
+    if (this.still?.width !== this.canvas.width) this.still = this.background(map);
+    pen.drawImage(this.still, 0, 0, width, height);
+    const scale = width / (map.to - map.from);
+    const place = ([left, right]: [number, number]): [number, number] => [
+      (left - map.from) * scale,
+      height - (right - map.from) * scale,
+    ];
+    pen.strokeStyle = palette().a1;
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    for (const point of this.trail) pen.lineTo(...place(point));
+    pen.stroke();
+    const now = this.trail[this.trail.length - 1];
+    if (!now) return;
+    pen.fillStyle = palette().a1;
+    pen.strokeStyle = palette().card;
+    pen.lineWidth = 2;
+    pen.beginPath();
+    pen.arc(...place(now), 5, 0, 2 * Math.PI);
+    pen.fill();
+    pen.stroke();
+  }
+
+  private background(map: SingularityMap): HTMLCanvasElement {
+    const still = document.createElement('canvas');
+    const size = this.canvas.width;
+    still.width = size;
+    still.height = this.canvas.height;
+    const pen = still.getContext('2d');
+    if (!pen) return still;
+    const colours = palette();
+    pen.fillStyle = colours.floor;
+    pen.fillRect(0, 0, size, size);
+    const cell = size / (map.size - 1);
+    map.margins.forEach((margin, n) => {
+      const [left, right] = [Math.floor(n / map.size), n % map.size];
+      if (margin === null || margin <= 0) return;
+      pen.fillStyle = map.safe[n] ? colours.safe : colours.near;
+      pen.globalAlpha = map.safe[n] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
+      pen.fillRect((left - 0.5) * cell, size - (right + 0.5) * cell, cell + 0.6, cell + 0.6);
+    });
+    pen.globalAlpha = 1;
+    const scale = size / (map.to - map.from);
+    const dot = Math.max(1.2, size / 160);
+    for (const { kind, points } of map.curves) {
+      pen.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
+      const grow = kind === 'couplers' ? 2.5 : 1;
+      for (const [left, right] of points) {
+        pen.beginPath();
+        pen.arc((left - map.from) * scale, size - (right - map.from) * scale, dot * grow, 0, 2 * Math.PI);
+        pen.fill();
+      }
+    }
+    return still;
+  }
+}
+
+export class MapsView {
+  private readonly maps = [new MapView(0), new MapView(1)];
+
+  robot(robot: Robot): void {
+    for (const map of this.maps) map.robot(robot);
+  }
+
+  at(scene: Scene): void {
+    for (const map of this.maps) map.at(scene);
+  }
+
+  draw(): void {
+    for (const map of this.maps) map.draw();
+  }
+}

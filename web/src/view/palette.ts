@@ -1,0 +1,35 @@
+// The colours of style.css, for canvases. Light and dark are decided there alone.
+
+const NAMES = [
+  'card', 'ink', 'soft', 'line', 'floor', 'grid', 'skin', 'skin-edge', 'frame', 'frame-edge', 'steel', 'tube',
+  'track', 'accent', 'alarm', 'safe', 'near', 'a1', 'a2', 'a3', 'a4',
+] as const;
+
+export type Palette = Record<(typeof NAMES)[number], string>;
+
+let known: Palette | null = null;
+const changed: (() => void)[] = [];
+
+export function palette(): Palette {
+  if (!known) {
+    const style = getComputedStyle(document.documentElement);
+    known = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
+  }
+  return known;
+}
+
+/** Calls back when light has become dark, or dark light. */
+export function onPaletteChange(callback: () => void): void {
+  changed.push(callback);
+}
+
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  known = null;
+  for (const callback of changed) callback();
+});
+
+/** The colour of a servo and of its leg. */
+export function servoColour(servo: number): string {
+  const { a1, a2, a3, a4 } = palette();
+  return [a1, a2, a3, a4][servo] ?? a1;
+}

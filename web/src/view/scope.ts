@@ -1,0 +1,103 @@
+// The four servos' pulses as an oscilloscope shows them, and their widths as numbers.
+import type { Description, Scene } from '../robot';
+import { FREQUENCY } from '../uno/board';
+import { element, surface } from './canvas';
+import { palette, servoColour } from './palette';
+
+/** What the scope shows, in cycles: three frames. */
+const SPAN = 0.06 * FREQUENCY;
+const CYCLES_PER_US = FREQUENCY / 1e6;
+
+interface Pulse {
+  servo: number;
+  rise: number;
+  width: number;
+}
+
+function pinName(pin: number): string {
+  return pin >= 14 ? `A${pin - 14}` : `D${pin}`;
+}
+
+export class ScopeView {
+  private readonly canvas = element<HTMLCanvasElement>('scope');
+  private readonly rows: { width: HTMLElement; angle: HTMLElement }[] = [];
+  private pins: number[] = [];
+  private pulses: Pulse[] = [];
+  private widths = [0, 0, 0, 0];
+
+  /** Takes another robot. */
+  robot({ servos }: Description): void {
+    this.pins = servos.map(({ pin }) => pin);
+    this.pulses = [];
+    const body = element('widths');
+    body.replaceChildren();
+    this.rows.length = 0;
+    servos.forEach(({ name, pin }, servo) => {
+      const row = body.appendChild(document.createElement('tr'));
+      const cell = (text: string) => {
+        const td = row.appendChild(document.createElement('td'));
+        td.textContent = text;
+        return td;
+      };
+      const swatch = document.createElement('span');
+      swatch.className = 'swatch';
+      swatch.style.background = `var(--a${servo + 1})`;
+      cell(name).prepend(swatch);
+      cell(pinName(pin));
+      this.rows.push({ width: cell('–'), angle: cell('–') });
+    });
+  }
+
+  /** A pulse of a pin, in cycles. */
+  pulse(pin: number, rise: number, width: number): void {
+    const servo = this.pins.indexOf(pin);
+    if (servo < 0) return;
+    this.pulses.push({ servo, rise, width });
+    if (this.pulses.length > 64) this.pulses.splice(0, 32);
+  }
+
+  /** The widths of a frame, in cycles. */
+  frame(widths: readonly number[]): void {
+    this.widths = [...widths];
+  }
+
+  /** Writes the numbers, which costs a layout. */
+  write(scene: Scene | null): void {
+    this.rows.forEach(({ width, angle }, servo) => {
+      const cycles = this.widths[servo];
+      const text = cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
+      if (width.textContent !== text) width.textContent = text;
+      const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
+      if (angle.textContent !== degrees) angle.textContent = degrees;
+    });
+  }
+
+  draw(now: number): void {
+    const area = surface(this.canvas);
+    if (!area) return;
+    const { pen, width, height } = area;
+    const row = height / 4;
+    const x = (cycle: number) => width * (1 - (now - cycle) / SPAN);
+    for (let servo = 0; servo < 4; servo++) {
+      const low = (servo + 1) * row - 3;
+      const high = servo * row + 5;
+      pen.strokeStyle = palette().grid;
+      pen.lineWidth = 1;
+      pen.strokeRect(-1, servo * row, width + 2, row);
+      pen.strokeStyle = servoColour(servo);
+      pen.lineWidth = 2;
+      pen.beginPath();
+      pen.moveTo(0, low);
+      for (const pulse of this.pulses) {
+        if (pulse.servo !== servo || x(pulse.rise + pulse.width) < 0) continue;
+        const [from, to] = [x(pulse.rise), x(pulse.rise + pulse.width)];
+        pen.lineTo(from, low);
+        pen.lineTo(from, high);
+        pen.lineTo(to, high);
+        pen.lineTo(to, low);
+      }
+      pen.lineTo(width, low);
+      pen.stroke();
+    }
+  }
+}

@@ -1,0 +1,103 @@
+// A browser, and the page as any web server would serve it, below a folder of its own.
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import { extname, join, normalize } from 'node:path';
+
+import { chromium } from 'playwright-core';
+
+const DIST = new URL('../dist/', import.meta.url).pathname;
+const FOLDER = '/somewhere/below/';
+const TYPES = {
+  '.html': 'text/html',
+  '.js': 'text/javascript',
+  '.css': 'text/css',
+  '.wasm': 'application/wasm',
+  '.json': 'application/json',
+};
+/** Debian's; CHROMIUM names another. */
+const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+/** A machine may be busy: only what hangs is to fail by time. */
+const PATIENCE = 60_000;
+
+/** What the page has complained of, in all pages. */
+export const complaints = [];
+
+let browser;
+let server;
+const pages = [];
+
+/** Closes the pages of a test, which would go on walking. */
+export async function tidy() {
+  await Promise.all(pages.splice(0).map((opened) => opened.close()));
+}
+
+export async function open() {
+  server = createServer(async (request, response) => {
+    const path = request.url.split('?')[0].replace(FOLDER, '/');
+    const file = join(DIST, normalize(path === '/' ? '/index.html' : path));
+    try {
+      const bytes = await readFile(file);
+      response.setHeader('content-type', TYPES[extname(file)] ?? 'text/plain');
+      response.end(bytes);
+    } catch {
+      response.statusCode = 404;
+      response.end();
+    }
+  });
+  await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
+  browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox'] });
+}
+
+export async function close() {
+  await browser?.close();
+  server?.close();
+}
+
+/**
+ * The page, loaded; `before` runs in it before anything else, and then its timers only run when
+ * the test says so.
+ */
+export async function page(options = {}, before = undefined) {
+  const opened = await browser.newPage(options);
+  pages.push(opened);
+  opened.setDefaultTimeout(PATIENCE);
+  opened.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
+  });
+  opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
+  if (before) {
+    await opened.clock.install();
+    await opened.addInitScript(before);
+  }
+  await opened.goto(`http://127.0.0.1:${server.address().port}${FOLDER}`);
+  await opened.waitForFunction(() => window.lizard);
+  return opened;
+}
+
+/** Lets the simulation run, as fast as it goes. */
+export async function advance(opened, ms) {
+  // In parts, so that answers and what follows from them come in between.
+  await opened.evaluate(async (ms) => {
+    for (let left = ms; left > 0; left -= 4) {
+      window.lizard.advance(Math.min(4, left));
+      await Promise.resolve();
+    }
+  }, ms);
+}
+
+/** The page with a robot that has woken and stands. */
+export async function standing(options) {
+  const opened = await page(options);
+  await advance(opened, 2500);
+  return opened;
+}
+
+/** Types a line and waits for a line of the log that begins so. */
+export async function type(opened, line, answer) {
+  await opened.getByLabel('A line for the robot').fill(line);
+  await opened.getByRole('button', { name: 'Send' }).click();
+  await advance(opened, 300);
+  const found = opened.locator('#log div', { hasText: answer }).last();
+  await found.waitFor();
+  return found.innerText();
+}

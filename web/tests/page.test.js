@@ -1,0 +1,293 @@
+// The page in a real browser, driven as a person would.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, afterEach, before, test } from 'node:test';
+
+import { advance, close, complaints, open, page, standing, tidy, type } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const FILES = new URL('../dist/files/', import.meta.url);
+const text = (opened, selector) => opened.locator(selector).innerText();
+const gait = (opened, name) => opened.locator(`#gaits button[data-command="${name}"]`);
+
+/** What the page predicts for a gait, and what the body did in the last cycle. */
+const ways = (opened, name) =>
+  opened.evaluate((name) => {
+    const { robot, description } = window.lizard;
+    const index = description.gaits.findIndex(({ command }) => command === name);
+    return { predicted: robot.predict(index), measured: window.lizard.measured() };
+  }, name);
+
+function near(value, wanted, share, what) {
+  assert.ok(Math.abs(value - wanted) <= share * Math.abs(wanted), `${what}: ${value}, predicted ${wanted}`);
+}
+
+async function walks(opened, name) {
+  await gait(opened, name).click();
+  await advance(opened, 5500);
+  const { predicted, measured } = await ways(opened, name);
+  assert.ok(measured, `${name} has gone on for a whole cycle`);
+  return { predicted, measured };
+}
+
+test('the banner of the image is seen', async () => {
+  const opened = await standing();
+  assert.match(await text(opened, '#log'), /# lizard \d.* tables [0-9a-f]{8}, send help/);
+  assert.match(await text(opened, '#where'), /simulated UNO/);
+});
+
+test('walk moves the body by the predicted way', async () => {
+  const opened = await standing();
+  const { predicted, measured } = await walks(opened, 'walk');
+  near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+  assert.ok(Math.abs(measured.turn) < 0.3, `it goes straight: ${measured.turn} deg`);
+  await opened.waitForFunction(() => / mm$/.test(document.querySelector('#cycle').textContent));
+  assert.equal(await gait(opened, 'walk').getAttribute('aria-pressed'), 'true');
+  await opened.keyboard.press('Escape');
+  await advance(opened, 500);
+  const stopped = await opened.evaluate(() => window.lizard.last.place);
+  await advance(opened, 1000);
+  assert.deepEqual(await opened.evaluate(() => window.lizard.last.place), stopped, 'Esc stops it');
+});
+
+test('left turns left', async () => {
+  const opened = await standing();
+  const { predicted, measured } = await walks(opened, 'left');
+  assert.ok(predicted.turn > 10);
+  near(measured.turn, predicted.turn, 0.03, 'deg in a cycle');
+});
+
+test('a singular pose shows its refusal', async () => {
+  const opened = await standing();
+  const answer = await type(opened, 'pose 75 105 318.59 221.41', 'err 4');
+  assert.match(answer, /^err 4 type-2 margin of the head/);
+});
+
+test('changed lengths build the gaits anew', async () => {
+  const opened = await standing();
+  const before = (await ways(opened, 'walk')).predicted;
+  const hash = await opened.evaluate(() => window.lizard.description.hash);
+  await opened.getByText('Lengths', { exact: true }).click();
+  // A shorter leg makes shorter steps.
+  const crank = opened.locator('input[name="leg.crank"]');
+  await crank.fill('35');
+  await crank.press('Enter');
+  await opened.waitForFunction((hash) => window.lizard.link.name === 'core in the page' && hash, hash);
+  assert.equal(await opened.locator('input[name="leg.follower"]').inputValue(), '35', 'its twin follows');
+  await advance(opened, 2500);
+  const { predicted, measured } = await walks(opened, 'walk');
+  near(predicted.forward, (before.forward * 35) / 45, 0.1, 'shorter steps');
+  near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+
+  const base = opened.locator('input[name="links.l2"]');
+  await base.fill('15');
+  await base.press('Enter');
+  const refusal = opened.locator('#lengths-refusal');
+  await refusal.waitFor();
+  assert.match(await refusal.innerText(), /links\.l[23] is 15 mm, which is short beside the rest of its loop/);
+  assert.equal(await base.getAttribute('aria-invalid'), 'true');
+  assert.equal((await ways(opened, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
+
+  await opened.getByRole('button', { name: 'Lengths of the file' }).click();
+  await opened.waitForFunction(() => window.lizard.link.name === 'simulated UNO');
+  assert.equal(await opened.evaluate(() => window.lizard.description.hash), hash);
+  assert.equal(await crank.inputValue(), '45');
+});
+
+test('every robot of robots/ can be chosen, and runs its own image', async () => {
+  const opened = await page();
+  const names = await opened.locator('#robot option').allInnerTexts();
+  assert.ok(names.length >= 5, names.join());
+  for (const name of names) {
+    await opened.locator('#robot').selectOption({ label: name });
+    await opened.waitForFunction((name) => `${window.lizard.file}.toml` === name, name);
+    await advance(opened, 2500);
+    const hash = await opened.evaluate(() => window.lizard.description.hash);
+    assert.equal(await text(opened, '#where'), `on a simulated UNO, tables ${hash}`);
+    await opened.locator('#log div', { hasText: `tables ${hash}` }).last().waitFor();
+  }
+});
+
+/** Moves the trim of A1 by the keyboard, saves, and resets the board. */
+async function calibrates(opened, forward) {
+  await opened.getByText('Calibrate', { exact: true }).click();
+  await forward(500);
+  const trim = opened.getByRole('group', { name: 'A1' }).getByLabel('trim');
+  await trim.focus();
+  for (let n = 0; n < 8; n++) await trim.press('ArrowRight');
+  await forward(1500);
+  await opened.locator('#log div', { hasText: /^ok trim 1 2$|^ok trim 1 2\.00$/ }).first().waitFor();
+  await opened.getByRole('button', { name: 'Save', exact: true }).click();
+  await forward(2500);
+  await opened.locator('#log div', { hasText: /^ok save$/ }).waitFor();
+  await opened.getByRole('button', { name: 'reset' }).click();
+  await forward(4000);
+  await opened.getByRole('button', { name: 'Factory' }).click();
+  await forward(500);
+  await opened.getByRole('button', { name: 'Read' }).click();
+  await forward(500);
+  assert.equal(await trim.inputValue(), '0', 'factory takes it back');
+  await opened.getByRole('button', { name: 'Load' }).click();
+  await forward(500);
+  await opened.getByRole('button', { name: 'Read' }).click();
+  await forward(500);
+  assert.equal(await trim.inputValue(), '2', 'it is kept over a reset');
+}
+
+test('a calibration is set, saved and kept', async () => {
+  const opened = await standing();
+  await calibrates(opened, (ms) => advance(opened, ms));
+});
+
+test('what boot is set to is done after a reset', async () => {
+  const opened = await standing();
+  await type(opened, 'boot walk', 'ok boot walk');
+  await type(opened, 'save', '> save');
+  await advance(opened, 2000);
+  await opened.getByRole('button', { name: 'reset' }).click();
+  await advance(opened, 7000);
+  await opened.locator('#log div', { hasText: '# boot: walk' }).waitFor();
+  assert.ok((await ways(opened, 'walk')).measured.forward > 20, 'the page knows that it walks');
+});
+
+test('a refused setting shows why and takes the slider back', async () => {
+  const opened = await standing();
+  await opened.getByText('Calibrate', { exact: true }).click();
+  await advance(opened, 500);
+  const least = opened.getByRole('group', { name: 'A1' }).getByLabel('from, deg');
+  await least.fill('125');
+  await least.press('Enter');
+  await advance(opened, 1000);
+  await opened.locator('#cal-said', { hasText: /^err 3 A1 would not reach/ }).waitFor();
+  assert.equal(await least.inputValue(), '48.59');
+});
+
+/** Chooses the image of another robot, and waits until it is written and has begun. */
+async function flashes(opened, forward) {
+  await opened.getByText('Flash', { exact: true }).click();
+  await opened.getByLabel('HEX file').setInputFiles(new URL('large.hex', FILES).pathname);
+  const said = opened.locator('#flash-said');
+  for (let n = 0; n < 400; n++) {
+    await forward(100);
+    if (/written/.test(await said.innerText())) break;
+  }
+  assert.equal(await said.innerText(), 'written and verified');
+  await forward(2500);
+  const banners = await opened.locator('#log div', { hasText: '# lizard' }).allInnerTexts();
+  return banners.at(-1);
+}
+
+test('an image is flashed by the real boot loader', async () => {
+  const opened = await standing();
+  const before = await text(opened, '#log');
+  const banner = await flashes(opened, (ms) => advance(opened, ms));
+  assert.ok(!before.includes(banner), banner);
+  assert.match(await text(opened, '#where'), /with the image of another robot/);
+  const written = await opened.evaluate(() => Array.from(window.lizard.link.board.flash.subarray(0, 256)));
+  const hex = await readFile(new URL('large.hex', FILES), 'utf8');
+  const first = hex.split('\n')[0].slice(9, -3);
+  const bytes = first.match(/../g).map((pair) => parseInt(pair, 16));
+  assert.deepEqual(written.slice(0, 16), bytes.slice(0, 16));
+});
+
+test('a HEX file that is none is refused before anything is written', async () => {
+  const opened = await standing();
+  await opened.getByText('Flash', { exact: true }).click();
+  const input = opened.getByLabel('HEX file');
+  await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
+  await opened.locator('#flash-said', { hasText: 'not written: line 1 of the HEX file is no record' }).waitFor();
+  assert.equal((await type(opened, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
+});
+
+/** A Web Serial whose one port is a second simulated UNO. */
+function fakeSerial() {
+  let board;
+  const port = {
+    readable: null,
+    writable: null,
+    async open() {
+      const { board: first } = window.lizard.link;
+      const [image, loader] = await Promise.all(
+        ['robot', 'optiboot'].map(async (name) => (await fetch(`files/${name}.hex`)).text()),
+      );
+      board = new first.constructor(image, loader);
+      let out;
+      port.readable = new ReadableStream({ start: (controller) => (out = controller) });
+      window.unplug = () => {
+        clearInterval(port.timer);
+        port.readable = null;
+        out.error(new Error('The device has been lost.'));
+      };
+      port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
+      board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
+      board.reset('external');
+      window.otherBoard = board;
+      port.timer = setInterval(() => board.run(16_000 * 2), 2);
+    },
+    async setSignals({ dataTerminalReady }) {
+      if (dataTerminalReady) board.reset('external');
+    },
+    async close() {
+      clearInterval(port.timer);
+    },
+  };
+  Object.defineProperty(navigator, 'serial', { value: { requestPort: async () => port } });
+}
+
+test('a board by Web Serial is driven, mirrored, calibrated and flashed', async () => {
+  const opened = await page({}, fakeSerial);
+  const forward = (ms) => opened.clock.runFor(ms);
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await forward(4000);
+  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
+  await gait(opened, 'walk').click();
+  await forward(5000);
+  const { predicted, measured } = await ways(opened, 'walk');
+  near(measured.forward, predicted.forward, 0.05, 'mm ahead in a cycle, from poses of every second frame');
+  await opened.keyboard.press('Escape');
+  await forward(200);
+  await calibrates(opened, forward);
+  assert.match(await flashes(opened, forward), /tables/);
+  assert.match(await text(opened, '#where'), /with the image of another robot/);
+  await opened.getByRole('button', { name: 'Back to the simulation' }).click();
+  await forward(2000);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+});
+
+test('a board that is unplugged is said to be gone, and the simulation goes on', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(4000);
+  await opened.evaluate(() => window.unplug());
+  await opened.locator('#trouble', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
+  await opened.clock.runFor(2000);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+});
+
+test('a supply that sinks stops the robot, and its fault is shown', async () => {
+  const opened = await standing();
+  await walks(opened, 'walk');
+  await opened.locator('#supply').fill('3.9');
+  await advance(opened, 2000);
+  await opened.locator('#log div', { hasText: '# supply: ' }).first().waitFor();
+  await opened.locator('#health dd', { hasText: 'supply' }).waitFor();
+});
+
+test('pads that grip more one way change the prediction', async () => {
+  const opened = await standing();
+  const before = (await ways(opened, 'back')).predicted.forward;
+  await opened.getByLabel('Friction, back over ahead').fill('1.5');
+  const { predicted, measured } = await walks(opened, 'back');
+  assert.notEqual(predicted.forward, before);
+  assert.ok(Math.abs(measured.forward - predicted.forward) < 1.5, `${measured.forward} ${predicted.forward}`);
+});
+
+test('nothing was complained of', () => {
+  assert.deepEqual(complaints, []);
+});

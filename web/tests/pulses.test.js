@@ -1,0 +1,95 @@
+// The pulses in the page against those of the simulated UNO on libsimavr, width for width.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+
+import { close, complaints, open, page, tidy } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const ROOT = new URL('../../', import.meta.url).pathname;
+const ROBOT = join(ROOT, 'robot.toml');
+/** What the page's image of it was made of. */
+const ELF = join(ROOT, 'target/web/robot.elf');
+
+/** ms since power-on, and what is said then. */
+const SCRIPT = [
+  [1503, 'walk'],
+  [4007, 'left'],
+  [6511, 'arc right'],
+  [9013, 'look'],
+  [13005, 'trim 2 1.5'],
+  [13509, 'pose 120 60 318.59 221.41'],
+  [15011, 'rest'],
+];
+const END = 16_011;
+/** A pulse's width is a whole number of CPU cycles; one of them turns a servo so far, deg. */
+const CYCLE = 1 / 160;
+
+/** The servo angles of each frame that `lizard sim` reads from the pins. */
+function simulated() {
+  const folder = mkdtempSync(join(tmpdir(), 'lizard-'));
+  try {
+    const script = join(folder, 'script');
+    writeFileSync(script, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
+    const files = ['--robot', ROBOT, '--elf', ELF, '--svg', join(folder, 'x.svg')];
+    const said = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', script, ...files], {
+      maxBuffer: 1 << 26,
+    });
+    return JSON.parse(said).frames.flatMap(({ angles }) => (angles ? [angles] : []));
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+}
+
+test('every width is that of the simulated UNO', async () => {
+  // With the page's timers at rest, only this test lets time pass.
+  const opened = await page({}, () => {});
+  const { frames, rises } = await opened.evaluate(
+    ([script, end]) => {
+      const { lizard } = window;
+      const { board } = lizard.link;
+      const { pin } = lizard.description.servos[3];
+      const frames = [];
+      const rises = [];
+      // What the page itself follows, frame by frame.
+      const follow = lizard.robot.pulses.bind(lizard.robot);
+      lizard.robot.pulses = (widths) => {
+        const frame = follow(widths);
+        if (widths.every((width) => width > 0)) frames.push(frame.scene.angles);
+        return frame;
+      };
+      const pulse = board.onPulse;
+      board.onPulse = (which, rise, width) => {
+        if (which === pin) rises.push(rise);
+        pulse(which, rise, width);
+      };
+      let now = 0;
+      for (const [ms, line] of [...script, [end, '']]) {
+        lizard.advance(ms - now);
+        now = ms;
+        if (line !== '') void lizard.link.write(new TextEncoder().encode(`${line}\n`));
+      }
+      return { frames, rises };
+    },
+    [SCRIPT, END],
+  );
+  const expected = simulated();
+  assert.ok(frames.length > 600, `${frames.length} frames`);
+  assert.equal(frames.length, expected.length);
+  frames.forEach((angles, frame) =>
+    angles.forEach((angle, servo) => {
+      const off = Math.abs(angle - expected[frame][servo]);
+      assert.ok(off < CYCLE / 100, `frame ${frame}, A${servo + 1}: ${angle} and ${expected[frame][servo]}`);
+    }),
+  );
+  const periods = new Set(rises.slice(1).map((rise, n) => (rise - rises[n]) % 320_000));
+  assert.deepEqual([...periods], [0], 'a frame is 20 ms to the cycle');
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

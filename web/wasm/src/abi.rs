@@ -1,0 +1,143 @@
+//! The door to JavaScript: a plain C interface.
+//!
+//! Texts come and go as UTF-8 in this module's own memory. The page asks for room
+//! (`lizard_input`), writes there, calls, and reads the answer at `lizard_output`,
+//! `lizard_output_length` bytes of JSON; `null` where there is nothing to say. One page has one robot, so there
+//! is one state. wasm-bindgen would do the same with a program of its own, whose
+//! version must be the crate's. The names have a prefix because on a host they would
+//! replace the C library's `read` and its kin.
+#![allow(unsafe_code)] // `no_mangle` needs it; there is no unsafe block here.
+
+use std::cell::RefCell;
+
+use serde::Serialize;
+
+use crate::body::Place;
+use crate::description::Way;
+use crate::page::Page;
+
+#[derive(Default)]
+struct Door {
+    page: Page,
+    input: Vec<u8>,
+    output: Vec<u8>,
+}
+
+thread_local! {
+    static DOOR: RefCell<Door> = RefCell::default();
+}
+
+/// Calls the page with the input as text and writes down its answer.
+fn answer<T: Serialize>(call: impl FnOnce(&mut Page, &str) -> T) {
+    DOOR.with_borrow_mut(|door| {
+        let input = std::mem::take(&mut door.input);
+        let said = call(&mut door.page, &String::from_utf8_lossy(&input));
+        door.output = serde_json::to_vec(&said).unwrap_or_else(|_| b"null".to_vec());
+    });
+}
+
+/// Either of two answers, without a word for which it is.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Either<A, B> {
+    Well(A),
+    Refused(B),
+}
+
+fn either<A, B>(result: Result<A, B>) -> Either<A, B> {
+    match result {
+        Ok(well) => Either::Well(well),
+        Err(refused) => Either::Refused(refused),
+    }
+}
+
+/// Room for an input of so many bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_input(length: usize) -> *mut u8 {
+    DOOR.with_borrow_mut(|door| {
+        door.input = vec![0; length];
+        door.input.as_mut_ptr()
+    })
+}
+
+/// Where the last answer is.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_output() -> *const u8 {
+    DOOR.with_borrow(|door| door.output.as_ptr())
+}
+
+/// How many bytes it has.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_output_length() -> usize {
+    DOOR.with_borrow(|door| door.output.len())
+}
+
+/// [`Page::read`] of the input.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_read() {
+    answer(|page, text| either(page.read(text)));
+}
+
+/// [`Page::edit`]: the input is the key, a line feed, and the text of the robot.toml.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_edit(value: f64) {
+    answer(|_, input| {
+        let (key, text) = input.split_once('\n').unwrap_or((input, ""));
+        either(Page::edit(text, key, value))
+    });
+}
+
+/// [`Page::pulses`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_pulses(a1: u32, a2: u32, a3: u32, a4: u32) {
+    answer(|page, _| page.pulses([a1, a2, a3, a4]));
+}
+
+/// [`Page::pose`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_pose(a1: f64, a2: f64, a3: f64, a4: f64) {
+    answer(|page, _| page.pose([a1, a2, a3, a4]));
+}
+
+/// [`Page::restart`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_restart() {
+    answer(|page, _| page.restart());
+}
+
+/// [`Place::way_to`](crate::Place::way_to): x, y and heading of two places.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_way(x0: f64, y0: f64, h0: f64, x1: f64, y1: f64, h1: f64) {
+    let place = |x, y, heading| Place { x, y, heading };
+    answer(|_, _| Way::from(place(x0, y0, h0).way_to(place(x1, y1, h1))));
+}
+
+/// [`Page::set_friction`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_set_friction(ratio: f64) {
+    answer(|page, _| page.set_friction(ratio));
+}
+
+/// [`Page::predict`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_predict(gait: usize) {
+    answer(|page, _| page.predict(gait));
+}
+
+/// [`Page::map`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_map(end: usize) {
+    answer(|page, _| page.map(end));
+}
+
+/// [`Page::run_core`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_run_core() {
+    answer(|page, _| page.run_core());
+}
+
+/// [`Page::core_frame`]: the input is what came over the serial line.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_core_frame(volts: f64) {
+    answer(|page, line| page.core_frame(line.as_bytes(), volts));
+}

@@ -1,0 +1,192 @@
+//! The firmware's core run in the page, for a robot that no image was built for.
+//!
+//! The core is plain integer Rust, so with the numbers of a changed robot it says and asks for
+//! what an UNO with that robot's image would, to the bit; only the cycles of the chip
+//! are missing.
+
+use std::collections::VecDeque;
+
+use lizard_core::console::Counters;
+use lizard_core::memory::Bytes;
+use lizard_core::pose::{Pose, Pulses};
+use lizard_core::restart::Restart;
+use lizard_core::robot::Robot as _;
+use lizard_core::step::{Board, Main, Step};
+use lizard_core::supply::Reading;
+use lizard_robot::{Firmware, healthy_rail_mv};
+use serde::Serialize;
+
+/// Steps of the analogue converter, and the reference on the chip in V.
+const FULL_SCALE: f64 = 1024.0;
+const REFERENCE: f64 = 1.1;
+
+/// A board that consists of its serial line, its ticks and its memory.
+struct Line {
+    ticks: u8,
+    volts: f64,
+    /// What a healthy rail of the servos leaves at its pin.
+    rail_mv: f64,
+    received: VecDeque<u8>,
+    written: String,
+    pulses: Pulses,
+    memory: Bytes,
+}
+
+impl Board for Line {
+    type Writer = String;
+    type Memory = Bytes;
+
+    fn ticks(&self) -> u8 {
+        self.ticks
+    }
+
+    fn submit(&mut self, pulses: Pulses) {
+        self.pulses = pulses;
+    }
+
+    fn keep(&mut self, _: Option<&Pose>) {}
+
+    fn restart(&self) -> Restart {
+        Restart::default()
+    }
+
+    fn supply(&mut self) -> Reading {
+        let parts = (FULL_SCALE * REFERENCE / self.volts).round();
+        Reading {
+            reference: parts.clamp(0.0, FULL_SCALE - 1.0) as u16,
+            rail: (FULL_SCALE * self.rail_mv / 1000.0 / self.volts).clamp(0.0, FULL_SCALE - 1.0)
+                as u16,
+        }
+    }
+
+    fn stack_is_intact(&self) -> bool {
+        true
+    }
+
+    fn memory(&mut self) -> &mut Bytes {
+        &mut self.memory
+    }
+
+    fn set_led(&mut self, _: bool) {}
+
+    fn room(&self) -> u8 {
+        u8::MAX
+    }
+
+    fn writer(&mut self) -> &mut String {
+        &mut self.written
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        self.received.pop_front()
+    }
+
+    fn counters(&self) -> Counters {
+        Counters::default()
+    }
+}
+
+/// What a frame brought.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Said {
+    /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for none.
+    pub widths: [u16; 4],
+    /// What was written to the serial line.
+    pub text: String,
+}
+
+/// The core of a robot, running.
+pub struct CoreRun {
+    main: Main<Firmware>,
+    line: Line,
+}
+
+impl CoreRun {
+    /// At power-on, with what an EEPROM holds.
+    #[must_use]
+    pub fn begin(robot: Firmware, memory: Bytes) -> Self {
+        let mut line = Line {
+            ticks: 0,
+            volts: 5.0,
+            rail_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
+            received: VecDeque::new(),
+            written: String::new(),
+            pulses: Pulses::default(),
+            memory,
+        };
+        let mut main = Main::new(robot);
+        main.begin(&mut line);
+        Self { main, line }
+    }
+
+    /// What the EEPROM holds.
+    #[must_use]
+    pub fn into_memory(self) -> Bytes {
+        self.line.memory
+    }
+
+    /// One frame of 20 ms, after these bytes have come, at a supply in V.
+    pub fn frame(&mut self, bytes: &[u8], volts: f64) -> Said {
+        self.line.volts = volts;
+        self.line.received.extend(bytes);
+        self.settle();
+        self.line.ticks = self.line.ticks.wrapping_add(1);
+        self.settle();
+        Said {
+            widths: self.line.pulses.0.map(|width| width.0),
+            text: std::mem::take(&mut self.line.written),
+        }
+    }
+
+    fn settle(&mut self) {
+        while self.main.step(&mut self.line) == Step::Worked {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lizard_robot::Robot;
+
+    fn run(said: &mut String, core: &mut CoreRun, line: &str, frames: usize) -> [u16; 4] {
+        let mut bytes = line.as_bytes();
+        let mut widths = [0; 4];
+        for _ in 0..frames {
+            let frame = core.frame(bytes, 5.0);
+            bytes = &[];
+            *said += &frame.text;
+            widths = frame.widths;
+        }
+        widths
+    }
+
+    #[test]
+    fn it_greets_walks_and_keeps_what_is_saved() {
+        let robot = Robot::parse(include_str!("../../../robots/large.toml")).expect("right");
+        let mut core = CoreRun::begin(robot.firmware().clone(), Bytes::default());
+        let mut said = String::new();
+        let stands = run(&mut said, &mut core, "", 200);
+        assert!(said.starts_with("# lizard "), "{said}");
+        assert!(stands.iter().all(|width| *width == 24_000), "{stands:?}");
+        let trimmed = run(&mut said, &mut core, "trim 1 3\nsave\n", 500);
+        assert!(
+            said.contains("ok trim 1 3") && said.contains("ok save"),
+            "{said}"
+        );
+        let mut again = CoreRun::begin(robot.firmware().clone(), core.into_memory());
+        assert_eq!(run(&mut said, &mut again, "", 200), trimmed);
+        assert_ne!(run(&mut said, &mut again, "walk\n", 60), trimmed);
+    }
+
+    #[test]
+    fn a_low_supply_stops_it() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        let mut core = CoreRun::begin(robot.firmware().clone(), Bytes::default());
+        let mut said = String::new();
+        run(&mut said, &mut core, "", 200);
+        for _ in 0..200 {
+            said += &core.frame(&[], 3.9).text;
+        }
+        assert!(said.contains("# supply:"), "{said}");
+    }
+}

@@ -1,0 +1,244 @@
+//! What the page has to know of a robot before anything moves.
+
+use lizard_core::robot::Robot as _;
+use lizard_kinematics::Check;
+use lizard_robot::servo::{LEGS, NAMES};
+use lizard_robot::{Prediction, Robot, Travel, healthy_rail_mv};
+use serde::Serialize;
+
+/// A gait.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaitEntry {
+    /// Its name in robot.toml.
+    pub name: String,
+    /// Its command of the console.
+    pub command: String,
+    /// Time of a cycle at full speed, s.
+    pub period: f64,
+    /// Whether a servo moves in it.
+    pub moves: bool,
+}
+
+/// A length of the body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinkEntry {
+    /// Its key in robot.toml, such as `links.l1`.
+    pub key: String,
+    /// What it is.
+    pub label: &'static str,
+    /// The key of the length that mirrors it, or must equal it; it may be its own.
+    pub twin: String,
+    /// mm, or deg for an angle.
+    pub unit: &'static str,
+    /// mm.
+    pub value: f64,
+}
+
+/// A margin's limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MarginEntry {
+    /// Its name.
+    pub name: &'static str,
+    /// The least that is safe, a sine.
+    pub limit: f64,
+}
+
+/// A servo.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ServoEntry {
+    /// A1 to A4.
+    pub name: &'static str,
+    /// Its leg, LF to LH.
+    pub leg: &'static str,
+    /// Arduino number of its pin; 14 to 19 are A0 to A5.
+    pub pin: u8,
+    /// deg, chassis frame.
+    pub neutral: f64,
+    /// Its travel, deg from neutral.
+    pub travel: (f64, f64),
+}
+
+/// A robot.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Description {
+    /// The hash of its tables, as a banner shows it.
+    pub hash: String,
+    /// Its servos, A1 to A4.
+    pub servos: Vec<ServoEntry>,
+    /// Its gaits in the order of the file.
+    pub gaits: Vec<GaitEntry>,
+    /// Every length that may be changed.
+    pub lengths: Vec<LinkEntry>,
+    /// Every margin's limit, in the order of [`crate::Scene::margins`].
+    pub margins: Vec<MarginEntry>,
+    /// Travel that the sliders have, mm from nominal.
+    pub stroke: (f64, f64),
+    /// Below these V the board slows down, stops and rests.
+    pub supply: [f64; 3],
+    /// The channel of the converter that measures the servos' rail, and the volts there.
+    pub rail: Option<(u8, f64)>,
+    /// Friction of its pads backward over forward.
+    pub friction: f64,
+}
+
+impl Description {
+    /// Of a robot.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        let servos = robot
+            .servos()
+            .iter()
+            .enumerate()
+            .map(|(i, servo)| ServoEntry {
+                name: NAMES[i],
+                leg: LEGS[i],
+                pin: servo.pin,
+                neutral: servo.neutral,
+                travel: servo.travel(),
+            });
+        let gaits = robot.gaits().iter().map(|gait| GaitEntry {
+            name: gait.name().to_string(),
+            command: gait.name().replace('-', " "),
+            period: gait.period(),
+            moves: gait.moves(),
+        });
+        let limits = robot.limits();
+        let of = |checks: &[Check], limit: f64| {
+            let entry = |check: &Check| MarginEntry {
+                name: check.name(),
+                limit,
+            };
+            checks.iter().map(entry).collect::<Vec<_>>()
+        };
+        let board = lizard_core::robot::Robot::supplies(robot.firmware()).board;
+        Self {
+            hash: format!("{:08x}", robot.firmware().hash()),
+            servos: servos.collect(),
+            gaits: gaits.collect(),
+            lengths: lengths(robot),
+            margins: [
+                of(&Check::TYPE2, limits.type2),
+                of(&Check::TYPE1, limits.type1),
+                of(&Check::LEG, limits.leg),
+            ]
+            .concat(),
+            stroke: (limits.stroke_min, limits.stroke_max),
+            rail: healthy_rail_mv(&robot.firmware().supplies())
+                .zip(robot.firmware().rail_pin())
+                .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
+            supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
+            friction: robot.ground().ratio,
+        }
+    }
+}
+
+/// What each link is, and the number of its mirror image.
+const LINKS: [(&str, usize); 20] = [
+    ("head base", 0),
+    ("head crank, left", 4),
+    ("head coupler, left", 3),
+    ("head coupler, right", 2),
+    ("head crank, right", 1),
+    ("tail base", 5),
+    ("tail crank, left", 9),
+    ("tail coupler, left", 8),
+    ("tail coupler, right", 7),
+    ("tail crank, right", 6),
+    ("chassis, left", 15),
+    ("rear arm, left", 16),
+    ("slider rear half, left", 17),
+    ("slider front half, left", 18),
+    ("front arm, left", 19),
+    ("chassis, right", 10),
+    ("rear arm, right", 11),
+    ("slider rear half, right", 12),
+    ("slider front half, right", 13),
+    ("front arm, right", 14),
+];
+
+fn lengths(robot: &Robot) -> Vec<LinkEntry> {
+    let values = robot.lizard().links.to_array();
+    let links = LINKS.iter().zip(values).enumerate();
+    let links = links.map(|(i, ((label, twin), value))| LinkEntry {
+        key: format!("links.l{i}"),
+        label,
+        twin: format!("links.l{twin}"),
+        unit: "mm",
+        value,
+    });
+    let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
+    let legs = [
+        ("ground", "leg ground link", "coupler", leg.ground),
+        ("crank", "leg crank", "follower", leg.crank),
+        ("coupler", "leg coupler", "ground", leg.coupler),
+        ("follower", "leg follower", "crank", leg.follower),
+        (
+            "hip_forward",
+            "hip, fore and aft",
+            "hip_forward",
+            feet.hip_forward,
+        ),
+        ("hip_side", "hip, sideways", "hip_side", feet.hip_side),
+        ("mount", "outward sweep of the legs", "mount", feet.mount),
+    ];
+    let legs = legs.map(|(name, label, twin, value)| LinkEntry {
+        key: format!("leg.{name}"),
+        label,
+        twin: format!("leg.{twin}"),
+        unit: if name == "mount" { "deg" } else { "mm" },
+        value,
+    });
+    links.chain(legs).collect()
+}
+
+/// A prediction as the page reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Way {
+    /// mm in a cycle; none where that is undecided.
+    forward: Option<f64>,
+    /// mm in a cycle.
+    left: Option<f64>,
+    /// deg in a cycle.
+    turn: Option<f64>,
+}
+
+impl From<Travel> for Way {
+    fn from(way: Travel) -> Self {
+        Self {
+            forward: Some(way.forward),
+            left: Some(way.left),
+            turn: Some(way.turn),
+        }
+    }
+}
+
+impl From<Prediction> for Way {
+    fn from(way: Prediction) -> Self {
+        let Prediction {
+            forward,
+            left,
+            turn,
+        } = way;
+        Self {
+            forward,
+            left,
+            turn,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lengths_twin_has_it_as_its_own_twin() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        let lengths = Description::of(&robot).lengths;
+        for length in &lengths {
+            let twin = lengths.iter().find(|other| other.key == length.twin);
+            let twin = twin.expect("it is there");
+            assert_eq!((&twin.twin, twin.value), (&length.key, length.value));
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! The robot for the page: all that the browser has to know of a lizard, and no formula
+//! of its own.
+//!
+//! The page gives the text of a robot.toml and then, fifty times a second, four pulse
+//! widths, as the pins of an UNO have them. It gets back where every joint is, how far
+//! each singularity, whether the guard would have sent this pose, and where the body is on
+//! the floor. [`Page`] holds all of that; `abi` is the door to JavaScript, and the
+//! one place with `unsafe` attributes.
+#![deny(unsafe_code)]
+#![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
+
+mod abi;
+mod body;
+mod core_run;
+mod description;
+mod edit;
+mod map;
+mod page;
+mod scene;
+
+pub use body::{Body, Contact, Place, Rigid, Walked};
+pub use core_run::{CoreRun, Said};
+pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ServoEntry, Way};
+pub use edit::{NoSuchLength, with_number};
+pub use map::{Curve, Map, MapPoint};
+pub use page::{Edited, Frame, Page, Refused};
+pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};

@@ -1,0 +1,163 @@
+//! The map of singularities of an end: the plane of its two crank angles, how far every
+//! point of it is from a singularity, and the curves where there is none left.
+
+use lizard_kinematics::{Check, End, Limits, Lizard, Pose, SingularPose, Singularity};
+use lizard_robot::Robot;
+use serde::Serialize;
+
+/// Degrees between two points of the map.
+const STEP: f64 = 1.5;
+/// The map's edges, deg: between the change points of the legs.
+const FROM: f64 = 0.0;
+const TO: f64 = 180.0;
+/// The curves are drawn so finely, deg.
+const FINE: f64 = 0.5;
+
+/// A point of a curve: left and right crank, deg, in the end's own frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MapPoint(
+    /// Left crank.
+    pub f64,
+    /// Right crank.
+    pub f64,
+);
+
+/// Singular positions of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
+    /// What is in line there.
+    pub kind: &'static str,
+    /// The positions, in no order.
+    pub points: Vec<MapPoint>,
+}
+
+/// The map of an end.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Map {
+    /// Head or tail.
+    pub end: String,
+    /// Smallest angle of either crank, deg.
+    pub from: f64,
+    /// Greatest.
+    pub to: f64,
+    /// Columns, and rows; the first of either is at `from`.
+    pub size: usize,
+    /// The smallest margin in hundredths, column by column: for each left crank all right
+    /// ones. None where the loop does not close.
+    pub margins: Vec<Option<i8>>,
+    /// Whether the end may be there, as `margins`.
+    pub safe: Vec<bool>,
+    /// Where it is singular.
+    pub curves: Vec<Curve>,
+}
+
+impl Map {
+    /// Of an end of a robot.
+    #[must_use]
+    pub fn of(robot: &Robot, end: End) -> Self {
+        let size = ((TO - FROM) / STEP) as usize + 1;
+        let angle = |i: usize| FROM + STEP * i as f64;
+        let points = (0..size).flat_map(|left| (0..size).map(move |right| (left, right)));
+        let (margins, safe) = points
+            .map(|(left, right)| {
+                at(
+                    robot.lizard(),
+                    robot.limits(),
+                    end,
+                    angle(left),
+                    angle(right),
+                )
+            })
+            .unzip();
+        Self {
+            end: end.to_string(),
+            from: FROM,
+            to: TO,
+            size,
+            margins,
+            safe,
+            curves: curves(robot, end),
+        }
+    }
+}
+
+/// The smallest margin of an end at its crank angles, and whether it is safe.
+fn at(lizard: &Lizard, limits: &Limits, end: End, left: f64, right: f64) -> (Option<i8>, bool) {
+    let Ok(bars) = lizard.end(end).forward(left, right) else {
+        return (None, false);
+    };
+    let margins = bars.conditions(end).into_iter();
+    let least = margins
+        .filter(|(check, _)| !Check::UNCROSSED.contains(check))
+        .fold(1.0f64, |least, (_, value)| least.min(value));
+    let safe = limits.end_violations(end, &bars).next().is_none();
+    (Some((least * 100.0).round() as i8), safe)
+}
+
+fn curves(robot: &Robot, end: End) -> Vec<Curve> {
+    let bars = robot.lizard().end(end);
+    let steps = ((TO - FROM) / FINE) as usize;
+    let found: Vec<SingularPose> = (0..=steps)
+        .flat_map(|i| bars.singular_with(FROM + FINE * i as f64))
+        .chain(bars.coinciding_tips())
+        .filter(|pose| {
+            let inside = |theta: f64| (FROM..=TO).contains(&theta);
+            inside(pose.theta_left) && inside(pose.theta_right)
+        })
+        .collect();
+    [
+        (Singularity::Couplers, "couplers"),
+        (Singularity::LeftArm, "left arm"),
+        (Singularity::RightArm, "right arm"),
+    ]
+    .into_iter()
+    .map(|(kind, name)| Curve {
+        kind: name,
+        points: found
+            .iter()
+            .filter(|pose| pose.kind == kind)
+            .map(|pose| MapPoint(pose.theta_left, pose.theta_right))
+            .collect(),
+    })
+    .collect()
+}
+
+/// Where a pose is on the map of an end: left and right crank, deg, 0 to 360.
+#[must_use]
+pub fn place(end: End, pose: &Pose) -> MapPoint {
+    let angles: [f64; 4] = (*pose).into();
+    let [left, right] = end
+        .pick(angles)
+        .map(|theta| end.mirror_angle(theta).rem_euclid(360.0));
+    MapPoint(left, right)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn home_is_safe_on_both_maps_and_the_coinciding_tips_are_not() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        for end in End::ALL {
+            let map = Map::of(&robot, end);
+            let cell = |MapPoint(left, right): MapPoint| {
+                let index = |theta: f64| ((theta - map.from) / STEP).round() as usize;
+                index(left) * map.size + index(right)
+            };
+            let home = place(end, &robot.neutral());
+            assert!(
+                (home.0 - 138.59).abs() < 0.01 && (home.1 - 41.41).abs() < 0.01,
+                "{home:?}"
+            );
+            assert!(map.safe[cell(home)] && map.margins[cell(home)] > Some(60));
+            assert!(!map.safe[cell(MapPoint(70.5, 109.5))]);
+            let couplers = &map.curves[0].points;
+            assert!(
+                couplers.iter().any(|p| (p.0 - 70.529).abs() < 0.01),
+                "{couplers:?}"
+            );
+            assert!(map.curves[1].points.len() > 50 && map.curves[2].points.len() > 50);
+        }
+    }
+}
