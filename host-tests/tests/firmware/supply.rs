@@ -39,22 +39,25 @@ fn status_tells_the_supply_within_thirty_millivolts() {
     assert!(farthest <= 0.030, "{farthest} V");
 }
 
-#[test]
-fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
-    bench
-        .uno
-        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+/// Lets a supply sink through its thresholds, V: at each of them the robot says what it
+/// does then, and what it has measured.
+fn assert_sinks(
+    bench: &mut FirmwareBench,
+    thresholds: [f64; 3],
+    set: impl Fn(&mut FirmwareBench, f64),
+) {
     let from = bench.lines().len();
+    let [slow, _, rest] = thresholds.map(|volts| (100.0 * volts) as i32);
     let mut true_at = Vec::new();
-    for mv in (3_400..=5_000).rev().step_by(10) {
-        bench.uno.set_supply_mv(f64::from(mv));
+    for hundredths in (rest - 30..slow + 80).rev() {
+        let volts = f64::from(hundredths) / 100.0;
+        set(bench, volts);
         bench.run_ms(160);
-        while true_at.len() < notes(&mut bench, from).len() {
-            true_at.push(f64::from(mv) / 1000.0);
+        while true_at.len() < notes(bench, from).len() {
+            true_at.push(volts);
         }
     }
-    let told = notes(&mut bench, from);
+    let told = notes(bench, from);
     let words: Vec<&str> = told.iter().map(|(what, _)| what.as_str()).collect();
     assert_eq!(
         words,
@@ -64,10 +67,21 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
             "too low to hold: pulses ended"
         ]
     );
-    for ((truth, (_, told)), threshold) in true_at.iter().zip(&told).zip(robot().supplies().board) {
+    for ((truth, (_, told)), threshold) in true_at.iter().zip(&told).zip(thresholds) {
         assert!((truth - threshold).abs() <= STEP, "{truth}, {threshold}");
         assert!((told - truth).abs() <= STEP, "{told}, {truth}");
     }
+}
+
+#[test]
+fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
+    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    bench
+        .uno
+        .set_bandgap_mv(robot().supplies().reference * 1000.0);
+    assert_sinks(&mut bench, robot().supplies().board, |bench, volts| {
+        bench.uno.set_supply_mv(1000.0 * volts);
+    });
     let status = Status::of(&mut bench);
     assert_eq!(
         (status.text("gait"), status.text("fault")),
@@ -223,32 +237,9 @@ fn a_sinking_rail_slows_stops_and_rests_whatever_the_boards_supply() {
     let Some((mut bench, rail)) = with_rail() else {
         return;
     };
-    let from = bench.lines().len();
-    let [slow, _, rest] = rail.thresholds;
-    let mut true_at = Vec::new();
-    let mut mv = 1000.0 * slow + 200.0;
-    while mv > 1000.0 * rest - 200.0 {
-        set_rail(&mut bench, &rail, mv / 1000.0);
-        bench.run_ms(160);
-        while true_at.len() < notes(&mut bench, from).len() {
-            true_at.push(mv / 1000.0);
-        }
-        mv -= 10.0;
-    }
-    let told = notes(&mut bench, from);
-    let words: Vec<&str> = told.iter().map(|(what, _)| what.as_str()).collect();
-    assert_eq!(
-        words,
-        [
-            "low: half speed, no saving",
-            "too low to move: stopped",
-            "too low to hold: pulses ended"
-        ]
-    );
-    for ((truth, (_, told)), threshold) in true_at.iter().zip(&told).zip(rail.thresholds) {
-        assert!((truth - threshold).abs() <= STEP, "{truth}, {threshold}");
-        assert!((told - truth).abs() <= STEP, "{told}, {truth}");
-    }
+    assert_sinks(&mut bench, rail.thresholds, |bench, volts| {
+        set_rail(bench, &rail, volts);
+    });
     assert!(pulses_in(&mut bench, 200).iter().all(Vec::is_empty));
     assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= STEP);
 }

@@ -130,17 +130,15 @@ impl<'a> Walker<'a> {
 
     /// Everything that the console has to write.
     pub fn read(&mut self) -> Vec<String> {
-        let mut lines = Vec::new();
+        let mut text = String::new();
         while self.console.has_output() || self.console.is_writing() {
-            if !self.console.has_output() {
+            if self.console.has_output() {
+                let Ok(()) = self.console.write_line(&mut text, Counters::default());
+            } else {
                 self.console.write_memory(&mut self.memory);
-                continue;
             }
-            let mut text = String::new();
-            let Ok(()) = self.console.write_line(&mut text, Counters::default());
-            lines.push(text.trim_end().to_owned());
         }
-        lines
+        text.lines().map(str::to_owned).collect()
     }
 
     /// Types a line; returns its answer.
