@@ -209,7 +209,8 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
         "{out}"
     );
 
-    let refused = changed.replace("scale = 10.0", "scale = 99.0");
+    let scale = first.lines().find(|line| line.starts_with("scale = "));
+    let refused = changed.replacen(scale.expect("A1 has one"), "scale = 99.0", 1);
     fs::write(here.join("c.toml"), refused).expect("it is written");
     let (out, error, code) = run(here, &["restore", "c.toml", &port], "");
     assert_eq!(code, Some(1), "{error}");

@@ -5,7 +5,8 @@ use lizard_host_tests::robot;
 use simulated_uno::{Fidelity, PowerCut, State};
 
 use crate::kept::{
-    MS, assert_no_leap, calibration, power_cycle, pulses, pulses_in, way, widths_now,
+    MS, assert_no_leap, assert_no_leap_at, calibration, power_cycle, pulses, pulses_in, way,
+    widths_now,
 };
 use crate::walk::{SLOT, Walk};
 use crate::{Status, awake, in_both, moving, neutral_widths, pose_at};
@@ -81,7 +82,9 @@ fn a_scale_and_a_sense_act_at_once_and_are_those_of_the_pulses() {
         );
         bench.uno.take_edges();
         bench.run_ms(500);
-        assert_no_leap(&pulses(&bench));
+        let mut gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
+        gains[0] = scale;
+        assert_no_leap_at(&pulses(&bench), gains);
         let turned = width(0.0, -scale.copysign(gain()), 5.0);
         assert_near(widths_now(&mut bench)[0], turned, "the other way");
     });

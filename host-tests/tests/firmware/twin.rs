@@ -128,6 +128,9 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         let asked: Vec<&str> = commands.written.lines().filter(is_answer).collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
         let answered: Vec<&str> = lines.filter(is_answer).collect();
-        assert_eq!(answered, asked);
+        // The UNO runs on beyond the last whole frame, and may have answered once more.
+        let more = answered.len().saturating_sub(asked.len());
+        assert!(more <= 1, "{more} more");
+        assert_eq!(answered[..answered.len() - more], asked);
     });
 }
