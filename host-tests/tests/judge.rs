@@ -37,8 +37,8 @@ enum Apart {
     Any,
 }
 
-/// Cycles of a turn of main that takes a byte.
-const TURN: u64 = 200;
+/// Cycles of a turn of main that writes a piece of a line.
+const TURN: u64 = 500;
 
 /// Gives avr8js the bytes that the bench has received, and holds its account against
 /// the bench's: pulses, console and EEPROM.
