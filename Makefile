@@ -84,7 +84,7 @@ clean: ## remove everything that was built
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
-	@cd host && cargo test -p lizard-host-tests --test flash --test flash_troubles --quiet -- --include-ignored
+	@cd host && cargo test -p lizard-host-tests --features flash --test flash --test flash_troubles --quiet
 
 .web:
 	@scripts/setup-web
@@ -156,7 +156,7 @@ clean: ## remove everything that was built
 	@cargo fmt --check
 	@cd host && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
-	@cd host && cargo clippy --workspace --all-targets --quiet -- -D warnings
+	@cd host && cargo clippy --workspace --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@echo "lint: clean"

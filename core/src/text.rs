@@ -86,7 +86,6 @@ texts! {
     StatusResets = " resets=";
     StatusVcc = " vcc=";
     StatusRail = " rail=";
-    Unmeasured = "-";
     FaultNone = "none";
     FaultGuard = "guard";
     FaultSupply = "supply";

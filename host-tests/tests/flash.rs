@@ -78,7 +78,6 @@ impl Desk {
 }
 
 #[test]
-#[ignore = "needs ravedude and avrdude: make flash-test"]
 fn make_flash_writes_the_image_and_the_robot_walks() {
     let mut desk = Desk::with_a_new_board();
     let mut shell = desk.make_flash();
@@ -138,7 +137,6 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 }
 
 #[test]
-#[ignore = "needs ravedude and avrdude: make flash-test"]
 fn an_upload_keeps_the_eeprom() {
     let mut desk = Desk::with_a_new_board();
     let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
@@ -154,7 +152,6 @@ fn an_upload_keeps_the_eeprom() {
 }
 
 #[test]
-#[ignore = "needs ravedude and avrdude: make flash-test"]
 fn a_saved_calibration_is_in_effect_after_the_next_upload() {
     let mut desk = Desk::with_a_new_board();
     let mut shell = desk.make_flash();
@@ -176,7 +173,6 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
 }
 
 #[test]
-#[ignore = "needs ravedude and avrdude: make flash-test"]
 fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let mut desk = Desk::with_a_new_board();
     let shell = desk.make_flash();
@@ -197,7 +193,6 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
 }
 
 #[test]
-#[ignore = "needs ravedude and avrdude: make flash-test"]
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let mut desk = Desk::with_a_new_board();
     // A boot loader that does nothing: `rjmp .-2`.

@@ -6,7 +6,9 @@
 
 use lizard_kinematics::{Vector, wrap};
 
+use crate::friction::Point;
 use crate::robot::Robot;
+use crate::servo::FORWARD;
 
 /// A leg at a servo angle; points in mm, chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,39 +42,39 @@ impl Robot {
     /// The leg of a servo (0 to 3) when that is at an angle in deg, chassis frame.
     pub fn leg(&self, servo: usize, angle: f64) -> LegPlace {
         let feet = &self.ground().feet;
-        let left = matches!(servo, 0 | 3);
-        let front = servo < 2;
-        let side = |positive: bool, value: f64| if positive { value } else { -value };
-        // Outward sweep turns a left front leg clockwise, and so on.
-        let mount = side(left != front, feet.mount);
-        let straight = if left { 180.0 } else { 0.0 };
-        let turned = straight + mount - self.servos()[servo].neutral;
-        let leg = self.lizard().leg;
+        let point = |[forward, left]: Point| Vector::new(-left, forward);
+        let hip = point(feet.hips()[servo]);
+        let reach = |sweep: f64| point(feet.at([sweep; 4])[servo]) - hip;
+        let neutral = self.servos()[servo].neutral;
+        // The ground link stands where it makes the servo's angle with the crank.
+        let link = Vector::direction(wrap(reach(0.0).angle() - neutral));
         LegPlace {
-            hip: Vector::new(side(!left, feet.hip_side), side(front, feet.hip_forward)),
-            half: Vector::direction(wrap(turned)) * (leg.ground / 2.0),
-            reach: Vector::direction(wrap(turned + angle)) * leg.crank,
+            hip,
+            half: link * (self.lizard().leg.ground / 2.0),
+            reach: reach(FORWARD[servo] * (angle - neutral)),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::servo::FORWARD;
+    use lizard_kinematics::wrap;
+
     use crate::testing::all;
 
     #[test]
-    fn a_foot_is_where_the_contact_model_has_it() {
+    fn a_crank_is_as_long_as_it_is_and_at_its_servos_angle_to_the_ground_link() {
         for (name, robot) in all() {
-            let feet = robot.ground().feet;
-            for sweep in [-30.0, 0.0, 12.5] {
-                let model = feet.at([sweep; 4]);
-                for servo in 0..4 {
-                    let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
-                    let foot = robot.leg(servo, angle).foot();
-                    let [forward, left] = model[servo];
-                    let off = (foot.y - forward).hypot(foot.x + left);
-                    assert!(off < 1e-9, "{name} {servo} {foot:?} {model:?}");
+            for (servo, of) in robot.servos().iter().enumerate() {
+                for angle in [of.neutral - 30.0, of.neutral, of.neutral + 12.5] {
+                    let leg = robot.leg(servo, angle);
+                    let between = wrap(leg.reach.angle() - leg.half.angle() - angle);
+                    let off = wrap(between + 180.0) - 180.0;
+                    assert!(off.abs() < 1e-9, "{name} {servo} {off}");
+                    let long = leg.reach.length() - robot.lizard().leg.crank;
+                    assert!(long.abs() < 1e-9, "{name} {servo}");
+                    let wide = (leg.pivots()[1] - leg.pivots()[0]).length();
+                    assert!((wide - robot.lizard().leg.ground).abs() < 1e-9);
                 }
             }
         }

@@ -26,9 +26,6 @@ fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
 #[test]
 fn status_tells_the_supply_within_thirty_millivolts() {
     let mut bench = awake(Fidelity::DataSheet);
-    bench
-        .uno
-        .set_bandgap_mv(robot().supplies().reference * 1000.0);
     let mut farthest = 0f64;
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
@@ -76,9 +73,6 @@ fn assert_sinks(
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut bench = doing(&moving(), Fidelity::DataSheet);
-    bench
-        .uno
-        .set_bandgap_mv(robot().supplies().reference * 1000.0);
     assert_sinks(&mut bench, robot().supplies().board, |bench, volts| {
         bench.uno.set_supply_mv(1000.0 * volts);
     });
@@ -98,9 +92,6 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 #[test]
 fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
     let mut bench = doing(&moving(), Fidelity::DataSheet);
-    bench
-        .uno
-        .set_bandgap_mv(robot().supplies().reference * 1000.0);
     let pace = |bench: &mut FirmwareBench| {
         let before = Status::of(bench).number("phase");
         bench.run_ms(200);
@@ -132,9 +123,6 @@ fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
 #[test]
 fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
     let mut bench = doing(&moving(), Fidelity::DataSheet);
-    bench
-        .uno
-        .set_bandgap_mv(robot().supplies().reference * 1000.0);
     let [slow, stop, _] = robot().supplies().board;
     bench.uno.set_supply_mv(stop * 1000.0 - 60.0);
     bench.run_ms(500);
@@ -175,9 +163,6 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
 #[test]
 fn a_short_dip_and_a_supply_that_wavers_change_little() {
     let mut bench = doing(&moving(), Fidelity::DataSheet);
-    bench
-        .uno
-        .set_bandgap_mv(robot().supplies().reference * 1000.0);
     let from = bench.lines().len();
     // A servo's start takes a few milliseconds of it.
     for n in 0..200u64 {

@@ -12,9 +12,9 @@ use std::cell::RefCell;
 
 use serde::Serialize;
 
-use crate::body::Place;
 use crate::description::Way;
 use crate::page::Page;
+use crate::place::Place;
 
 #[derive(Default)]
 struct Door {

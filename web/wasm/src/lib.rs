@@ -11,18 +11,18 @@
 #![warn(clippy::missing_errors_doc)]
 
 mod abi;
-mod body;
 mod core_run;
 mod description;
 mod edit;
 mod map;
 mod page;
+mod place;
 mod scene;
 
-pub use body::{Body, Contact, Place, Rigid, Walked};
 pub use core_run::{CoreRun, Said};
 pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ServoEntry, Way};
 pub use edit::{NoSuchLength, with_number};
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page, Refused};
+pub use place::Place;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};

@@ -3,14 +3,15 @@
 
 use lizard_core::memory::Bytes;
 use lizard_kinematics::End;
-use lizard_robot::Robot;
+use lizard_robot::servo::FORWARD;
+use lizard_robot::{Ground, Place as Walked, Robot, Walker};
 use serde::Serialize;
 
-use crate::body::{Body, Place, Rigid};
 use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Way};
 use crate::edit::with_number;
 use crate::map::Map;
+use crate::place::Place;
 use crate::scene::Scene;
 
 /// CPU cycles in a microsecond.
@@ -53,7 +54,10 @@ pub struct Edited {
 #[derive(Default)]
 pub struct Page {
     robot: Option<Robot>,
-    body: Option<Body<Rigid>>,
+    /// The robot's, with the friction of now.
+    ground: Option<Ground>,
+    /// None before the first pose.
+    walker: Option<Walker>,
     angles: [f64; 4],
     run: Option<CoreRun>,
 }
@@ -66,8 +70,8 @@ impl Page {
     pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
         let robot = Robot::parse(text).map_err(|error| refused(&error))?;
         let description = Description::of(&robot);
-        let ratio = robot.ground().ratio;
-        self.body = Some(Body::new(Rigid { ratio }));
+        self.ground = Some(*robot.ground());
+        self.walker = None;
         self.angles = robot.neutral().into();
         self.run = None;
         self.robot = Some(robot);
@@ -110,45 +114,52 @@ impl Page {
     }
 
     fn frame(&mut self, angles: [f64; 4]) -> Option<Frame> {
-        let (robot, body) = (self.robot.as_ref()?, self.body.as_mut()?);
+        let (robot, ground) = (self.robot.as_ref()?, self.ground?);
+        let sweeps = robot.sweeps(angles);
+        let mut slides = [0.0; 4];
         // A pose that does not close is none that a robot can walk to.
-        let closes = robot.lizard().solve(&angles.into()).is_ok();
-        let slides = if closes {
-            body.follow(robot, angles)
-        } else {
-            [0.0; 4]
-        };
-        let scene = Scene::of(robot, angles, body.legs().unwrap_or(angles));
+        if robot.lizard().solve(&angles.into()).is_ok() {
+            // The first one only says where the legs are.
+            let walker = self
+                .walker
+                .get_or_insert_with(|| Walker::new(ground, sweeps));
+            slides = walker.step(sweeps).feet;
+        }
+        let legs = self.walker.map_or(sweeps, |walker| walker.legs());
+        let legs = [0, 1, 2, 3].map(|i| robot.servos()[i].neutral + FORWARD[i] * legs[i]);
+        let scene = Scene::of(robot, angles, legs);
         let fault = scene.as_ref().err().cloned();
+        let place = self.walker.map_or(Walked::START, |walker| walker.place());
         Some(Frame {
             scene: scene.ok(),
             fault,
-            place: body.place,
+            place: place.into(),
             slides,
         })
     }
 
     /// Takes the robot back to its start.
     pub fn restart(&mut self) {
-        if let Some(body) = &mut self.body {
-            body.put(Place::default());
+        if let Some(walker) = &mut self.walker {
+            walker.set_place(Walked::START);
         }
     }
 
     /// Sets the friction of pads that slide backward over that of those that slide forward,
     /// above 0.
     pub fn set_friction(&mut self, ratio: f64) {
-        if let Some(body) = &mut self.body {
-            body.contact.ratio = ratio;
+        if let Some(ground) = &mut self.ground {
+            ground.ratio = ratio;
+            if let Some(walker) = &mut self.walker {
+                walker.set_ground(*ground);
+            }
         }
     }
 
     /// Where a cycle of a gait takes the robot by the contact model, on the floor of now.
     pub fn predict(&self, gait: usize) -> Option<Way> {
-        let (robot, body) = (self.robot.as_ref()?, self.body.as_ref()?);
-        let mut ground = *robot.ground();
-        ground.ratio = body.contact.ratio;
-        Some(robot.gaits().get(gait)?.predict(&ground).into())
+        let gait = self.robot.as_ref()?.gaits().get(gait)?;
+        Some(gait.predict(&self.ground?).into())
     }
 
     /// The map of singularities of the head (0) or the tail (1).
@@ -219,6 +230,62 @@ mod tests {
         let first = scene(page.pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
         assert!((first.angles[0] - 148.590378).abs() < 1e-9, "{first:?}");
         assert_eq!(scene(page.pulses([0; 4])), first);
+    }
+
+    /// A page that has followed a cycle of a gait, and how far each foot slid in each
+    /// frame of it.
+    fn after_a_cycle(name: &str) -> (Place, Vec<[f64; 4]>) {
+        let mut page = Page::default();
+        page.read(PAPER).expect("right");
+        let robot = Robot::parse(PAPER).expect("right");
+        let gait = robot.gait(name).expect("a gait");
+        let follow = |(_, phase)| page.pose(gait.table_angles(phase)).expect("it closes");
+        let frames: Vec<Frame> = gait.frames().map(follow).collect();
+        let last = frames.last().expect("frames").place;
+        (last, frames.iter().map(|frame| frame.slides).collect())
+    }
+
+    #[test]
+    fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
+        let robot = Robot::parse(PAPER).expect("right");
+        for name in ["walk", "left", "arc-right", "back"] {
+            let way = robot.predict(robot.gait(name).expect("a gait"));
+            let (place, _) = after_a_cycle(name);
+            let near = |got: f64, wanted: Option<f64>, within: f64| {
+                let off = got - wanted.expect("decided");
+                assert!(off.abs() < within, "{name} {place:?}");
+            };
+            near(place.y, way.forward, 0.5);
+            near(-place.x, way.left, 0.5);
+            near(place.heading, way.turn, 0.3);
+        }
+    }
+
+    #[test]
+    fn in_a_walk_most_feet_hold() {
+        let (_, slides) = after_a_cycle("walk");
+        let mut slid = [0.0; 4];
+        for frame in slides {
+            let holds = frame.iter().filter(|mm| **mm < 0.3).count();
+            assert!(holds >= 2, "{frame:?}");
+            slid = [0, 1, 2, 3].map(|i| slid[i] + frame[i]);
+        }
+        assert!(
+            slid.iter().all(|mm| *mm > 20.0),
+            "each foot is dragged once: {slid:?}"
+        );
+    }
+
+    #[test]
+    fn legs_on_springs_lag_behind_their_servos() {
+        let walked = |spring: &str| {
+            let mut page = Page::default();
+            let text = PAPER.replace("[leg]", &format!("[leg]\n{spring}"));
+            let robot = page.read(&text).expect("right");
+            let walk = robot.gaits.iter().position(|gait| gait.name == "walk");
+            page.predict(walk.expect("walk"))
+        };
+        assert_ne!(walked("spring = 5.0"), walked(""));
     }
 
     #[test]

@@ -1,0 +1,62 @@
+//! Where the body is, as the page draws it.
+
+use lizard_robot::{Place as Walked, Travel};
+use serde::Serialize;
+
+/// Position and heading of the chassis on the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// To the right of the start, mm.
+    pub x: f64,
+    /// Ahead of the start, mm.
+    pub y: f64,
+    /// Heading, deg, counter-clockwise from the start's; not wrapped.
+    pub heading: f64,
+}
+
+impl Place {
+    /// The way from here to another place, seen from here.
+    #[must_use]
+    pub fn way_to(self, other: Self) -> Travel {
+        Walked::from(other).seen_from(self.into())
+    }
+}
+
+impl From<Walked> for Place {
+    fn from(place: Walked) -> Self {
+        Self {
+            x: -place.left,
+            y: place.forward,
+            heading: place.heading.to_degrees(),
+        }
+    }
+}
+
+impl From<Place> for Walked {
+    fn from(place: Place) -> Self {
+        Self {
+            forward: place.y,
+            left: -place.x,
+            heading: place.heading.to_radians(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_that_looks_to_the_left_and_goes_ahead_goes_to_the_left() {
+        let place = |x, y, heading| Place { x, y, heading };
+        let way = place(0.0, 0.0, 90.0).way_to(place(-10.0, -2.0, 95.0));
+        let off = (way.forward - 10.0)
+            .hypot(way.left - 2.0)
+            .hypot(way.turn - 5.0);
+        assert!(off < 1e-12, "{way:?}");
+        let there = place(3.0, -4.0, 170.0);
+        let again = Place::from(Walked::from(there));
+        let off = (again.x - 3.0).hypot(again.y + 4.0) + (again.heading - 170.0).abs();
+        assert!(off < 1e-12, "{again:?}");
+    }
+}
