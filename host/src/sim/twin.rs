@@ -34,6 +34,8 @@ const CAPACITY: u64 = 255 + 2;
 const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
 /// Cycles that the AVR takes to compute a frame, about.
 const FRAME_TAKES: u64 = 8_000;
+/// Cycles that the AVR takes to read the end of a line and to act on it, at most.
+const READING_TAKES: u64 = 1_600;
 /// The robot wakes within this many frames of power-on.
 const WAKES: usize = 500;
 
@@ -173,8 +175,7 @@ pub struct Commands {
 
 /// Runs the core of a robot beside a recording: `received` are the bytes that
 /// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
-/// frames from there on. Exact unless a command becomes complete within some 50 us
-/// of a tick, where it is a matter of cycles which of the two main sees first.
+/// frames from there on. Exact but for the lines of [`undecided`].
 #[must_use]
 pub fn play<R: Robot + Copy>(
     robot: R,
@@ -213,6 +214,16 @@ pub fn play<R: Robot + Copy>(
         widths,
         written: twin.line.written,
     }
+}
+
+/// Which lines (from 0) become complete so shortly before a tick that it is a matter of
+/// cycles whether main has read them when it comes.
+pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = usize> {
+    let tick = first.saturating_sub(SLOT) % FRAME;
+    let ends = received.iter().filter(|byte| byte.byte == b'\n');
+    let left = ends.map(move |end| (tick + FRAME - end.cycle % FRAME) % FRAME);
+    left.enumerate()
+        .filter_map(|(line, left)| (left < READING_TAKES).then_some(line))
 }
 
 /// Frames before A1's first pulse, if no command comes.
