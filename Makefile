@@ -19,6 +19,9 @@ endif
 
 # Set-up decides which compiler is used, so it runs before anything else and
 # hands over to a make that has read its answer.
+# Cargo knows make's jobs only from a rule that calls make, and warns in others.
+CARGO := MAKEFLAGS= cargo
+
 define prepared
 	@scripts/setup
 	@$(MAKE) $(1)
@@ -65,7 +68,7 @@ clean: ## remove everything that was built
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:
-	@RUSTC_BOOTSTRAP=1 cargo build --release
+	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release
 	@avr-objcopy -O ihex -R .eeprom $(ELF) $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
 
@@ -104,7 +107,7 @@ clean: ## remove everything that was built
 
 # What a simulation needs of the host program, in a profile that compiles fast.
 .simulator:
-	@cd host && cargo build --profile sim --no-default-features --features simulator
+	@cd host && $(CARGO) build --profile sim --no-default-features --features simulator
 
 # Both builds at once: each has phases that keep only one core busy.
 .sim:
@@ -113,7 +116,7 @@ clean: ## remove everything that was built
 
 # The tests, compiled beside the firmware: each has phases that keep one core busy.
 .tests:
-	@cd host && cargo test --workspace --no-run --quiet
+	@cd host && $(CARGO) test --workspace --no-run --quiet
 
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
 # Where the judge cannot be set up, its tests fail and say so; the others run.

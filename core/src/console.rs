@@ -7,30 +7,33 @@
 
 use ufmt::uWrite;
 
-use crate::answer::{self, Answer, Refusal};
+use crate::answer::Answer;
 use crate::command::Command;
+use crate::digits;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::hazard::Hazard;
 use crate::line::{self, Line};
-use crate::memory::{Memory, Progress};
+use crate::memory::Memory;
 use crate::motion::{Activity, Motion};
-use crate::part::Servo;
 use crate::pose::{Pose, Pulses};
 use crate::record::{self, Outcome, RESTED};
+use crate::refusal::{self, Refusal};
 use crate::restart::{Cause, Restart};
 use crate::robot::Robot;
 use crate::safety::{Health, Notice, Order, Safety};
 use crate::settings::{Boot, Settings};
 use crate::supply::Voltage;
 use crate::text::Text;
-use crate::units::{Angle, Sweep};
 use crate::word::Word;
 
 use job::Job;
+use watch::Watch;
 
+mod adjust;
 mod job;
 mod print;
+mod watch;
 
 /// The longest line that [`Console::write_line`] writes, with its line end: a
 /// `status` whose every number has all its digits.
@@ -58,17 +61,6 @@ pub struct Counters {
     pub late: u16,
     /// Bytes received and lost.
     pub rx_lost: u16,
-}
-
-/// Pose reports, as `watch` asked for them.
-#[derive(Clone, Copy, Debug)]
-struct Watch {
-    /// Frames from one report to the next; 0 for none.
-    every: u16,
-    /// Frames until the next one.
-    left: u16,
-    /// Whether one waits to be written.
-    due: bool,
 }
 
 /// Something is not done; the answer says why.
@@ -167,50 +159,6 @@ impl<R: Robot> Console<R> {
         self.job.is_some()
     }
 
-    /// Does a part of what there is to do with the memory: one byte at most.
-    #[inline(never)]
-    pub fn write_memory<M: Memory>(&mut self, memory: &mut M) {
-        if !memory.is_ready() {
-            return;
-        }
-        let robot = self.motion.robot();
-        let progress = match &mut self.job {
-            None => return,
-            Some(Job::Load) => {
-                let mut kept = self.settings;
-                self.job = None;
-                self.answer = Some(Answer::Done);
-                // Either way, what is to be said is in the answer.
-                _ = match record::load(robot, memory, &mut kept) {
-                    Outcome::Latest | Outcome::Other => self.replace(&kept),
-                    _ => self.refuse(Refusal::NothingSaved),
-                };
-                return;
-            }
-            Some(Job::Save) => match record::save(&mut self.settings, memory) {
-                None => Progress::Done,
-                Some(writing) => {
-                    self.job = Some(Job::Saving(writing));
-                    return;
-                }
-            },
-            Some(Job::Saving(writing)) => writing.step(self.settings.bytes(), memory),
-            Some(Job::Pose(writing)) => {
-                let pose = Settings::of_pose(self.motion.pose(), robot);
-                if writing.step(pose.bytes(), memory) != Progress::Going {
-                    self.job = None;
-                }
-                return;
-            }
-        };
-        self.answer = Some(match progress {
-            Progress::Going => return,
-            Progress::Done => Answer::Done,
-            Progress::Failed => Answer::Refused(Refusal::NotKept),
-        });
-        self.job = None;
-    }
-
     /// True while a line waits to be written. No byte is to be passed on
     /// meanwhile: the answer may still need the line it answers.
     pub const fn has_output(&self) -> bool {
@@ -270,13 +218,13 @@ impl<R: Robot> Console<R> {
             Some(Output::Held) => {
                 if let Some(hazard) = self.held.take() {
                     Text::Held.print(out)?;
-                    answer::print_hazard(hazard, self.motion.robot(), out)?;
+                    refusal::print_hazard(hazard, self.motion.robot(), out)?;
                 }
             }
             Some(Output::Report) => {
                 self.watch.due = false;
                 Text::WatchTime.print(out)?;
-                answer::number(out, self.motion.frames(), 0)?;
+                digits::number(out, self.motion.frames(), 0)?;
                 self.print_pose(out)?;
             }
         }
@@ -383,37 +331,6 @@ impl<R: Robot> Console<R> {
         Ok(())
     }
 
-    /// Sets something of a servo, if the robot can do with it what it does.
-    #[inline(never)]
-    fn set_servo(&mut self, what: Word, command: &Command) -> Result<(), Refused> {
-        let [number, second, ..] = command.numbers;
-        let place = usize::from(command.servo);
-        let before = self.settings.servo(place);
-        let mut set = before;
-        match what {
-            Word::Trim => set.trim = Sweep(number as i16),
-            Word::Dir => set.set_direct(number != 0),
-            Word::Scale => set.set_scale(number),
-            _ => {
-                let neutral = self.motion.robot().neutral_of(place);
-                set.min = neutral.sweep_to(Angle(number));
-                set.max = neutral.sweep_to(Angle(second));
-            }
-        }
-        self.settings.set_servo(place, set);
-        let adjusted = self.adjust();
-        if adjusted.is_err() {
-            self.settings.set_servo(place, before);
-        }
-        adjusted
-    }
-
-    /// Begins something to do with the memory that ends with an answer.
-    fn begin_job(&mut self, job: Job) {
-        self.job = Some(job);
-        self.answer = None;
-    }
-
     /// Refuses a motion for want of a supply, or because the servos rest and this
     /// command does not `wake` them.
     #[inline(never)]
@@ -460,71 +377,10 @@ impl<R: Robot> Console<R> {
         }
     }
 
-    /// Takes other settings, or keeps those that there are.
-    #[inline(never)]
-    fn replace(&mut self, settings: &Settings) -> Result<(), Refused> {
-        let before = self.settings;
-        self.settings = *settings;
-        let adjusted = self.adjust();
-        if adjusted.is_err() {
-            self.settings = before;
-        }
-        adjusted
-    }
-
-    /// Puts the settings into effect at once, if the robot can do with them what it
-    /// does; if not, they have to be taken back.
-    #[inline(never)]
-    fn adjust(&mut self) -> Result<(), Refused> {
-        let robot = self.motion.robot();
-        if let Some(servo) = self.settings.unfit(robot) {
-            return self.refuse(Refusal::Unfit(servo));
-        }
-        for place in 0..4 {
-            let calibration = self.settings.calibration(place, robot);
-            if self.motion.goes_beyond(place, &calibration) {
-                return self.refuse(Refusal::Elsewhere(Servo::at(place)));
-            }
-        }
-        self.calibrate();
-        Ok(())
-    }
-
-    /// Hands the motion what the settings say of the servos.
-    #[inline(never)]
-    fn calibrate(&mut self) {
-        for place in 0..4 {
-            let calibration = self.settings.calibration(place, self.motion.robot());
-            self.motion.calibrate(place, calibration);
-        }
-        self.motion.settle();
-    }
-
     /// The supply that is the reason to refuse something.
     #[inline(never)]
     fn voltage(&self) -> Voltage {
         self.safety.supply().worst(&self.motion.robot().supplies())
-    }
-}
-
-impl Watch {
-    /// Reports every so many frames, the first after as many.
-    const fn every(frames: u16) -> Self {
-        Self {
-            every: frames,
-            left: frames,
-            due: false,
-        }
-    }
-
-    fn frame(&mut self) {
-        if self.every > 0 {
-            self.left -= 1;
-            if self.left == 0 {
-                self.left = self.every;
-                self.due = true;
-            }
-        }
     }
 }
 

@@ -3,7 +3,8 @@
 use ufmt::uWrite;
 
 use super::{Console, Counters, LONGEST_LINE};
-use crate::answer::{self, Answer};
+use crate::answer::Answer;
+use crate::digits;
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::guard::Clearance;
@@ -57,7 +58,7 @@ impl<R: Robot> Console<R> {
             Answer::Helped => Text::OkHelp.print(out)?,
             Answer::Done => {
                 Text::Ok.print(out)?;
-                answer::ascii(out, self.line.text().iter().copied())?;
+                digits::ascii(out, self.line.text().iter().copied())?;
             }
             Answer::Status => {
                 self.print_status(out, counters)?;
@@ -92,7 +93,7 @@ impl<R: Robot> Console<R> {
             }
             length += 1 + name.length();
             out.write_char(if gait == first { ' ' } else { '|' })?;
-            answer::ascii(out, name)?;
+            digits::ascii(out, name)?;
             match gait.next(robot.gaits().len()) {
                 Some(next) => gait = next,
                 None => return Ok(None),
@@ -114,14 +115,14 @@ impl<R: Robot> Console<R> {
             Activity::Rest => Text::Rest.print(out)?,
         }
         Text::StatusPhase.print(out)?;
-        answer::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
+        digits::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
         self.print_pose(out)?;
         Text::StatusMargin.print(out)?;
-        answer::sine(out, Clearance::of(motion.robot(), motion.pose()).smallest())?;
-        answer::count(out, Text::StatusSpeed, motion.speed().into())?;
-        answer::count(out, Text::StatusFrames, motion.frames())?;
-        answer::count(out, Text::StatusLate, counters.late.into())?;
-        answer::count(out, Text::StatusRxLost, counters.rx_lost.into())?;
+        digits::sine(out, Clearance::of(motion.robot(), motion.pose()).smallest())?;
+        digits::count(out, Text::StatusSpeed, motion.speed().into())?;
+        digits::count(out, Text::StatusFrames, motion.frames())?;
+        digits::count(out, Text::StatusLate, counters.late.into())?;
+        digits::count(out, Text::StatusRxLost, counters.rx_lost.into())?;
         Text::StatusGuard.print(out)?;
         match motion.hazard() {
             None => Text::GuardClear,
@@ -140,14 +141,14 @@ impl<R: Robot> Console<R> {
             .print(out)?;
         Text::StatusReset.print(out)?;
         self.cause.word().print(out)?;
-        answer::count(out, Text::StatusResets, self.restarts.into())?;
+        digits::count(out, Text::StatusResets, self.restarts.into())?;
         let supplies = self.motion.robot().supplies();
         let reading = self.safety.supply().reading();
         let board = Voltage::of_board(reading, &supplies);
-        answer::field(out, Text::StatusVcc, board.hundredths())?;
+        digits::field(out, Text::StatusVcc, board.hundredths())?;
         if let Some(rail) = &supplies.rail {
             let rail = Voltage::of_rail(reading, rail);
-            answer::field(out, Text::StatusRail, rail.hundredths())?;
+            digits::field(out, Text::StatusRail, rail.hundredths())?;
         }
         Ok(())
     }
@@ -165,7 +166,7 @@ impl<R: Robot> Console<R> {
                 self.print_boot(out)?;
             }
             CAL_DEADMAN => {
-                answer::count(out, Text::CalDeadman, settings.deadman().into())?;
+                digits::count(out, Text::CalDeadman, settings.deadman().into())?;
             }
             CAL_END.. => {
                 Text::Ok.print(out)?;
@@ -181,11 +182,11 @@ impl<R: Robot> Console<R> {
                 out.write_char(char::from(b'1' + line))?;
                 Text::CalTrim.print(out)?;
                 print_sweep(out, set.trim)?;
-                answer::field(out, Text::CalLimit, neutral.swept(set.min).centideg())?;
-                answer::field(out, Text::Blank, neutral.swept(set.max).centideg())?;
+                digits::field(out, Text::CalLimit, neutral.swept(set.min).centideg())?;
+                digits::field(out, Text::Blank, neutral.swept(set.max).centideg())?;
                 Text::CalDir.print(out)?;
                 out.write_char(if set.is_direct() { '+' } else { '-' })?;
-                answer::field(out, Text::CalScale, set.scale())?;
+                digits::field(out, Text::CalScale, set.scale())?;
             }
         }
         Ok(true)
@@ -194,7 +195,7 @@ impl<R: Robot> Console<R> {
     fn print_boot<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         match self.settings.boot(self.motion.robot()) {
             Boot::Rest => Text::Rest.print(out),
-            Boot::Gait(id) => answer::ascii(out, self.motion.robot().name(id)),
+            Boot::Gait(id) => digits::ascii(out, self.motion.robot().name(id)),
         }
     }
 
@@ -226,7 +227,7 @@ impl<R: Robot> Console<R> {
                 .print(out)
             }
             Notice::Supply => {
-                answer::field(out, Text::NoticeSupply, self.voltage().hundredths())?;
+                digits::field(out, Text::NoticeSupply, self.voltage().hundredths())?;
                 out.write_char(' ')?;
                 out.write_char('V')?;
                 match self.safety.supply().level() {
@@ -255,13 +256,13 @@ impl<R: Robot> Console<R> {
     pub(super) fn print_pose<W: uWrite + ?Sized>(&self, out: &mut W) -> Result<(), W::Error> {
         Text::WatchPose.print(out)?;
         let motion = &self.motion;
-        answer::angles(out, motion.pose(), motion.robot())
+        digits::angles(out, motion.pose(), motion.robot())
     }
 
     /// A gait's name as a value without a blank: `arc-left`.
     fn print_key<W: uWrite + ?Sized>(&self, out: &mut W, gait: GaitId) -> Result<(), W::Error> {
         let name = self.motion.robot().name(gait);
-        answer::ascii(out, name.map(|byte| if byte == b' ' { b'-' } else { byte }))
+        digits::ascii(out, name.map(|byte| if byte == b' ' { b'-' } else { byte }))
     }
 }
 
@@ -269,7 +270,7 @@ impl<R: Robot> Console<R> {
 fn print_sweep<W: uWrite + ?Sized>(out: &mut W, sweep: Sweep) -> Result<(), W::Error> {
     let size = Angle(sweep.0.unsigned_abs()).centideg();
     let centideg = i32::from(size);
-    answer::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
+    digits::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
 /// `# lizard 0.1.0 tables 1a2b3c4d, send help for the commands`.
