@@ -17,11 +17,11 @@ export LIZARD_ROBOT := $(abspath $(ROBOT))
 FOR_ROBOT := --robot $(LIZARD_ROBOT)
 endif
 
-# Set-up decides which compiler is used, so it runs before anything else and
-# hands over to a make that has read its answer.
 # Cargo knows make's jobs only from a rule that calls make, and warns in others.
 CARGO := MAKEFLAGS= cargo
 
+# Set-up decides which compiler is used, so it runs before anything else and
+# hands over to a make that has read its answer.
 define prepared
 	@scripts/setup
 	@$(MAKE) $(1)
