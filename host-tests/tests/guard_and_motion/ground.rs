@@ -8,20 +8,6 @@ use lizard_robot::{CheckedGait, Robot, Travel};
 
 use crate::frames::{Walker, long_enough, words};
 
-/// A cycle of each gait of the paper's robot: mm ahead, deg counter-clockwise. Found
-/// elsewhere, with the waveforms in floating point.
-const OF_PAPER: [(&str, f64, f64); 9] = [
-    ("stand", 0.0, 0.0),
-    ("walk", 34.16, 0.0),
-    ("trot", 26.66, 0.0),
-    ("crawl", 30.78, 0.0),
-    ("back", -34.16, 0.0),
-    ("left", 0.0, 15.34),
-    ("right", 0.0, -15.34),
-    ("arc-left", 17.71, 5.27),
-    ("arc-right", 17.71, -5.27),
-];
-
 /// Servo angles in the chassis frame, deg, from widths in cycles of 62.5 ns.
 fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
     std::array::from_fn(|n| {
@@ -111,17 +97,22 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
     assert!(seen > 100);
 }
 
+// What floating point says of them is held to figures from elsewhere in the tests of
+// robot/.
 #[test]
-fn the_pulses_of_the_papers_gaits_lead_where_they_were_found_to_lead() {
+fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre_at_any_pace() {
     let named = Named {
         name: "paper.toml".into(),
         robot: paper().clone(),
     };
-    for (name, forward, turn) in OF_PAPER {
-        let gait = paper().gait(name).expect("a gait of the paper's robot");
+    let mut decided = 0;
+    for gait in paper().gaits() {
+        let meant = gait.predict(&paper().ground().rigid());
+        decided += usize::from(meant.forward.is_some() && meant.turn.is_some());
         for percent in [100.0, 80.0, 50.0, 20.0] {
             let travel = travel(&named, gait, percent).expect("the way is clear");
-            check(name, travel, 0.3, Some(forward), Some(turn));
+            check(gait.name(), travel, 0.3, meant.forward, meant.turn);
         }
     }
+    assert!(decided >= 9, "{decided}");
 }
