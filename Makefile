@@ -114,16 +114,19 @@ clean: ## remove everything that was built
 	@$(MAKE) -j2 .firmware .simulator
 	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
+# Which packages are tested: TESTS="-p lizard-host-tests" has those that run the image.
+TESTS ?= --workspace
+
 # The tests, compiled beside the firmware: each has phases that keep one core busy.
 .tests:
-	@cd host && $(CARGO) test --workspace --no-run --quiet
+	@cd host && $(CARGO) test $(TESTS) --no-run --quiet
 
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
 # Where the judge cannot be set up, its tests fail and say so; the others run.
 .test:
 	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
-	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test --workspace --no-fail-fast --quiet
+	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test $(TESTS) --no-fail-fast --quiet
 
 .bench: .firmware .cli
 	@scripts/setup-bench
