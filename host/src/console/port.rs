@@ -2,7 +2,7 @@
 
 use std::io;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serialport::{ErrorKind, SerialPort};
 
@@ -12,6 +12,8 @@ use super::find;
 const BAUD: u32 = 115_200;
 /// How long a read waits for a byte, and so how often a loop over it turns.
 const READ: Duration = Duration::from_millis(5);
+/// How long another program may take to close the port.
+const CLOSING: Duration = Duration::from_secs(1);
 
 /// Why a port cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -73,7 +75,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
         name: name.to_owned(),
         who,
     };
-    if let Some(who) = holder(name) {
+    if let Some(who) = lasting_holder(name) {
         return Err(busy(who));
     }
     let opened = serialport::new(name, BAUD).timeout(READ).open();
@@ -99,6 +101,20 @@ fn missing(name: &str) -> PortError {
         } else {
             ports.join(", ")
         },
+    }
+}
+
+/// A program that has the port open and keeps it: one that is about to close it, as a
+/// console that has just been left or a simulated board that clears its line, is waited
+/// for.
+fn lasting_holder(name: &str) -> Option<String> {
+    let begin = Instant::now();
+    loop {
+        let holder = holder(name)?;
+        if begin.elapsed() > CLOSING {
+            return Some(holder);
+        }
+        std::thread::sleep(READ);
     }
 }
 
@@ -144,6 +160,21 @@ mod tests {
             format!("{name} is no serial port")
         );
         assert_eq!(crate::Failure::from(refusal(&name)).exit_code(), 2);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_program_that_is_about_to_close_the_port_is_waited_for() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let name = file.path().display().to_string();
+        let mut other = std::process::Command::new("sleep")
+            .arg("0.1")
+            .stdin(file.reopen().expect("it opens"))
+            .spawn()
+            .expect("it starts");
+        let words = refusal(&name).to_string();
+        other.wait().expect("it ends");
+        assert_eq!(words, format!("{name} is no serial port"));
     }
 
     #[cfg(target_os = "linux")]
