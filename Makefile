@@ -83,11 +83,12 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@scripts/flash
 
-# The README's `make flash`, played on a simulated board behind a pseudo terminal.
+# The README's `make flash`, played on a simulated board behind a pseudo terminal: in
+# real time, and so one after another.
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
-	@cd host && cargo test -p lizard-host-tests --features flash --test flash --test flash_troubles --quiet
+	@cd host && cargo test -p lizard-host-tests --features flash --test flash --test flash_troubles --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web
