@@ -298,7 +298,7 @@ mod tests {
             ),
             (
                 "[parts.horn]\nhub = \"big\"",
-                "parts.horn.hub is a string; it must be a number",
+                "parts.horn.hub is the string \"big\"; it must be a number",
             ),
             (
                 "[parts.spring]\nwire = 0.0",
