@@ -4,6 +4,7 @@
 //! leg's strut; so one servo moves all three.
 
 use lizard_kinematics::Vector;
+use lizard_robot::Horn;
 
 use crate::assembly::names;
 use crate::body::{Kind, Mount, Prism};
@@ -16,6 +17,9 @@ const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
 /// Radius of the hole that such a screw cuts its thread into, mm.
 const PILOT: f64 = 0.7;
 
+/// Air on each side of a horn's arm in its pocket, in fits: horns spread.
+pub const POCKET: f64 = 1.5;
+
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
         horn(builder, servo);
@@ -25,8 +29,7 @@ pub fn add(builder: &mut Builder) {
 }
 
 /// The horn's arm, which points along the crank; `grown` by a pocket's air.
-fn arm(builder: &Builder, grown: f64) -> Vec<Shape> {
-    let horn = &builder.parts.horn;
+pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
     let (hub, tip) = (horn.hub / 2.0 + grown, horn.tip / 2.0 + grown);
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
     // From hub to tip the arm gets narrower.
@@ -57,7 +60,7 @@ fn horn(builder: &mut Builder, servo: usize) {
         z: [low + horn.thickness - horn.height, low],
     };
     let arm = Prism {
-        add: arm(builder, 0.0),
+        add: arm(&horn, 0.0),
         cut: Vec::new(),
         z: [low, low + horn.thickness],
     };
@@ -99,7 +102,7 @@ fn link(builder: &mut Builder, servo: usize) {
     let pilots =
         HORN_SCREWS.map(|share| Shape::disc(Vector::new(share * parts.horn.arm, 0.0), PILOT));
     let floor = [&[horn_hub, builder.hole(anchor)][..], &pilots].concat();
-    let pocket = arm(builder, 1.5 * parts.fit);
+    let pocket = arm(&parts.horn, POCKET * parts.fit);
     let below = [&pocket[..], &[builder.hole(anchor)]].concat();
     let above = [&pocket[..], &[builder.sink(anchor)]].concat();
     let prisms = vec![

@@ -14,7 +14,7 @@ use crate::stack::Span;
 /// How far sleeve and rod lie beside the pins, outward, mm.
 pub const BESIDE: f64 = 9.0;
 /// Width of a rod, mm.
-const ROD: f64 = 6.0;
+pub(crate) const ROD: f64 = 6.0;
 /// What the rod stays in its sleeve at the least, mm.
 const OVERLAP: f64 = 20.0;
 /// From the sleeve's end to the front pin at the shortest, mm.

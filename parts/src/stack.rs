@@ -180,3 +180,9 @@ fn screw_at_most(most: f64) -> f64 {
         .find(|length| *length <= most)
         .unwrap_or(SCREWS[0])
 }
+
+/// Whether the shops have a screw of this length, mm.
+#[must_use]
+pub fn is_sold(length: f64) -> bool {
+    SCREWS.iter().any(|sold| (sold - length).abs() < 1e-9)
+}
