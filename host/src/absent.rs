@@ -14,6 +14,7 @@ const CONSOLE: [&str; 6] = [
     "record",
     "replay",
 ];
+const PARTS: [&str; 1] = ["parts"];
 const PAPER: [&str; 10] = [
     "solve",
     "inverse",
@@ -39,6 +40,8 @@ pub fn explain(words: &[OsString]) -> Failure {
         "the commands that compute"
     } else if CONSOLE.contains(&name) {
         "the commands for a board on USB"
+    } else if PARTS.contains(&name) {
+        "the parts to print"
     } else {
         return Failure::Input(format!(
             "there is no command `{name}`; lizard --help lists them"
@@ -62,6 +65,7 @@ mod tests {
         );
         assert!(words("backup").contains("without the commands for a board on USB"));
         assert!(words("solve").contains("without the commands that compute"));
+        assert!(words("parts").contains("without the parts to print"));
         assert_eq!(
             words("fly"),
             "there is no command `fly`; lizard --help lists them"

@@ -16,6 +16,8 @@ mod failure;
 pub mod gaits;
 #[cfg(feature = "paper")]
 pub mod paper;
+#[cfg(feature = "parts")]
+pub mod parts;
 pub mod pose_args;
 #[cfg(feature = "paper")]
 pub mod prove;

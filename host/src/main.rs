@@ -1,15 +1,27 @@
 //! `lizard`: the robot's mathematics and its simulation on the command line.
 #![forbid(unsafe_code)]
 
-#[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
+#[cfg(not(all(
+    feature = "simulator",
+    feature = "paper",
+    feature = "console",
+    feature = "parts"
+)))]
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-#[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
+#[cfg(not(all(
+    feature = "simulator",
+    feature = "paper",
+    feature = "console",
+    feature = "parts"
+)))]
 use lizard_host::absent;
 #[cfg(feature = "console")]
 use lizard_host::console;
+#[cfg(feature = "parts")]
+use lizard_host::parts;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
 use lizard_host::{draw, gaits, spring};
@@ -59,6 +71,8 @@ enum Command {
     #[cfg(feature = "simulator")]
     Twin(twin::Args),
     Draw(draw::Args),
+    #[cfg(feature = "parts")]
+    Parts(parts::Args),
     Spring(spring::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
@@ -75,7 +89,12 @@ enum Command {
     #[cfg(all(feature = "console", feature = "simulator"))]
     Replay(console::replay::Args),
     /// A command that this build may lack.
-    #[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
+    #[cfg(not(all(
+        feature = "simulator",
+        feature = "paper",
+        feature = "console",
+        feature = "parts"
+    )))]
     #[command(external_subcommand)]
     Other(Vec<OsString>),
 }
@@ -108,6 +127,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "simulator")]
         Command::Twin(args) => twin::run(args),
         Command::Draw(args) => draw::run(args),
+        #[cfg(feature = "parts")]
+        Command::Parts(args) => parts::run(args),
         Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),
@@ -123,7 +144,12 @@ fn main() -> ExitCode {
         Command::Record(args) => console::interactive::record(args),
         #[cfg(all(feature = "console", feature = "simulator"))]
         Command::Replay(args) => console::replay::run(args),
-        #[cfg(not(all(feature = "simulator", feature = "paper", feature = "console")))]
+        #[cfg(not(all(
+            feature = "simulator",
+            feature = "paper",
+            feature = "console",
+            feature = "parts"
+        )))]
         Command::Other(words) => Err(absent::explain(&words)),
     };
     match done {

@@ -6,6 +6,7 @@ use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use crate::error::{Checked, Problem};
 use crate::feet::{Body, Feet};
 use crate::ground::{DEFAULT_FRICTION, Ground};
+use crate::parts::Parts;
 use crate::reader::Section;
 use crate::scale::{self, LONGEST_BAR};
 use crate::servo::{LEGS, NAMES, Pace, Servo};
@@ -37,6 +38,7 @@ pub(crate) struct Measures {
     pub pace: Pace,
     pub ground: Ground,
     pub supplies: Supplies,
+    pub parts: Parts,
 }
 
 impl Measures {
@@ -54,6 +56,7 @@ impl Measures {
             pace,
             ground: ground(root, feet, spring)?,
             supplies: Supplies::read(root, &servos)?,
+            parts: Parts::read(root)?,
         };
         measures.fits()?;
         measures.stands()?;

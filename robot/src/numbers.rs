@@ -239,6 +239,7 @@ mod tests {
                 pace: *robot.pace(),
                 ground: *robot.ground(),
                 supplies: *robot.supplies(),
+                parts: *robot.parts(),
             },
             Tables::new(&[]).expect("no gait"),
         );

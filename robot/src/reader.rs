@@ -116,20 +116,34 @@ impl<'a> Section<'a> {
 
     /// An array of exactly two numbers within `min` to `max`.
     pub fn pair(&self, name: &str, min: f64, max: f64, unit: &'static str) -> Checked<[f64; 2]> {
-        const EXPECTED: &str = "an array of two numbers";
-        let value = self.value(name, EXPECTED)?;
+        self.numbers(name, min, max, unit)
+    }
+
+    /// An array of exactly so many numbers within `min` to `max`.
+    pub fn numbers<const N: usize>(
+        &self,
+        name: &str,
+        min: f64,
+        max: f64,
+        unit: &'static str,
+    ) -> Checked<[f64; N]> {
+        let expected = match N {
+            2 => "an array of two numbers",
+            _ => "an array of three numbers",
+        };
+        let value = self.value(name, expected)?;
         let DeValue::Array(array) = value else {
-            return Err(wrong(value, EXPECTED).at(self.path(name)));
+            return Err(wrong(value, expected).at(self.path(name)));
         };
         let numbers: Option<Vec<f64>> = array.iter().map(|item| number(item.get_ref())).collect();
-        let Some(&[x, y]) = numbers.as_deref() else {
+        let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
             return Err(Problem::Type {
                 found: format!("an array of {}", array.len()),
-                expected: EXPECTED,
+                expected,
             }
             .at(self.path(name)));
         };
-        for value in [x, y] {
+        for value in numbers {
             if !(min..=max).contains(&value) {
                 return Err(Problem::Range {
                     value,
@@ -140,7 +154,7 @@ impl<'a> Section<'a> {
                 .at(self.path(name)));
             }
         }
-        Ok([x, y])
+        Ok(numbers)
     }
 
     /// An array of strings.

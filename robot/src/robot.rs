@@ -15,6 +15,7 @@ use crate::firmware::Firmware;
 use crate::ground::{Ground, Prediction, Travel};
 use crate::measure::Measures;
 use crate::numbers::Numbers;
+use crate::parts::Parts;
 use crate::reader::{self, Section};
 use crate::servo::{self, FORWARD, Pace, Servo};
 use crate::supply::Supplies;
@@ -78,7 +79,7 @@ impl Robot {
         let root = Section::root(
             table,
             &[
-                "links", "leg", "servo", "limits", "supply", "body", "ground", "gait",
+                "links", "leg", "servo", "limits", "supply", "body", "ground", "parts", "gait",
             ],
         )?;
         let measures = Measures::read(&root)?;
@@ -131,6 +132,11 @@ impl Robot {
     /// What is measured of its supplies.
     pub fn supplies(&self) -> &Supplies {
         &self.measures.supplies
+    }
+
+    /// What it is built of.
+    pub fn parts(&self) -> &Parts {
+        &self.measures.parts
     }
 
     /// Its feet on the floor.

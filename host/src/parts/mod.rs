@@ -1,0 +1,124 @@
+//! `lizard parts`: everything that is needed to build the robot, as files.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lizard_parts::{Assembly, File, Unfit, coupon, part_files};
+use serde::Serialize;
+
+use crate::{Failure, RobotFile};
+
+/// Make the parts of the robot: files to print and to cut, what to buy, how to build it
+///
+/// Into DIR go step/ (solids for a drawing program), stl/ (lying as they are printed)
+/// and cut/ (DXF and SVG, 1:1 in mm, of what can be cut from a sheet). Links, servos,
+/// screws and fits are taken from robot.toml; a robot whose parts would meet is refused.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard parts out/parts
+  lizard parts out/large --robot robots/large.toml
+  lizard parts out/fit --coupon
+
+Print the coupon first: the first column into which everything goes by hand is the `fit`
+of your printer, and belongs under [parts] in robot.toml.")]
+pub struct Args {
+    /// Folder for the files; made if need be
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Only the fit coupon
+    #[arg(long)]
+    coupon: bool,
+    /// Print the list of parts as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// A part as `--json` prints it.
+#[derive(Serialize)]
+struct Listed {
+    part: String,
+    count: usize,
+    /// Of one, mm^3.
+    volume: f64,
+    files: Vec<String>,
+}
+
+impl From<Unfit> for Failure {
+    fn from(unfit: Unfit) -> Self {
+        Self::Impossible(unfit.to_string())
+    }
+}
+
+/// Makes and writes everything.
+///
+/// # Errors
+/// A wrong robot.toml, parts that do not fit, a folder or a file that cannot be written.
+/// Nothing is written unless all of it could be made.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let kerf = robot.parts().kerf;
+    let assembly = Assembly::new(&robot);
+    let mut parts = coupon(robot.parts()).to_vec();
+    if !args.coupon {
+        let style = ProgressStyle::with_template("{spinner} {msg}").expect("a template");
+        let bar = ProgressBar::new_spinner()
+            .with_style(style)
+            .with_message("looking for parts that meet");
+        bar.tick();
+        assembly.fits()?;
+        bar.finish_and_clear();
+        parts.extend(assembly.parts());
+    }
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}").expect("a template");
+    let bar = ProgressBar::new(parts.len() as u64).with_style(style);
+    let mut files = Vec::new();
+    let mut list = Vec::new();
+    for part in &parts {
+        bar.set_message(part.name.clone());
+        let made = part_files(part, kerf)?;
+        list.push(Listed {
+            part: part.name.clone(),
+            count: part.count(),
+            volume: part.volume(),
+            files: made.iter().map(|file| file.path.clone()).collect(),
+        });
+        files.extend(made);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    write(&args.folder, &files)?;
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &list)?;
+        writeln!(out)?;
+    } else {
+        let pieces: usize = list.iter().map(|part| part.count).sum();
+        writeln!(
+            out,
+            "{} parts, {pieces} pieces, {} files in {}",
+            list.len(),
+            files.len(),
+            args.folder.display()
+        )?;
+    }
+    Ok(out.flush()?)
+}
+
+/// Writes all files.
+fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
+    for file in files {
+        let path = folder.join(&file.path);
+        let cannot = |error: io::Error| {
+            Failure::Impossible(format!("cannot write {}: {error}", path.display()))
+        };
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(cannot)?;
+        }
+        fs::write(&path, &file.bytes).map_err(cannot)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,194 @@
+//! Bodies are added one by one; screws bring their nuts.
+
+use lizard_kinematics::Vector;
+use lizard_robot::{Parts, Robot};
+
+use crate::body::{Body, Kind, Mount, Prism};
+use crate::layout::Layout;
+use crate::shape::Shape;
+use crate::stack::{PLAY, Span, Stack, screw_length};
+
+/// Which way a screw points.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Points {
+    Up,
+    Down,
+}
+
+/// What the assembly is built with.
+pub struct Builder<'a> {
+    pub robot: &'a Robot,
+    pub parts: &'a Parts,
+    pub stack: Stack,
+    pub layout: Layout,
+    pub bodies: Vec<Body>,
+}
+
+/// A screw with a nut.
+pub struct Bolt<'a> {
+    pub name: &'a str,
+    /// What it turns with.
+    pub mount: Mount,
+    pub at: Vector,
+    /// Where the head bears.
+    pub head: f64,
+    pub points: Points,
+    /// What the nut bears on.
+    pub nut: f64,
+    /// Length below the head; else as long as the nut needs.
+    pub length: Option<f64>,
+    /// What it passes through.
+    pub meets: &'a [&'a str],
+}
+
+impl<'a> Builder<'a> {
+    pub fn new(robot: &'a Robot) -> Self {
+        let parts = robot.parts();
+        Self {
+            robot,
+            parts,
+            stack: Stack::new(parts),
+            layout: Layout::new(robot),
+            bodies: Vec::new(),
+        }
+    }
+
+    /// Half a bar's width, mm.
+    pub fn half(&self) -> f64 {
+        self.parts.bar / 2.0
+    }
+
+    /// A hole through which a screw turns.
+    pub fn hole(&self, at: Vector) -> Shape {
+        Shape::disc(at, self.parts.screw.diameter / 2.0 + self.parts.fit / 2.0)
+    }
+
+    /// A hole into which a screw cuts its thread.
+    pub fn thread(&self, at: Vector) -> Shape {
+        Shape::disc(at, 0.43 * self.parts.screw.diameter)
+    }
+
+    /// What a screw's head is sunk into.
+    pub fn sink(&self, at: Vector) -> Shape {
+        Shape::disc(at, self.parts.screw.head / 2.0 + self.parts.fit)
+    }
+
+    /// What a nut is sunk into.
+    pub fn pocket(&self, at: Vector) -> Shape {
+        Shape::hexagon(at, self.parts.screw.nut + self.parts.fit)
+    }
+
+    pub fn body(&mut self, name: String, kind: Kind, mount: Mount, prisms: Vec<Prism>) {
+        self.bodies.push(Body {
+            name,
+            kind,
+            mount,
+            prisms,
+            meets: Vec::new(),
+        });
+    }
+
+    /// That the last body touches another by design.
+    pub fn meeting(&mut self, name: &str) {
+        if let Some(body) = self.bodies.last_mut() {
+            body.meets.push(name.to_owned());
+        }
+    }
+
+    /// A printed ring around a screw.
+    pub fn spacer(&mut self, name: String, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
+        let ring = Prism {
+            add: vec![Shape::disc(
+                at,
+                self.parts.screw.diameter / 2.0 + self.parts.wall,
+            )],
+            cut: vec![self.hole(at)],
+            z,
+        };
+        self.body(name, Kind::Printed, mount, vec![ring]);
+        for other in meets {
+            self.meeting(other);
+        }
+    }
+
+    /// A screw and its nut.
+    pub fn bolt(&mut self, bolt: &Bolt) {
+        let screw = self.parts.screw;
+        let way = match bolt.points {
+            Points::Up => 1.0,
+            Points::Down => -1.0,
+        };
+        let behind = bolt.nut + way * screw.nut_height;
+        let length = bolt
+            .length
+            .unwrap_or_else(|| screw_length((behind - bolt.head).abs()));
+        self.screw(bolt, length);
+        let nut = Prism {
+            add: vec![Shape::hexagon(bolt.at, screw.nut)],
+            cut: vec![Shape::disc(bolt.at, screw.diameter / 2.0)],
+            z: ordered(bolt.nut, behind),
+        };
+        self.body(
+            format!("nut {}", bolt.name),
+            Kind::Nut,
+            bolt.mount,
+            vec![nut],
+        );
+        self.meet(bolt.meets);
+    }
+
+    /// A screw without a nut.
+    pub fn screw(&mut self, bolt: &Bolt, length: f64) {
+        let screw = self.parts.screw;
+        let way = match bolt.points {
+            Points::Up => 1.0,
+            Points::Down => -1.0,
+        };
+        let prism = |radius: f64, from: f64, to: f64| Prism {
+            add: vec![Shape::disc(bolt.at, radius)],
+            cut: Vec::new(),
+            z: ordered(from, to),
+        };
+        let mut prisms = vec![
+            prism(screw.diameter / 2.0, bolt.head, bolt.head + way * length),
+            prism(
+                screw.head / 2.0,
+                bolt.head - way * screw.head_height,
+                bolt.head,
+            ),
+        ];
+        prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
+        self.body(
+            format!("screw {}", bolt.name),
+            Kind::Screw(length),
+            bolt.mount,
+            prisms,
+        );
+        self.meet(bolt.meets);
+    }
+
+    fn meet(&mut self, names: &[&str]) {
+        for name in names {
+            self.meeting(name);
+        }
+    }
+
+    /// A joint of two or more parts, held from below; the nut is above all.
+    pub fn joint(&mut self, name: &str, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
+        self.bolt(&Bolt {
+            name,
+            mount,
+            at,
+            head: z[0],
+            points: Points::Up,
+            nut: z[1] + PLAY,
+            length: None,
+            meets,
+        });
+    }
+}
+
+/// Two heights, the lower one first.
+fn ordered(a: f64, b: f64) -> Span {
+    [a.min(b), a.max(b)]
+}

@@ -1,0 +1,297 @@
+//! What does not move: plate, servos, battery, deck and board.
+
+use lizard_kinematics::{End, Vector};
+
+use crate::assembly::names;
+use crate::body::{Kind, Mount, Prism};
+use crate::builder::{Bolt, Builder, Points};
+use crate::shape::Shape;
+
+/// Half the width of the plate's arms at the legs' pivots, mm.
+const ARM: f64 = 7.0;
+/// Where the standoffs are, mm: to the right, forward.
+pub const STANDOFFS: [f64; 2] = [8.0, 38.0];
+/// Radius of a standoff, mm: 5.5 mm over flats.
+const STANDOFF: f64 = 3.2;
+/// Width of the plate beside a servo's case, mm.
+const BESIDE_SERVO: f64 = 5.0;
+/// Radius of the hole that a servo's own screw cuts its thread into, mm.
+const PILOT: f64 = 0.8;
+
+/// An Arduino UNO, mm: its board, what stands on it, its four holes from its middle
+/// with the USB socket behind. From 2700 x 2100 mil and holes at (550, 100), (600, 2000),
+/// (2600, 300), (2600, 1400).
+pub const UNO: [f64; 3] = [53.34, 68.58, 12.0];
+const UNO_HOLES: [(f64, f64); 4] = [
+    (24.13, -20.32),
+    (-24.13, -19.05),
+    (19.05, 31.75),
+    (-8.89, 31.75),
+];
+const UNO_BOARD: f64 = 1.6;
+
+fn at(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
+pub fn add(builder: &mut Builder) {
+    plate(builder);
+    for servo in 0..4 {
+        case(builder, servo);
+    }
+    battery(builder);
+    deck(builder);
+    board(builder);
+}
+
+/// The middle of a servo's case, and its size grown by `air` on each side.
+fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
+    let body = &builder.parts.servo;
+    Shape::rectangle(
+        middle(builder, servo),
+        at(body.width + 2.0 * air, body.length + 2.0 * air),
+        0.0,
+    )
+}
+
+/// The case reaches from its shaft towards the middle of the robot.
+fn middle(builder: &Builder, servo: usize) -> Vector {
+    let body = &builder.parts.servo;
+    builder.layout.shafts[servo] + inward(servo) * (body.length / 2.0 - body.shaft)
+}
+
+fn inward(servo: usize) -> Vector {
+    at(0.0, -End::of_servo(servo).sign())
+}
+
+/// Where the two screws of a flange are.
+fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
+    let half = inward(servo) * (builder.parts.servo.holes / 2.0);
+    let middle = middle(builder, servo);
+    [middle - half, middle + half]
+}
+
+fn seat(builder: &Builder, servo: usize) -> Shape {
+    let body = &builder.parts.servo;
+    Shape::rectangle(
+        middle(builder, servo),
+        at(
+            body.width + 2.0 * (builder.parts.fit + builder.parts.wall),
+            body.flange + 2.0,
+        ),
+        1.0,
+    )
+}
+
+fn standoffs() -> [Vector; 4] {
+    let [x, y] = STANDOFFS;
+    [at(-x, y), at(x, y), at(x, -y), at(-x, -y)]
+}
+
+fn plate(builder: &mut Builder) {
+    let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
+    let mut add = Vec::new();
+    let mut seats = Vec::new();
+    let mut openings = Vec::new();
+    let mut holes = Vec::new();
+    // Wide enough for the servos of both ends, and long enough for their flanges.
+    let (mut wide, mut long) = (0.0_f64, 0.0_f64);
+    for servo in 0..4 {
+        let body = &parts.servo;
+        let middle = middle(builder, servo);
+        wide = wide.max(middle.x.abs() + body.width / 2.0 + BESIDE_SERVO);
+        long = long.max(middle.y.abs() + body.flange / 2.0 + 2.0);
+        seats.push(seat(builder, servo));
+        openings.push(opening(builder, servo, parts.fit));
+        holes.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    }
+    add.push(Shape::rectangle(
+        Vector::default(),
+        at(2.0 * wide, 2.0 * long),
+        4.0,
+    ));
+    let mut through = Vec::new();
+    for leg in &layout.legs {
+        let inner = |pivot: Vector| at((wide - ARM).copysign(pivot.x), pivot.y);
+        add.push(Shape::bar(leg.driven, leg.idle, ARM));
+        for pivot in [leg.driven, leg.idle] {
+            let y = pivot.y.clamp(ARM - long, long - ARM);
+            let reach = at(inner(pivot).x, y);
+            add.push(Shape::bar(pivot, reach, ARM - 0.01));
+            through.push(builder.hole(pivot));
+        }
+    }
+    through.extend(standoffs().map(|at| builder.hole(at)));
+    // Lighter, and a way for the straps of the battery.
+    let window = Shape::rectangle(Vector::default(), at(wide, 44.0), 3.0);
+    let cut = [&openings[..], &holes].concat();
+    let prisms = vec![
+        Prism {
+            add,
+            cut: [&cut[..], &through, &[window]].concat(),
+            z: stack.plate,
+        },
+        Prism {
+            add: seats,
+            cut,
+            z: stack.seat,
+        },
+    ];
+    builder.body("plate".to_owned(), Kind::Printed, Mount::Chassis, prisms);
+}
+
+fn case(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let body = builder.parts.servo;
+    let bottom = builder.stack.servo;
+    let shaft = builder.layout.shafts[servo];
+    let layer = |add: Vec<Shape>, low: f64, high: f64| Prism {
+        add,
+        cut: Vec::new(),
+        z: [bottom + low, bottom + high],
+    };
+    let case = opening(builder, servo, 0.0);
+    let flange = Shape::rectangle(middle(builder, servo), at(body.width, body.flange), 0.0);
+    let gears = vec![
+        Shape::disc(shaft, body.width / 2.0 - 0.05),
+        Shape::bar(shaft, shaft + inward(servo) * body.shaft, 3.0),
+    ];
+    let over = body.flange_height + body.flange_thickness;
+    let prisms = vec![
+        layer(vec![case.clone()], 0.0, body.flange_height),
+        layer(vec![flange], body.flange_height, over),
+        layer(vec![case], over, body.height),
+        layer(gears, body.height, body.boss),
+        layer(vec![Shape::disc(shaft, 2.4)], body.boss, body.boss + 3.0),
+    ];
+    builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
+    builder.meeting(&format!("horn {name}"));
+    for (number, at) in flange_holes(builder, servo).into_iter().enumerate() {
+        let head = Prism {
+            add: vec![Shape::disc(at, 2.2)],
+            cut: Vec::new(),
+            z: [bottom + over, bottom + over + 1.6],
+        };
+        builder.body(
+            format!("servo screw {name} {}", number + 1),
+            Kind::ServoScrew,
+            Mount::Chassis,
+            vec![head],
+        );
+    }
+}
+
+fn battery(builder: &mut Builder) {
+    let [x, y, z] = builder.parts.battery;
+    let block = Prism {
+        add: vec![Shape::rectangle(Vector::default(), at(x, y), 0.0)],
+        cut: Vec::new(),
+        z: [0.0, z],
+    };
+    builder.body(
+        "battery".to_owned(),
+        Kind::Battery,
+        Mount::Chassis,
+        vec![block],
+    );
+}
+
+fn deck(builder: &mut Builder) {
+    let (stack, parts) = (builder.stack, builder.parts);
+    let [x, y] = STANDOFFS;
+    let bar = |a: (f64, f64), b: (f64, f64)| Shape::bar(at(a.0, a.1), at(b.0, b.1), 5.0);
+    let add = vec![
+        Shape::rectangle(Vector::default(), at(2.0 * x + 10.5, 2.0 * y + 11.0), 5.0),
+        bar(UNO_HOLES[0], UNO_HOLES[1]),
+        bar(UNO_HOLES[2], UNO_HOLES[3]),
+    ];
+    let screws = standoffs().map(|at| builder.hole(at));
+    let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
+    let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
+    let prisms = vec![
+        Prism {
+            add,
+            cut: [&screws[..], &threads, &[window]].concat(),
+            z: stack.deck,
+        },
+        Prism {
+            add: UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0)).to_vec(),
+            cut: threads.to_vec(),
+            z: stack.boss,
+        },
+    ];
+    builder.body("deck".to_owned(), Kind::Printed, Mount::Chassis, prisms);
+    for (number, place) in standoffs().into_iter().enumerate() {
+        let length = stack.deck[0];
+        let post = Prism {
+            add: vec![Shape::disc(place, STANDOFF)],
+            cut: Vec::new(),
+            z: [0.0, length],
+        };
+        builder.body(
+            format!("standoff {}", number + 1),
+            Kind::Standoff(length),
+            Mount::Chassis,
+            vec![post],
+        );
+        for (name, head, points) in [
+            ("below", stack.plate[0], Points::Up),
+            ("above", stack.deck[1], Points::Down),
+        ] {
+            builder.screw(
+                &Bolt {
+                    name: &format!("standoff {} {name}", number + 1),
+                    mount: Mount::Chassis,
+                    at: place,
+                    head,
+                    points,
+                    nut: 0.0,
+                    length: None,
+                    meets: &[],
+                },
+                parts.plate + 4.0,
+            );
+        }
+    }
+}
+
+fn board(builder: &mut Builder) {
+    let low = builder.stack.boss[1];
+    let [x, y, z] = UNO;
+    let layer = |low: f64, high: f64| Prism {
+        add: vec![Shape::rectangle(Vector::default(), at(x, y), 0.0)],
+        cut: UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 1.6)).to_vec(),
+        z: [low, high],
+    };
+    let board = layer(low, low + UNO_BOARD);
+    let parts = Prism {
+        add: vec![Shape::rectangle(
+            Vector::default(),
+            at(x - 4.0, y - 4.0),
+            0.0,
+        )],
+        cut: Vec::new(),
+        z: [low + UNO_BOARD, low + z],
+    };
+    builder.body(
+        "board".to_owned(),
+        Kind::Board,
+        Mount::Chassis,
+        vec![board, parts],
+    );
+    for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
+        builder.screw(
+            &Bolt {
+                name: &format!("board {}", number + 1),
+                mount: Mount::Chassis,
+                at: at(x, y),
+                head: low + UNO_BOARD,
+                points: Points::Down,
+                nut: 0.0,
+                length: None,
+                meets: &[],
+            },
+            10.0,
+        );
+    }
+}

@@ -1,0 +1,85 @@
+//! The robot as parts: from robot.toml to bodies with layers and places.
+//!
+//! The mechanism is flat and all its joints are upright, so a part is a stack of
+//! layers, each a flat shape between two heights, and the whole robot is laid into one
+//! table of heights ([`Stack`]). What a pose does to it is a turn and a shift of each
+//! body in the plane; nothing moves up or down.
+//!
+//! # How it is meant
+//! ```
+//! let robot = lizard_robot::Robot::parse(include_str!("../../robots/paper.toml"))?;
+//! let assembly = lizard_parts::Assembly::new(&robot);
+//! let pose = robot.lizard().solve(&robot.neutral()).expect("it closes");
+//! for body in assembly.bodies() {
+//!     let place = assembly.place(body.mount, &pose);
+//!     for prism in &body.prisms {
+//!         let _shapes: Vec<_> = prism.add.iter().map(|shape| shape.placed(&place)).collect();
+//!     }
+//! }
+//! # Ok::<(), lizard_robot::Error>(())
+//! ```
+//! - A [`Body`] is rigid: a printed part, a servo, a screw, a nut, a spring, the board,
+//!   the battery. Its layers ([`Prism`]) are given in its own frame; z is the robot's.
+//! - A [`Mount`] says what a body moves with, hence on which servos its place depends:
+//!   `Link`, `Crank`, `Follower`, `Foot` and `Strut` on their servo alone, `Coupler` on
+//!   both servos of its end, `Sleeve` and `Rod` on both of their side, `Chassis` on none.
+//!   Links, cranks and followers turn about a fixed point by the servo's angle; feet and
+//!   struts do not turn. [`Assembly::place`] is that rule.
+//! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
+//!   union of its shapes less its holes, so the shapes without the holes are a hull that
+//!   is safe to prove collisions with: what keeps clear of it keeps clear of the part.
+//!   [`Shape::distance`] is exact.
+//! - [`Assembly::meet`] says which pairs touch by design: what moves together, and what
+//!   names the other in [`Body::meets`], as a screw does with what it passes through, the
+//!   rod with its sleeve, the strut with the leg's crank that its spring pulls at.
+//! - [`Layout`] has pivots and anchors seen from above, for drawings.
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
+
+mod assembly;
+mod body;
+mod builder;
+mod chassis;
+mod clearance;
+mod coupon;
+mod dxf;
+mod ends;
+mod files;
+mod layout;
+mod legs;
+mod links;
+mod mesh;
+mod outline;
+mod part;
+mod place;
+mod shape;
+mod sheet;
+mod sliders;
+mod solid;
+mod stack;
+mod step;
+mod stl;
+mod svg;
+mod unfit;
+
+pub use assembly::Assembly;
+pub use body::{Body, Kind, Mount, Prism};
+pub use clearance::Clearance;
+pub use coupon::coupon;
+pub use dxf::dxf;
+pub use files::{File, part_files};
+pub use layout::{Layout, LegLayout};
+pub use mesh::Mesh;
+pub use outline::{Loop, Outline, Side};
+pub use part::Part;
+pub use place::Place;
+pub use shape::Shape;
+pub use sheet::{Layer, Sheet, extent, sheets};
+pub use sliders::SliderLengths;
+pub use solid::{Edge, Face, Solid, Surface};
+pub use stack::{Span, Stack};
+pub use step::step;
+pub use stl::stl;
+pub use svg::sheet_svg;
+pub use unfit::Unfit;

@@ -1,0 +1,150 @@
+//! What a servo turns: its horn and the link that is pushed over it.
+//!
+//! One part is the crank of head or tail, the arm of a slider and the anchor of the
+//! leg's strut; so one servo moves all three.
+
+use lizard_kinematics::Vector;
+use lizard_robot::Horn;
+
+use crate::assembly::names;
+use crate::body::{Kind, Mount, Prism};
+use crate::builder::{Bolt, Builder, Points};
+use crate::shape::Shape;
+use crate::stack::PLAY;
+
+/// Where the horn's small screws are, as shares of its arm.
+const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
+/// Radius of the hole that such a screw cuts its thread into, mm.
+const PILOT: f64 = 0.7;
+
+/// Air on each side of a horn's arm in its pocket, in fits: horns spread.
+pub const POCKET: f64 = 1.5;
+
+pub fn add(builder: &mut Builder) {
+    for servo in 0..4 {
+        horn(builder, servo);
+        link(builder, servo);
+        anchor(builder, servo);
+    }
+}
+
+/// The horn's arm, which points along the crank; `grown` by a pocket's air.
+pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
+    let (hub, tip) = (horn.hub / 2.0 + grown, horn.tip / 2.0 + grown);
+    let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
+    // From hub to tip the arm gets narrower.
+    let width = 0.8 * hub;
+    let taper = Shape::hull(
+        &[
+            Vector::new(0.0, -width),
+            Vector::new(end.x, -tip),
+            Vector::new(end.x, tip),
+            Vector::new(0.0, width),
+        ],
+        0.0,
+    );
+    vec![
+        Shape::disc(Vector::default(), hub),
+        taper,
+        Shape::disc(end, tip + 0.05),
+    ]
+}
+
+fn horn(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let horn = builder.parts.horn;
+    let [low, _] = builder.stack.horn;
+    let hub = Prism {
+        add: vec![Shape::disc(Vector::default(), horn.hub / 2.0)],
+        cut: Vec::new(),
+        z: [low + horn.thickness - horn.height, low],
+    };
+    let arm = Prism {
+        add: arm(&horn, 0.0),
+        cut: Vec::new(),
+        z: [low, low + horn.thickness],
+    };
+    builder.body(
+        format!("horn {name}"),
+        Kind::Horn,
+        Mount::Link(servo),
+        vec![hub, arm],
+    );
+    builder.meeting(&format!("servo {name}"));
+}
+
+fn link(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
+    let hub = Vector::default();
+    let tip = Vector::new(layout.crank[servo], 0.0);
+    let side = Vector::new(0.0, layout.hand[servo] * layout.arm[servo]);
+    let anchor = layout.legs[servo].anchor;
+    let half = builder.half();
+    let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
+    // The corner between crank and arm is where it would break.
+    let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
+    let add = vec![
+        Shape::disc(hub, round),
+        Shape::bar(hub, tip, half),
+        Shape::bar(hub, side, half - 0.01),
+        Shape::bar(hub, anchor, half - 0.02),
+        brace,
+    ];
+    let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
+    let holes = [builder.hole(tip), builder.hole(side)];
+    let with = |more: &[Shape]| [&holes[..], more].concat();
+    let layer = |cut: Vec<Shape>, from: f64, to: f64| Prism {
+        add: add.clone(),
+        cut,
+        z: [from, to],
+    };
+    let pilots =
+        HORN_SCREWS.map(|share| Shape::disc(Vector::new(share * parts.horn.arm, 0.0), PILOT));
+    let floor = [&[horn_hub, builder.hole(anchor)][..], &pilots].concat();
+    let pocket = arm(&parts.horn, POCKET * parts.fit);
+    let below = [&pocket[..], &[builder.hole(anchor)]].concat();
+    let above = [&pocket[..], &[builder.sink(anchor)]].concat();
+    let prisms = vec![
+        layer(with(&floor), stack.link[0], stack.horn[0]),
+        layer(with(&below), stack.horn[0], stack.sunk[0]),
+        layer(with(&above), stack.sunk[0], stack.link[1]),
+    ];
+    let prisms = prisms
+        .into_iter()
+        .filter(|prism| prism.z[1] > prism.z[0] + 1e-9)
+        .collect();
+    builder.body(
+        format!("link {name}"),
+        Kind::Printed,
+        Mount::Link(servo),
+        prisms,
+    );
+    builder.meeting(&format!("servo {name}"));
+}
+
+/// The screw that holds the strut, and the ring that fills what is between.
+fn anchor(builder: &mut Builder, servo: usize) {
+    let (name, leg) = names(servo);
+    let (stack, parts) = (builder.stack, builder.parts);
+    let at = builder.layout.legs[servo].anchor;
+    let strut = format!("strut {leg}");
+    let ring = [stack.on_hook(parts) - 0.3, stack.link[0] - PLAY];
+    builder.spacer(
+        format!("strut spacer {name}"),
+        Mount::Link(servo),
+        at,
+        ring,
+        &[&strut],
+    );
+    builder.bolt(&Bolt {
+        name: &format!("anchor {name}"),
+        mount: Mount::Link(servo),
+        at,
+        head: stack.sunk[0],
+        points: Points::Down,
+        nut: stack.strut[0] - PLAY,
+        length: None,
+        meets: &[&strut],
+    });
+}

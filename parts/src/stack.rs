@@ -1,0 +1,188 @@
+//! At which heights the parts lie: the table that everything else is laid into.
+//!
+//! z is up, 0 the top of the chassis plate. All parts are flat and all joints are
+//! upright, so a mechanism without collisions is a table of heights in which whatever
+//! would meet from above has a height of its own. From below: the floor, the foot's
+//! leaf, the plate with the couplers of the legs beside it, the legs' cranks, the
+//! struts, the servos' links, the couplers of head and tail with the sliders, the deck.
+
+use lizard_robot::Parts;
+
+/// From and to, mm above the chassis plate's top.
+pub type Span = [f64; 2];
+
+/// Lengths of screws in the shops, mm.
+const SCREWS: [f64; 12] = [
+    6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0,
+];
+
+/// Lengths of standoffs in the shops, mm.
+const STANDOFFS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
+
+/// What a head or a nut keeps from a part that turns under it, mm.
+pub const PLAY: f64 = 0.2;
+/// What lies under a servo's flange, mm: it lifts the horn above the strut.
+const SEAT: f64 = 2.6;
+/// Height of a leg's bearing on the plate, mm. 0.2 mm of play in it lets the foot, six
+/// times as far out, give 1.2 mm.
+const BEARING: f64 = 8.5;
+/// What remains above a nut that is sunk into a part, mm.
+const OVER_NUT: f64 = 1.2;
+/// The strut below the spring's hooks, and beside them, mm.
+const STRUT: [f64; 2] = [3.0, 2.0];
+/// What remains of a link under the horn's arm, mm.
+const UNDER_HORN: f64 = 1.8;
+/// Floor and roof of a sleeve, mm.
+const SLEEVE: f64 = 1.3;
+/// The leaf that carries a foot, mm.
+const LEAF: f64 = 2.0;
+
+/// The heights of everything, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stack {
+    /// The pads' underside.
+    pub floor: f64,
+    /// The leaf on which a foot yields.
+    pub leaf: Span,
+    /// Couplers of the legs.
+    pub leg_coupler: Span,
+    /// The chassis plate.
+    pub plate: Span,
+    /// The raised seats of the servos.
+    pub seat: Span,
+    /// Bottom of a servo's case.
+    pub servo: f64,
+    /// Cranks and followers of the legs.
+    pub crank: Span,
+    /// Their bearings on the plate, which reach higher.
+    pub bearing: Span,
+    /// Their anchors, which carry the strut.
+    pub anchor: Span,
+    /// The strut where it bears.
+    pub strut: Span,
+    /// The recess in its top for the hooks.
+    pub recess: Span,
+    /// The servos' links.
+    pub link: Span,
+    /// The pocket in their tops for the horns.
+    pub horn: Span,
+    /// The recess in their tops for the heads of the anchors' screws.
+    pub sunk: Span,
+    /// The lower couplers of head and tail.
+    pub lower: Span,
+    /// The upper couplers.
+    pub upper: Span,
+    /// The sleeves of the sliders.
+    pub sleeve: Span,
+    /// Their bores.
+    pub bore: Span,
+    /// The rods.
+    pub rod: Span,
+    /// Under the deck: the length of the standoffs.
+    pub deck: Span,
+    /// The bosses that carry the board.
+    pub boss: Span,
+}
+
+impl Stack {
+    /// The heights of a robot of these parts.
+    #[must_use]
+    pub fn new(parts: &Parts) -> Self {
+        let (t, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
+        let above = |below: Span, by: f64| [below[1] + gap, below[1] + gap + by];
+        let plate = [-parts.plate, 0.0];
+        let seat = [0.0, SEAT];
+        let crank = [gap, gap + t.max(screw.nut_height + 1.0)];
+        let bearing = [crank[1], crank[0] + BEARING];
+        let strut_low = crank[1] + 1.5;
+        let strut = [strut_low, strut_low + STRUT[0]];
+        let recess = [strut[1], strut[1] + STRUT[1]];
+        // Where the horn's arm lies on the shaft.
+        let hub = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
+        let arm = hub + parts.horn.height - parts.horn.thickness;
+        let link = [arm - UNDER_HORN, arm - UNDER_HORN + t];
+        let lower = above(link, t);
+        let upper = above(lower, t);
+        let bore_low = lower[0] + SLEEVE;
+        let bore = [bore_low, bore_low + t + 2.0 * parts.fit];
+        let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
+        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0]) + link[0];
+        let deck = STANDOFFS
+            .into_iter()
+            .find(|length| *length >= slider + gap)
+            .unwrap_or(slider + gap);
+        let leg_coupler = [-t - gap, 0.0];
+        // A pivot's screw reaches through plate and nut.
+        let through = bearing[1] + PLAY;
+        let pivot = through - screw_length(through + parts.plate + PLAY + screw.nut_height);
+        let leaf = pivot.min(leg_coupler[0] - screw.head_height) - gap;
+        Self {
+            floor: -parts.height,
+            leaf: [leaf - LEAF, leaf],
+            leg_coupler,
+            plate,
+            seat,
+            servo: seat[1] - parts.servo.flange_height,
+            crank,
+            bearing,
+            anchor: [crank[1], strut[0] - PLAY],
+            strut,
+            recess,
+            link,
+            horn: [arm, link[1]],
+            sunk: [link[1] - screw.head_height - PLAY, link[1]],
+            lower,
+            upper,
+            sleeve: [lower[0], bore[1] + SLEEVE],
+            bore,
+            rod,
+            deck: [deck, deck + parts.plate],
+            boss: [deck + parts.plate, deck + parts.plate + 5.0],
+        }
+    }
+
+    /// Where the head of a leg anchor's screw bears: on the spring's hook, in the recess.
+    #[must_use]
+    pub fn on_hook(&self, parts: &Parts) -> f64 {
+        self.strut[1] + parts.spring.wire + 0.5
+    }
+
+    /// How far the pocket of a leg anchor's nut reaches up into the crank, and the
+    /// length of its screw, which must not touch the plate.
+    #[must_use]
+    pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
+        let bears = self.on_hook(parts);
+        let length = screw_at_most(bears - self.crank[0] - 0.1);
+        (bears - length + parts.screw.nut_height, length)
+    }
+
+    /// Whether a leg's crank is thick enough above the nut that is sunk into it.
+    #[must_use]
+    pub fn holds_nut(&self, parts: &Parts) -> bool {
+        self.anchor[1] - self.anchor_nut(parts).0 >= OVER_NUT
+    }
+}
+
+/// The shortest screw that is as long as this, mm; of none that is so long, this.
+#[must_use]
+pub fn screw_length(least: f64) -> f64 {
+    SCREWS
+        .into_iter()
+        .find(|length| *length >= least - 1e-9)
+        .unwrap_or(least)
+}
+
+/// The longest screw that is no longer than this, mm.
+fn screw_at_most(most: f64) -> f64 {
+    SCREWS
+        .into_iter()
+        .rev()
+        .find(|length| *length <= most)
+        .unwrap_or(SCREWS[0])
+}
+
+/// Whether the shops have a screw of this length, mm.
+#[must_use]
+pub fn is_sold(length: f64) -> bool {
+    SCREWS.iter().any(|sold| (sold - length).abs() < 1e-9)
+}

@@ -1,0 +1,138 @@
+//! Why a robot cannot be built.
+
+use crate::assembly::Assembly;
+use crate::clearance::Clearance;
+
+/// What does not fit, in the sentence that the user sees.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unfit {
+    /// Two parts would be in one place.
+    #[error("{0}; other links, or other measures under [parts] in robot.toml, may keep them apart")]
+    Overlap(Clearance),
+    /// A bar is too narrow for the head of its screw.
+    #[error(
+        "parts.bar is {bar} mm, but the head of a screw and a wall on each side need {least:.1} mm"
+    )]
+    Narrow {
+        /// Its width, mm.
+        bar: f64,
+        /// What it needs, mm.
+        least: f64,
+    },
+    /// The sunk nut would come out of the crank.
+    #[error(
+        "the nut of a leg's anchor does not fit into its crank with a screw from the shop; raise parts.thickness or the servo's horn"
+    )]
+    Nut,
+    /// The leg's strut is shorter than its spring.
+    #[error(
+        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other"
+    )]
+    Spring {
+        /// LF, RF, RH, LH.
+        leg: &'static str,
+        /// mm
+        strut: f64,
+        /// mm
+        spring: f64,
+    },
+    /// The foot's post would be too short.
+    #[error(
+        "parts.height is {height} mm; the feet need {least:.1} mm to keep the servos off the floor"
+    )]
+    Low {
+        /// mm
+        height: f64,
+        /// mm
+        least: f64,
+    },
+    /// A slider whose sleeve would be too short.
+    #[error(
+        "the {side} slider is {shortest:.1} mm at its shortest and {longest:.1} mm at its longest; a rod that stays in its sleeve does not fit between: raise limits.stroke_min or lower limits.stroke_max"
+    )]
+    Slider {
+        /// left or right
+        side: &'static str,
+        /// mm
+        shortest: f64,
+        /// mm
+        longest: f64,
+    },
+    /// The layers of a part do not make a body.
+    #[error(
+        "the layers of {0} do not make one body; a measure under [parts] in robot.toml is too small or too large for it"
+    )]
+    Surface(String),
+    /// Screws that no shop has.
+    #[error(
+        "{0} would have to be {1:.1} mm long, which no shop has; lower parts.thickness or parts.plate"
+    )]
+    Screw(String, f64),
+}
+
+/// Air between servos and floor, mm.
+const OFF_FLOOR: f64 = 8.0;
+/// The shortest sleeve that guides a rod, mm.
+const SLEEVE: f64 = 25.0;
+/// Angles of each servo that are tried for collisions.
+const STEPS: u32 = 10;
+
+impl Assembly {
+    /// Whether the robot can be built: measures that must go together, and no two parts
+    /// in one place at any pose of a grid over the poses that the guard accepts.
+    ///
+    /// # Errors
+    /// The first that does not fit.
+    pub fn fits(&self) -> Result<(), Unfit> {
+        let (parts, stack) = (self.robot().parts(), self.stack());
+        let least = parts.screw.head + 2.0 * parts.fit + 1.2;
+        if parts.bar < least {
+            let bar = parts.bar;
+            return Err(Unfit::Narrow { bar, least });
+        }
+        if !stack.holds_nut(parts) {
+            return Err(Unfit::Nut);
+        }
+        let least = OFF_FLOOR - stack.servo;
+        if parts.height < least {
+            let height = parts.height;
+            return Err(Unfit::Low { height, least });
+        }
+        for (leg, layout) in lizard_robot::servo::LEGS.iter().zip(&self.layout().legs) {
+            let inside = layout.strut_length + parts.screw.diameter;
+            if inside <= parts.spring.length {
+                return Err(Unfit::Spring {
+                    leg,
+                    strut: layout.strut_length,
+                    spring: parts.spring.length,
+                });
+            }
+        }
+        for side in lizard_kinematics::Side::ALL {
+            let range = crate::assembly::slider_range(self.robot(), side);
+            let lengths = crate::SliderLengths::new(side, range);
+            if lengths.sleeve < SLEEVE {
+                return Err(Unfit::Slider {
+                    side: side.name(),
+                    shortest: range[0],
+                    longest: range[1],
+                });
+            }
+        }
+        for body in self.bodies() {
+            if let crate::Kind::Screw(length) = body.kind
+                && !crate::stack::is_sold(length)
+            {
+                return Err(Unfit::Screw(body.name.clone(), length));
+            }
+            if body.prisms.iter().any(|prism| prism.z[1] <= prism.z[0]) {
+                return Err(Unfit::Surface(body.name.clone()));
+            }
+        }
+        let near = self.nearest(self.poses(STEPS), 0.0);
+        match near.into_iter().next() {
+            Some(overlap) => Err(Unfit::Overlap(overlap)),
+            None => Ok(()),
+        }
+    }
+}

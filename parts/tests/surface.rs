@@ -1,0 +1,23 @@
+//! Every printed part of every robot has a closed surface of the right volume.
+
+use lizard_parts::{Assembly, Kind, Mesh, Solid};
+use lizard_robot::Robot;
+
+#[test]
+fn every_printed_part_is_closed_and_has_its_volume() {
+    for name in ["paper", "large", "unequal"] {
+        let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let assembly = Assembly::new(&Robot::load(path).expect(name));
+        for body in assembly.bodies() {
+            if body.kind != Kind::Printed {
+                continue;
+            }
+            let solid = Solid::of(&body.prisms);
+            assert!(solid.is_closed(), "{name}: {}", body.name);
+            let mesh = Mesh::of(&solid);
+            assert!(mesh.is_closed(), "{name}: the mesh of {}", body.name);
+            let off = mesh.volume() / solid.volume - 1.0;
+            assert!(off.abs() < 0.004, "{name}: {} {off}", body.name);
+        }
+    }
+}
