@@ -120,12 +120,7 @@ impl CheckedGait {
     /// Whether it hangs on ties is asked of rigid legs: ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
-        let travel = self.walked(ground).travel;
-        Prediction {
-            forward: known.forward.and(Some(travel.forward)),
-            left: known.left.and(Some(travel.left)),
-            turn: known.turn.and(Some(travel.turn)),
-        }
+        known.known_of(self.walked(ground).travel)
     }
 
     /// What one cycle does on this ground, whether or not it hangs on ties; with

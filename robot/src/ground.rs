@@ -77,6 +77,15 @@ impl Prediction {
     pub fn is_decided(&self) -> bool {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
+
+    /// Another way over the same ties: as much of it is known as of this one.
+    pub(crate) fn known_of(&self, travel: Travel) -> Self {
+        Self {
+            forward: self.forward.and(Some(travel.forward)),
+            left: self.left.and(Some(travel.left)),
+            turn: self.turn.and(Some(travel.turn)),
+        }
+    }
 }
 
 /// A way with pads that are a little uneven, beside the even one.

@@ -128,7 +128,7 @@ impl fmt::Display for Report {
                 known(way.left, 2),
                 known(way.turn, 2)
             )?;
-            if let Some(Sprung { lag, share }) = sprung {
+            if let Some(Sprung { lag, share, .. }) = sprung {
                 let share = share.map_or("-".to_string(), |share| format!("{:.0}", 100.0 * share));
                 write!(f, "   {lag:>6.2} {share:>9}")?;
             }

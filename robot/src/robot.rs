@@ -56,6 +56,21 @@ impl Robot {
     /// # Errors
     /// If the text holds a mistake.
     pub fn parse(text: &str) -> Result<Self, Error> {
+        Self::checked(text, Self::read)
+    }
+
+    /// The same body with other gaits, which are checked: the text has the tables `gait.*`
+    /// of a robot.toml, `gait.stand` first, and nothing else.
+    ///
+    /// # Errors
+    /// If the text holds a mistake.
+    pub fn with_gaits(&self, text: &str) -> Result<Self, Error> {
+        Self::checked(text, |table| {
+            Self::walking(self.measures.clone(), &Section::root(table, &["gait"])?)
+        })
+    }
+
+    fn checked(text: &str, read: impl Fn(&DeTable) -> Checked<Self>) -> Result<Self, Error> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let file = "robot.toml".to_string();
         let document = DeTable::parse(text).map_err(|fault| Error {
@@ -67,7 +82,7 @@ impl Robot {
             problem: Problem::Syntax(fault.message().to_string()),
         })?;
         let table = document.get_ref();
-        Self::read(table).map_err(|Fault { key, problem }| Error {
+        read(table).map_err(|Fault { key, problem }| Error {
             file,
             line: reader::line(text, table, &key),
             key,
@@ -82,8 +97,12 @@ impl Robot {
                 "links", "leg", "servo", "limits", "supply", "body", "ground", "parts", "gait",
             ],
         )?;
-        let measures = Measures::read(&root)?;
-        let gaits = define::gaits(&root, &measures)?;
+        Self::walking(Measures::read(&root)?, &root)
+    }
+
+    /// A body with the gaits of a file.
+    fn walking(measures: Measures, root: &Section) -> Checked<Self> {
+        let gaits = define::gaits(root, &measures)?;
         let key = |name: &str| format!("gait.{name}");
         let tables = Tables::new(&gaits).map_err(|(gait, unfit)| {
             match unfit {

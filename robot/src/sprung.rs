@@ -2,11 +2,13 @@
 //! rigid legs is left.
 
 use crate::checked_gait::CheckedGait;
-use crate::ground::Ground;
+use crate::ground::{Ground, Prediction};
 
 /// A gait on springs beside the same gait on rigid legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sprung {
+    /// Where a cycle leads on springs, as [`CheckedGait::predict`] has it.
+    pub way: Prediction,
     /// How far a leg is behind its servo at most, deg.
     pub lag: f64,
     /// Its way in a cycle over that of rigid legs: ahead, or the turn of a gait that
@@ -33,6 +35,7 @@ impl Sprung {
         let ahead = part(walked.travel.forward, way.forward, NOWHERE.0);
         let turn = part(walked.travel.turn, way.turn, NOWHERE.1);
         Some(Self {
+            way: way.known_of(walked.travel),
             lag: walked.lag,
             share: [ahead, turn].into_iter().flatten().reduce(f64::min),
         })

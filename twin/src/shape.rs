@@ -1,6 +1,6 @@
 //! Where every joint is: what a picture of the robot needs.
 
-use lizard_kinematics::{End, Side, Vector};
+use lizard_kinematics::{End, Side, Solution, Vector};
 use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
 
@@ -38,9 +38,14 @@ impl Shape {
     /// not close.
     #[must_use]
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
-        let lizard = robot.lizard();
-        let solved = lizard.solve(&angles.into()).ok()?;
-        let shafts = lizard.shafts();
+        let solved = robot.lizard().solve(&angles.into()).ok()?;
+        Some(Self::of_solved(robot, &solved, legs))
+    }
+
+    /// The same of a pose that is solved.
+    #[must_use]
+    pub fn of_solved(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
+        let shafts = robot.lizard().shafts();
         let tips = solved.crank_tips();
         let mut arms = shafts;
         for side in Side::ALL {
@@ -49,7 +54,7 @@ impl Shape {
             arms[front] = shafts[rear] + slider.front_tip;
             arms[rear] = shafts[rear] + slider.rear_tip;
         }
-        Some(Self {
+        Self {
             shafts,
             tips,
             arms,
@@ -58,7 +63,7 @@ impl Shape {
                 let middle = (shafts[i] + tips[i]) * 0.5;
                 LegShape::of(robot, i, legs[i], middle)
             }),
-        })
+        }
     }
 }
 

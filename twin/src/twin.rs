@@ -1,12 +1,14 @@
 //! Pulses in, the robot out, frame by frame.
 
+use lizard_kinematics::wrap;
 use lizard_robot::servo::FORWARD;
-use lizard_robot::{Ground, Place, Robot, Walker};
+use lizard_robot::{CheckedGait, Ground, Place, Robot, Walker};
 
 use crate::FRAME;
 use crate::servo::ServoModel;
 use crate::shape::Shape;
 use crate::state::State;
+use crate::tally::Tally;
 
 /// A robot on a floor.
 #[derive(Debug, Clone)]
@@ -35,13 +37,29 @@ impl Twin {
     /// Takes a frame of 20 ms: the width of each servo's pulse in us, none where there
     /// was no pulse. A servo without pulses stays where its gears hold it.
     pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
+        let servos = self.robot.servos();
+        let targets = std::array::from_fn(|i| pulses[i].map(|width| servos[i].sweep(width)));
+        self.turn(targets)
+    }
+
+    /// Takes a frame of 20 ms whose pulses ask for these servo angles: deg, chassis
+    /// frame.
+    pub fn push_angles(&mut self, angles: [f64; 4]) -> State {
+        let servos = self.robot.servos();
+        let targets = std::array::from_fn(|i| Some(wrap(angles[i] - servos[i].neutral)));
+        self.turn(targets)
+    }
+
+    /// A frame in which the servos turn towards these sweeps from neutral, deg,
+    /// counter-clockwise positive.
+    fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
         let before = self.sweeps;
         let mut errors = [0.0; 4];
         for i in 0..4 {
-            let Some(width) = pulses[i] else { continue };
+            let Some(target) = targets[i] else { continue };
             let servo = &self.robot.servos()[i];
             let (least, most) = servo.travel();
-            let target = servo.sweep(width).clamp(least, most);
+            let target = target.clamp(least, most);
             self.sweeps[i] = self.model.turned(before[i], target, servo.us_per_degree);
             errors[i] = target - self.sweeps[i];
         }
@@ -54,7 +72,7 @@ impl Twin {
         let load = ground.body.mean_load();
         State {
             frame: self.frame,
-            pulsed: pulses.map(|pulse| pulse.is_some()),
+            pulsed: targets.map(|target| target.is_some()),
             place,
             angles,
             rates: std::array::from_fn(|i| (self.sweeps[i] - before[i]) / FRAME),
@@ -80,13 +98,19 @@ impl Twin {
     /// Where each joint is now, chassis frame; none where a loop does not close.
     #[must_use]
     pub fn shape(&self) -> Option<Shape> {
-        Shape::of(&self.robot, self.angles(), self.walker.legs())
+        Shape::of(&self.robot, self.angles(), self.legs())
     }
 
     /// The servo angles now, deg, chassis frame.
     #[must_use]
     pub fn angles(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
+    }
+
+    /// The legs' sweeps now, which springs may hold back: deg, foot forward positive.
+    #[must_use]
+    pub fn legs(&self) -> [f64; 4] {
+        self.walker.legs()
     }
 
     /// The floor, the pads and the springs.
@@ -98,6 +122,28 @@ impl Twin {
     /// Changes floor, pads or springs from the next frame on.
     pub fn set_ground(&mut self, ground: Ground) {
         self.walker.set_ground(ground);
+    }
+
+    /// The second cycle of a gait at full speed, after it has stood at neutral: with the
+    /// ground and the servos of now. This robot itself does not move.
+    #[must_use]
+    pub fn cycle(&self, gait: &CheckedGait) -> Tally {
+        let mut twin = Self::new(&self.robot, self.model);
+        twin.set_ground(*self.ground());
+        let mut tally = Tally::new(Place::START);
+        for _ in 0..2 {
+            tally = Tally::new(twin.walker.place());
+            for (_, phase) in gait.frames() {
+                tally.add(&twin.push_angles(gait.table_angles(phase)));
+            }
+        }
+        tally
+    }
+
+    /// What the servos can do.
+    #[must_use]
+    pub fn servos(&self) -> ServoModel {
+        self.model
     }
 
     /// Changes what the servos can do, from the next frame on.

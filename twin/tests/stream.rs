@@ -118,6 +118,41 @@ fn a_robot_without_pulses_stays_where_it_is() {
 }
 
 #[test]
+fn angles_that_are_asked_for_do_what_their_pulses_do() {
+    let robot = Robot::parse(include_str!("../../robots/unequal.toml")).expect("right");
+    let walk = robot.gait("walk").expect("walk");
+    let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
+    for (_, phase) in walk.frames() {
+        let by_pulse = twins[0].push(widths(&robot, walk, phase));
+        let by_angle = twins[1].push_angles(walk.table_angles(phase));
+        for i in 0..4 {
+            assert!((by_pulse.angles[i] - by_angle.angles[i]).abs() < 1e-9);
+        }
+        let place = [by_pulse.place, by_angle.place].map(|place| place.forward);
+        assert!((place[0] - place[1]).abs() < 1e-6, "{place:?}");
+    }
+}
+
+#[test]
+fn a_cycle_is_what_its_frames_come_to() {
+    let robot = paper();
+    for name in ["walk", "trot", "left"] {
+        let gait = robot.gait(name).expect(name);
+        let whole = cycle(&robot, name, ServoModel::SG90, robot.ground()).travel();
+        let twin = Twin::new(&robot, ServoModel::SG90);
+        let alone = twin.cycle(gait).travel();
+        let off = (alone.forward - whole.forward).abs();
+        assert!(off < 0.3, "{name} {alone:?} {whole:?}");
+        assert!((alone.turn - whole.turn).abs() < 0.2, "{name}");
+        assert_eq!(
+            twin.angles(),
+            <[f64; 4]>::from(robot.neutral()),
+            "it stands"
+        );
+    }
+}
+
+#[test]
 fn a_pulse_beyond_a_servos_travel_is_taken_for_its_end() {
     let robot = paper();
     let mut twin = Twin::new(&robot, ServoModel::IDEAL);

@@ -20,5 +20,5 @@ export const files = {
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
   image: (name: string): Promise<string> => text(`files/${name}.hex`),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),
-  wasm: async (): Promise<ArrayBuffer> => (await get('files/lizard.wasm')).arrayBuffer(),
+  wasm: async (): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get('files/lizard.wasm')).arrayBuffer()),
 };

@@ -2,6 +2,7 @@
 import { run } from './clock';
 import { files, type RobotFile } from './files';
 import { hasSerial } from './link/port-link';
+import { Predictor } from './predictor';
 import { Robot } from './robot';
 import { Session } from './session';
 import { Calibrate } from './view/calibrate';
@@ -15,6 +16,7 @@ import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { ScopeView } from './view/scope';
+import { World } from './view/world';
 
 /** Texts that follow the robot are written so many times a second. */
 const TEXTS = 10;
@@ -34,7 +36,8 @@ function trouble(sentence: string | null): void {
 }
 
 async function start(): Promise<void> {
-  const robot = await Robot.load(await files.wasm());
+  const module = await files.wasm();
+  const robot = await Robot.load(module);
   const choices: RobotFile[] = await files.robots();
   const now = () => session;
 
@@ -46,7 +49,17 @@ async function start(): Promise<void> {
     session.home();
     floor.clear();
   });
-  const drive = new Drive(robot, (command) => void session.ask(command), texts);
+  const drive = new Drive((command) => void session.ask(command));
+  const predictor = new Predictor(module, (gait, outlook) => {
+    drive.predicted(gait, outlook);
+    texts();
+  });
+  const predict = () => {
+    const { toml, floor, servos, description } = session;
+    const first = description.gaits.findIndex(({ command }) => command === session.gait);
+    predictor.ask({ toml, floor, servos, gaits: description.gaits.length, first: Math.max(0, first) });
+  };
+  const world = new World(now, predict);
   const health = new Health(now);
   const lengths = new Lengths(now);
   const calibrate = new Calibrate(now);
@@ -60,9 +73,8 @@ async function start(): Promise<void> {
       drive.take(description);
       lengths.take(description.lengths);
       floor.clear();
-      const [slow, stop, rest] = description.supply;
-      element('supply-note').textContent =
-        `Below ${slow} V gaits go at half their pace, below ${stop} V the robot stops, below ${rest} V the pulses end.`;
+      world.take();
+      predict();
     },
     frame(frame, widths) {
       floor.walked(frame.place);
@@ -112,8 +124,14 @@ async function start(): Promise<void> {
       put('sideways', `${round(x, 0)} mm`);
       put('heading', `${round(heading, 1)}°`);
     }
-    put('cycle', short(session.measured()) || '–');
-    put('predicted', short(drive.way(gait)) || '–');
+    const [measured, outlook] = [session.measured(), drive.outlook(gait)];
+    put('cycle', short(measured) || '–');
+    put('predicted', short(outlook) || '–');
+    // Rigid legs do not lag.
+    const sprung = session.floor.stiffness !== null;
+    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !sprung;
+    put('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
+    put('share', outlook?.share == null ? '–' : `${(100 * outlook.share).toFixed(0)} %`);
     const refusal = last?.fault ?? last?.scene?.refusal ?? null;
     element('refusal').hidden = refusal === null;
     put('refusal', refusal ?? '');
@@ -146,19 +164,11 @@ async function start(): Promise<void> {
     change.catch((error: unknown) => trouble(error instanceof Error ? error.message : String(error)));
   });
 
-  const slider = (id: string, shown: (value: number) => string, use: (value: number) => void) => {
-    const input = element<HTMLInputElement>(id);
-    const show = () => (element(`${id}-out`).textContent = shown(input.valueAsNumber));
-    input.addEventListener('input', show);
-    input.addEventListener('change', () => use(input.valueAsNumber));
-    show();
-  };
-  slider('speed', (value) => `${value} %`, (value) => void session.ask(`speed ${value}`));
-  slider('friction', (value) => value.toFixed(2), (value) => {
-    session.setFriction(value);
-    drive.predict();
-  });
-  slider('supply', (value) => `${value.toFixed(2)} V`, (value) => session.setSupply(value));
+  const speed = element<HTMLInputElement>('speed');
+  const showSpeed = () => (element('speed-out').textContent = `${speed.value} %`);
+  speed.addEventListener('input', showSpeed);
+  speed.addEventListener('change', () => void session.ask(`speed ${speed.value}`));
+  showSpeed();
 
   await choose();
   window.lizard = session;

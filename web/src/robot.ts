@@ -40,7 +40,31 @@ export interface Description {
   supply: [number, number, number];
   /** The converter's channel of the servos' rail, and the volts there. */
   rail: [number, number] | null;
+  floor: Floor;
+  models: ServoModel[];
+}
+
+/** What the robot stands on, what it weighs, and what pulls its legs. */
+export interface Floor {
+  /** Of a pad that slides forward. */
   friction: number;
+  /** Of a pad that slides backward over that. */
+  ratio: number;
+  /** g */
+  mass: number;
+  /** Of a leg's spring, N mm/deg; null where legs are rigid. */
+  stiffness: number | null;
+  /** Torque up to which a leg does not lag at all, N mm. */
+  preload: number;
+}
+
+/** What servos may be taken for. */
+export interface ServoModel {
+  name: string;
+  /** deg/s; null where it has no bound. */
+  rate: number | null;
+  /** us */
+  dead_band: number;
 }
 
 export interface Refused {
@@ -55,7 +79,7 @@ export interface Scene {
   tips: Four<Spot>;
   points: [Spot, Spot];
   sliders: { shafts: [Spot, Spot]; tips: [Spot, Spot]; tube: Spot; travel: number }[];
-  legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot }>;
+  legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot; spring: [Spot, Spot] | null }>;
   margins: { name: string; value: number }[];
   smallest: { name: string; value: number };
   refusal: string | null;
@@ -74,6 +98,10 @@ export interface Frame {
   fault: string | null;
   place: Place;
   slides: Four<number>;
+  /** How far each leg is behind its servo, deg. */
+  lag: Four<number>;
+  /** How far each servo is from what its pulse asks for, deg. */
+  errors: Four<number>;
 }
 
 /** What a cycle of a gait makes, mm and deg; null where that is undecided. */
@@ -81,6 +109,13 @@ export interface Way {
   forward: number | null;
   left: number | null;
   turn: number | null;
+}
+
+/** What a cycle of a gait comes to; the lag and the share of rigid legs' way where legs are on springs. */
+export interface Outlook extends Way {
+  /** deg */
+  lag: number | null;
+  share: number | null;
 }
 
 export interface SingularityMap {
@@ -107,10 +142,11 @@ interface Exports {
   lizard_read(): void;
   lizard_edit(value: number): void;
   lizard_pulses(a1: number, a2: number, a3: number, a4: number): void;
-  lizard_pose(a1: number, a2: number, a3: number, a4: number): void;
+  lizard_pose(a1: number, a2: number, a3: number, a4: number, frames: number): void;
   lizard_restart(): void;
   lizard_way(x0: number, y0: number, h0: number, x1: number, y1: number, h1: number): void;
-  lizard_set_friction(ratio: number): void;
+  lizard_set_floor(friction: number, ratio: number, mass: number, stiffness: number, preload: number): void;
+  lizard_set_servos(): void;
   lizard_predict(gait: number): void;
   lizard_map(end: number): void;
   lizard_run_core(): void;
@@ -130,9 +166,9 @@ export class Robot {
     this.wasm = wasm;
   }
 
-  static async load(bytes: BufferSource): Promise<Robot> {
-    const { instance } = await WebAssembly.instantiate(bytes, {});
-    return new Robot(instance.exports as unknown as Exports);
+  static async load(module: WebAssembly.Module): Promise<Robot> {
+    const { exports } = await WebAssembly.instantiate(module, {});
+    return new Robot(exports as unknown as Exports);
   }
 
   /** Takes the robot of a robot.toml. If that is refused, the one of before stays. */
@@ -155,9 +191,9 @@ export class Robot {
     return this.answer();
   }
 
-  /** The next pose, deg. */
-  pose(angles: Four<number>): Frame | null {
-    this.wasm.lizard_pose(...angles);
+  /** The next pose, deg, so many frames after the one before. */
+  pose(angles: Four<number>, frames: number): Frame | null {
+    this.wasm.lizard_pose(...angles, frames);
     return this.answer();
   }
 
@@ -172,11 +208,18 @@ export class Robot {
     return this.answer();
   }
 
-  setFriction(ratio: number): void {
-    this.wasm.lizard_set_friction(ratio);
+  setFloor({ friction, ratio, mass, stiffness, preload }: Floor): void {
+    this.wasm.lizard_set_floor(friction, ratio, mass, stiffness ?? Infinity, preload);
   }
 
-  predict(gait: number): Way | null {
+  /** What its servos are taken for, by its name among the models of the description. */
+  setServos(name: string): void {
+    this.give(name);
+    this.wasm.lizard_set_servos();
+  }
+
+  /** Takes tenths of a second; the page asks its Predictor. */
+  predict(gait: number): Outlook | null {
     this.wasm.lizard_predict(gait);
     return this.answer();
   }

@@ -7,7 +7,15 @@ import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
 import { flash, imageOf, type Progress } from './link/stk500';
 import { UnoLink } from './link/uno-link';
-import { type Description, type Four, type Frame, isRefused, type Place, type Refused, type Robot } from './robot';
+import {
+  type Description,
+  type Floor,
+  type Four,
+  type Frame,
+  isRefused,
+  type Refused,
+  type Robot,
+} from './robot';
 import { type Status, status, watched } from './status';
 import { Board, FREQUENCY } from './uno/board';
 
@@ -37,11 +45,12 @@ export interface Listener {
   trouble(sentence: string | null): void;
 }
 
-/** The way that the body went in the last cycle: mm ahead and left, seen from its start, deg. */
+/** The last cycle: mm ahead and left, seen from its start, deg, and how far a leg was behind its servo at most, deg. */
 export interface Measured {
   forward: number;
   left: number;
   turn: number;
+  lag: number;
 }
 
 export class Session {
@@ -57,14 +66,16 @@ export class Session {
   last: Frame | null = null;
   gait = '';
   volts = 5;
+  /** What the servos are taken for, among the models of the description. */
+  servos = 'sg90';
   /** Whether the page may ask on its own. */
   mayAsk = false;
   link!: Link;
   dialogue!: Dialogue;
   private originalImage: string | null = null;
-  private friction: number | null = null;
+  private set: Floor | null = null;
   private bootLoader: string | null = null;
-  private way: { time: number; place: Place }[] = [];
+  private way: { time: number; frame: Frame }[] = [];
   private time = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
@@ -77,6 +88,7 @@ export class Session {
   /** Takes a robot of the files, on a simulated UNO if it has an image. */
   async choose(name: string, hasImage: boolean): Promise<void> {
     this.file = '';
+    this.set = null;
     this.toml = await files.toml(name);
     this.original = this.toml;
     this.image = hasImage ? await files.image(name) : null;
@@ -113,9 +125,9 @@ export class Session {
     const answer = this.robot.read(this.toml);
     if (isRefused(answer)) return answer;
     this.description = answer;
-    if (this.friction !== null) this.robot.setFriction(this.friction);
+    this.robot.setFloor(this.floor);
     this.way = [];
-    this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>);
+    this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
     this.listener.robot(answer);
     return null;
   }
@@ -266,7 +278,7 @@ export class Session {
   }
 
   private pose(angles: Four<number>): void {
-    const frame = this.robot.pose(angles);
+    const frame = this.robot.pose(angles, WATCH);
     if (frame) this.moved(frame, null, FRAME_SECONDS * WATCH);
   }
 
@@ -274,21 +286,23 @@ export class Session {
     this.time += seconds;
     this.step = seconds;
     this.last = frame;
-    this.way.push({ time: this.time, place: frame.place });
+    this.way.push({ time: this.time, frame });
     while (this.way[0].time < this.time - KEPT_SECONDS) this.way.shift();
     this.listener.frame(frame, widths);
   }
 
-  /** The way of the last whole cycle of the gait, if it has walked so long. */
+  /** The last whole cycle of the gait, if it has walked so long. */
   measured(): Measured | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     const now = this.way[this.way.length - 1];
     if (!gait?.moves || !now) return null;
     // The nearest that is known: a board on USB does not tell every frame.
     const begun = now.time - gait.period;
-    const from = this.way.findLast(({ time }) => time <= begun + this.step / 2);
-    if (!from) return null;
-    return this.robot.between(from.place, now.place);
+    const from = this.way.findLastIndex(({ time }) => time <= begun + this.step / 2);
+    if (from < 0) return null;
+    const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
+    const way = this.robot.between(this.way[from].frame.place, now.frame.place);
+    return { ...way, lag: Math.max(0, ...lags) };
   }
 
   /** Takes the robot back to its start. */
@@ -297,9 +311,20 @@ export class Session {
     this.way = [];
   }
 
-  setFriction(ratio: number): void {
-    this.friction = ratio;
-    this.robot.setFriction(ratio);
+  /** Floor, weight and springs: what the page has set, or else what the file says. */
+  get floor(): Floor {
+    return this.set ?? this.description.floor;
+  }
+
+  /** Sets them; null takes those of the file. */
+  setFloor(floor: Floor | null): void {
+    this.set = floor;
+    this.robot.setFloor(this.floor);
+  }
+
+  setServos(name: string): void {
+    this.servos = name;
+    this.robot.setServos(name);
   }
 
   setSupply(volts: number): void {

@@ -282,10 +282,66 @@ test('a supply that sinks stops the robot, and its fault is shown', async () => 
 test('pads that grip more one way change the prediction', async () => {
   const opened = await standing();
   const before = (await ways(opened, 'back')).predicted.forward;
-  await opened.getByLabel('Friction, back over ahead').fill('1.5');
+  await opened.getByLabel('Friction back : ahead').fill('1.5');
   const { predicted, measured } = await walks(opened, 'back');
   assert.notEqual(predicted.forward, before);
   assert.ok(Math.abs(measured.forward - predicted.forward) < 1.5, `${measured.forward} ${predicted.forward}`);
+});
+
+/** Sets a slider by the keyboard, as far as it is from its right end. */
+async function fromTheRight(opened, label, steps) {
+  const slider = opened.getByLabel(label);
+  await slider.focus();
+  await slider.press('End');
+  for (let n = 0; n < steps; n++) await slider.press('ArrowLeft');
+  return slider.getAttribute('aria-valuetext');
+}
+
+test('weak springs take of the way what the contact model says', async () => {
+  const opened = await standing();
+  // The contact model's own answer, without what a dead band costs.
+  await opened.locator('#servos').selectOption('ideal');
+  await opened.locator('#robot').selectOption('paper');
+  await opened.waitForFunction(() => window.lizard.file === 'paper');
+  await advance(opened, 2500);
+  const rigid = (await walks(opened, 'walk')).measured.forward;
+  assert.equal(await opened.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
+  // docs/twin.md: mm in a cycle of the paper's robot, and the lag in deg.
+  for (const [steps, stiffness, mm, lag] of [[7, 5, 30.0, 21.6 / 5], [11, 2, 17.7, 21.6 / 2]]) {
+    assert.equal(await fromTheRight(opened, 'Leg springs', steps), `${stiffness}`);
+    await advance(opened, 4000);
+    const { predicted, measured } = await ways(opened, 'walk');
+    near(predicted.forward, mm, 0.01, 'mm predicted, as the docs have it');
+    near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+    near(measured.lag, lag, 0.15, 'deg of lag');
+    near(predicted.share, predicted.forward / rigid, 0.03, 'share of rigid legs');
+    await opened.locator('#share', { hasText: `${(100 * predicted.share).toFixed(0)} %` }).waitFor();
+    await opened.waitForFunction((lag) => document.querySelector('#lag').textContent === lag, `${measured.lag.toFixed(1)}°`);
+    const hooked = await opened.evaluate(() => window.lizard.last.scene.legs.every(({ spring }) => spring));
+    assert.ok(hooked, 'each leg shows its spring');
+  }
+  // A heavy robot on them hardly walks; a stop that bears its friction helps.
+  await fromTheRight(opened, 'Mass', 0);
+  const heavy = (await ways(opened, 'walk')).predicted;
+  assert.ok(heavy.forward < 2, `${heavy.forward} mm with 1 kg`);
+  await opened.getByRole('button', { name: 'Values of robot.toml' }).click();
+  await advance(opened, 2500);
+  const again = await ways(opened, 'walk');
+  near(again.predicted.forward, rigid, 0.03, 'rigid again');
+  near(again.measured.forward, rigid, 0.03, 'rigid again');
+  assert.deepEqual([again.predicted.lag, again.measured.lag], [null, 0]);
+});
+
+test('a dead band costs its share of the stroke, as predicted', async () => {
+  const opened = await standing();
+  const went = [];
+  for (const servos of ['ideal', 'sg90']) {
+    await opened.locator('#servos').selectOption(servos);
+    const { predicted, measured } = await walks(opened, 'walk');
+    near(measured.forward, predicted.forward, 0.01, `mm ahead in a cycle, ${servos}`);
+    went.push(measured.forward);
+  }
+  near(went[1] / went[0], 39 / 40, 0.01, 'a degree of 40');
 });
 
 test('nothing was complained of', () => {

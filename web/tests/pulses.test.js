@@ -58,6 +58,7 @@ test('every width is that of the simulated UNO', async () => {
       const frames = [];
       const rises = [];
       // What the page itself follows, frame by frame.
+      lizard.robot.setServos('ideal');
       const follow = lizard.robot.pulses.bind(lizard.robot);
       lizard.robot.pulses = (widths) => {
         const frame = follow(widths);

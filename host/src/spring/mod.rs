@@ -167,7 +167,7 @@ impl Answer {
         let reach = ground.feet.reach;
         let gaits = robot.gaits().iter().filter(|gait| gait.moves());
         let gaits = gaits.filter_map(|gait| {
-            let Sprung { lag, share } = Sprung::of(gait, &ground)?;
+            let Sprung { lag, share, .. } = Sprung::of(gait, &ground)?;
             Some(GaitAnswer {
                 gait: gait.name().to_owned(),
                 lag,

@@ -1,5 +1,5 @@
 // A button for each gait, with the way that it makes in a cycle.
-import type { Description, Robot, Way } from '../robot';
+import type { Description, Outlook, Way } from '../robot';
 import { element } from './canvas';
 
 /** A way in few letters: mm ahead, or deg where it turns. */
@@ -15,14 +15,9 @@ export function short(way: Way | null): string {
 export class Drive {
   private readonly list = element('gaits');
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement }[] = [];
-  private ways = new Map<string, Way>();
-  private queue: number[] = [];
+  private readonly outlooks = new Map<string, Outlook>();
 
-  constructor(
-    private readonly robot: Robot,
-    onCommand: (command: string) => void,
-    private readonly onWay: () => void,
-  ) {
+  constructor(onCommand: (command: string) => void) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
       if (button?.dataset.command) onCommand(button.dataset.command);
@@ -44,40 +39,25 @@ export class Drive {
       button.setAttribute('aria-pressed', 'false');
       return { command, button, note };
     });
-    this.predict();
+    this.outlooks.clear();
   }
 
-  /** Predicts every gait anew, one in each pause of the page. */
-  predict(): void {
-    this.ways.clear();
-    const idle = this.queue.length === 0;
-    this.queue = this.buttons.map((_, n) => n);
-    if (idle) this.later();
+  /** Takes the prediction of a gait; until the next one comes, the one of before is shown. */
+  predicted(gait: number, outlook: Outlook): void {
+    const entry = this.buttons[gait];
+    if (!entry) return;
+    this.outlooks.set(entry.command, outlook);
+    entry.note.textContent = short(outlook);
   }
 
   /** The prediction for a command, once it is there. */
-  way(command: string): Way | null {
-    return this.ways.get(command) ?? null;
+  outlook(command: string): Outlook | null {
+    return this.outlooks.get(command) ?? null;
   }
 
   doing(command: string): void {
     for (const { button, command: own } of this.buttons) {
       button.setAttribute('aria-pressed', String(own === command));
     }
-  }
-
-  private later(): void {
-    setTimeout(() => {
-      const gait = this.queue.shift();
-      if (gait === undefined) return;
-      const entry = this.buttons[gait];
-      const way = entry && this.robot.predict(gait);
-      if (way) {
-        this.ways.set(entry.command, way);
-        entry.note.textContent = short(way);
-        this.onWay();
-      }
-      if (this.queue.length > 0) this.later();
-    }, 60);
   }
 }

@@ -32,6 +32,31 @@ function disc(pen: Pen, [x, y]: Spot, mm: number, fill: string, edge?: string): 
   pen.stroke();
 }
 
+/** Turns of a spring, and how far they are to either side, mm. */
+const TURNS = 5;
+const COIL = 2.4;
+
+/** A spring between two hooks. */
+function coil(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot): void {
+  const length = Math.hypot(x2 - x1, y2 - y1);
+  if (length < 1) return;
+  const [along, across] = [[(x2 - x1) / length, (y2 - y1) / length], [(y1 - y2) / length, (x2 - x1) / length]];
+  const at = (share: number, side: number): Spot => [
+    x1 + along[0] * share * length + across[0] * side,
+    y1 + along[1] * share * length + across[1] * side,
+  ];
+  pen.strokeStyle = palette().steel;
+  pen.lineWidth = 0.9;
+  pen.lineJoin = 'round';
+  pen.beginPath();
+  pen.moveTo(x1, y1);
+  pen.lineTo(...at(0.12, 0));
+  for (let n = 0; n < 2 * TURNS; n++) pen.lineTo(...at(0.12 + (0.76 * (n + 0.5)) / (2 * TURNS), n % 2 === 0 ? COIL : -COIL));
+  pen.lineTo(...at(0.88, 0));
+  pen.lineTo(x2, y2);
+  pen.stroke();
+}
+
 /** An outline in the shape of an animal, between the head's point and the tail's. */
 function skin(pen: Pen, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
@@ -81,11 +106,12 @@ function chassis(pen: Pen, scene: Scene): void {
 
 function leg(pen: Pen, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
-  const { pivots, joints, foot } = scene.legs[servo];
+  const { pivots, joints, foot, spring } = scene.legs[servo];
   const colour = servoColour(servo);
   bar(pen, pivots[0], pivots[1], colours['frame-edge'], 5);
   for (const n of [0, 1]) bar(pen, pivots[n], joints[n], colour, 3.2);
   bar(pen, joints[0], joints[1], colour, 4.2);
+  if (spring) coil(pen, spring[0], spring[1]);
   for (const spot of [...pivots, ...joints]) disc(pen, spot, 1.6, colours.card, colours.ink);
   // A foot that holds is filled, one that slips is a ring.
   disc(pen, foot, 5, slide > SLIPS ? colours.card : colours.ink);

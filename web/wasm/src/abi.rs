@@ -13,6 +13,7 @@ use std::cell::RefCell;
 use serde::Serialize;
 
 use crate::description::Way;
+use crate::floor::Floor;
 use crate::page::Page;
 use crate::place::Place;
 
@@ -95,8 +96,8 @@ pub extern "C" fn lizard_pulses(a1: u32, a2: u32, a3: u32, a4: u32) {
 
 /// [`Page::pose`].
 #[unsafe(no_mangle)]
-pub extern "C" fn lizard_pose(a1: f64, a2: f64, a3: f64, a4: f64) {
-    answer(|page, _| page.pose([a1, a2, a3, a4]));
+pub extern "C" fn lizard_pose(a1: f64, a2: f64, a3: f64, a4: f64, frames: u32) {
+    answer(|page, _| page.pose([a1, a2, a3, a4], frames));
 }
 
 /// [`Page::restart`].
@@ -112,10 +113,29 @@ pub extern "C" fn lizard_way(x0: f64, y0: f64, h0: f64, x1: f64, y1: f64, h1: f6
     answer(|_, _| Way::from(place(x0, y0, h0).way_to(place(x1, y1, h1))));
 }
 
-/// [`Page::set_friction`].
+/// [`Page::set_floor`]; the values of a [`Floor`] in its order.
 #[unsafe(no_mangle)]
-pub extern "C" fn lizard_set_friction(ratio: f64) {
-    answer(|page, _| page.set_friction(ratio));
+pub extern "C" fn lizard_set_floor(
+    friction: f64,
+    ratio: f64,
+    mass: f64,
+    stiffness: f64,
+    preload: f64,
+) {
+    let floor = Floor {
+        friction,
+        ratio,
+        mass,
+        stiffness,
+        preload,
+    };
+    answer(|page, _| page.set_floor(floor));
+}
+
+/// [`Page::set_servos`]: the input is a name.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_set_servos() {
+    answer(|page, name| page.set_servos(name));
 }
 
 /// [`Page::predict`].

@@ -3,8 +3,11 @@
 use lizard_core::robot::Robot as _;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};
-use lizard_robot::{Prediction, Robot, Travel, healthy_rail_mv};
+use lizard_robot::{CheckedGait, Ground, Prediction, Robot, Sprung, Travel, healthy_rail_mv};
+use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
+
+use crate::floor::Floor;
 
 /// A gait.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -58,6 +61,31 @@ pub struct ServoEntry {
     pub travel: (f64, f64),
 }
 
+/// What servos may be taken for, by name; the first unless the page asks for another.
+pub(crate) const SERVO_MODELS: [(&str, ServoModel); 2] =
+    [("sg90", ServoModel::SG90), ("ideal", ServoModel::IDEAL)];
+
+/// What a servo can do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelEntry {
+    /// Its name.
+    pub name: &'static str,
+    /// Its fastest turn, deg/s; infinite is `null` in JSON.
+    pub rate: f64,
+    /// Width of its dead band, us.
+    pub dead_band: f64,
+}
+
+impl From<(&'static str, ServoModel)> for ModelEntry {
+    fn from((name, model): (&'static str, ServoModel)) -> Self {
+        Self {
+            name,
+            rate: model.rate,
+            dead_band: model.dead_band,
+        }
+    }
+}
+
 /// A robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
@@ -77,8 +105,10 @@ pub struct Description {
     pub supply: [f64; 3],
     /// The channel of the converter that measures the servos' rail, and the volts there.
     pub rail: Option<(u8, f64)>,
-    /// Friction of its pads backward over forward.
-    pub friction: f64,
+    /// Its floor, weight and springs.
+    pub floor: Floor,
+    /// What its servos may be taken for.
+    pub models: Vec<ModelEntry>,
 }
 
 impl Description {
@@ -127,7 +157,8 @@ impl Description {
                 .zip(robot.firmware().rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
-            friction: robot.ground().ratio,
+            floor: Floor::of(robot.ground()),
+            models: SERVO_MODELS.map(ModelEntry::from).into(),
         }
     }
 }
@@ -223,6 +254,64 @@ impl From<Prediction> for Way {
             forward,
             left,
             turn,
+        }
+    }
+}
+
+impl Way {
+    /// mm ahead in a cycle, where that is decided.
+    #[must_use]
+    pub fn forward(&self) -> Option<f64> {
+        self.forward
+    }
+}
+
+/// What a cycle of a gait comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Outlook {
+    /// Where it leads.
+    #[serde(flatten)]
+    pub way: Way,
+    /// How far its legs lag at most, deg; none where they are rigid.
+    pub lag: Option<f64>,
+    /// Its way over that of rigid legs; none where they are rigid, or it gets nowhere with
+    /// them.
+    pub share: Option<f64>,
+}
+
+impl Outlook {
+    /// Of a gait on a robot's ground of now, with its servos of now.
+    #[must_use]
+    pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
+        let outlook = Self::ideal(gait, twin.ground());
+        if twin.servos() == ServoModel::IDEAL {
+            return outlook;
+        }
+        let way = outlook.way;
+        let went = twin.cycle(gait).travel();
+        Self {
+            way: Way {
+                forward: way.forward.and(Some(went.forward)),
+                left: way.left.and(Some(went.left)),
+                turn: way.turn.and(Some(went.turn)),
+            },
+            ..outlook
+        }
+    }
+
+    /// With servos that are where their pulses say.
+    fn ideal(gait: &CheckedGait, ground: &Ground) -> Self {
+        match Sprung::of(gait, ground) {
+            Some(Sprung { way, lag, share }) => Self {
+                way: way.into(),
+                lag: Some(lag),
+                share,
+            },
+            None => Self {
+                way: gait.predict(ground).into(),
+                lag: None,
+                share: None,
+            },
         }
     }
 }

@@ -14,14 +14,18 @@ mod abi;
 mod core_run;
 mod description;
 mod edit;
+mod floor;
 mod map;
 mod page;
 mod place;
 mod scene;
 
 pub use core_run::{CoreRun, Said};
-pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ServoEntry, Way};
+pub use description::{
+    Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Outlook, ServoEntry, Way,
+};
 pub use edit::{NoSuchLength, with_number};
+pub use floor::Floor;
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page, Refused};
 pub use place::Place;

@@ -2,6 +2,7 @@
 
 use lizard_kinematics::{Check, End, Limits, Pose, Side, Solution, Vector};
 use lizard_robot::Robot;
+use lizard_twin::{LegShape, Shape, Twin};
 use serde::Serialize;
 
 use crate::map::{self, MapPoint};
@@ -30,6 +31,9 @@ pub struct LegScene {
     pub joints: [Spot; 2],
     /// The foot.
     pub foot: Spot,
+    /// Where its spring is hooked: to the servo's crank and to the leg's; none where the leg is
+    /// rigid.
+    pub spring: Option<[Spot; 2]>,
 }
 
 /// A slider between two arms.
@@ -80,28 +84,32 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Of servo angles, and of the angles that the legs have, which springs may hold back:
-    /// deg, chassis frame, servo order.
+    /// Of a robot as it is now.
     ///
     /// # Errors
     /// The sentence of the loop that does not close.
-    pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Result<Self, String> {
+    pub fn of(twin: &Twin) -> Result<Self, String> {
+        let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);
         let solution = robot
             .lizard()
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
+        let shape = Shape::of_solved(robot, &solution, twin.legs());
+        let springs = twin.ground().spring.is_some();
         let named = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
         };
         Ok(Self {
             angles,
-            shafts: robot.lizard().shafts().map(Spot::from),
-            tips: solution.crank_tips().map(Spot::from),
-            points: End::ALL.map(|end| solution.point(end).into()),
-            sliders: Side::ALL.map(|side| slider(robot, &solution, side)).into(),
-            legs: (0..4).map(|servo| leg(robot, servo, legs[servo])).collect(),
+            shafts: shape.shafts.map(Spot::from),
+            tips: shape.tips.map(Spot::from),
+            points: shape.ends.map(Spot::from),
+            sliders: Side::ALL
+                .map(|side| slider(robot, &shape, &solution, side))
+                .into(),
+            legs: shape.legs.map(|leg| LegScene::of(leg, springs)).into(),
             margins: solution.margins.iter().map(named).collect(),
             smallest: named(solution.margins.min()),
             refusal: refusal(robot.limits(), &solution),
@@ -117,28 +125,29 @@ fn refusal(limits: &Limits, solution: &Solution) -> Option<String> {
         .map(|broken| broken.to_string())
 }
 
-fn leg(robot: &Robot, servo: usize, angle: f64) -> LegScene {
-    let place = robot.leg(servo, angle);
-    LegScene {
-        pivots: place.pivots().map(Spot::from),
-        joints: place.joints().map(Spot::from),
-        foot: place.foot().into(),
+impl LegScene {
+    fn of(leg: LegShape, spring: bool) -> Self {
+        Self {
+            pivots: leg.pivots.map(Spot::from),
+            joints: leg.joints.map(Spot::from),
+            foot: leg.foot.into(),
+            spring: spring.then(|| leg.spring.map(Spot::from)),
+        }
     }
 }
 
-fn slider(robot: &Robot, solution: &Solution, side: Side) -> SliderScene {
-    let [front, rear] = side.servos();
-    let shafts = robot.lizard().shafts();
+fn slider(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -> SliderScene {
+    let servos = side.servos();
     let pose = solution.side(side);
     let links = robot.lizard().links;
     let half = match side {
         Side::Left => links.l12,
         Side::Right => links.l17,
     };
-    let rear_tip = shafts[rear] + pose.rear_tip;
+    let [_, rear_tip] = servos.map(|servo| shape.arms[servo]);
     SliderScene {
-        shafts: [shafts[front].into(), shafts[rear].into()],
-        tips: [(shafts[rear] + pose.front_tip).into(), rear_tip.into()],
+        shafts: servos.map(|servo| shape.shafts[servo].into()),
+        tips: servos.map(|servo| shape.arms[servo].into()),
         tube: (rear_tip + pose.span * (half / pose.d)).into(),
         travel: pose.s,
     }
@@ -146,20 +155,24 @@ fn slider(robot: &Robot, solution: &Solution, side: Side) -> SliderScene {
 
 #[cfg(test)]
 mod tests {
+    use lizard_twin::ServoModel;
+
     use super::*;
 
     fn paper() -> Robot {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
     }
 
-    fn at(robot: &Robot, angles: [f64; 4]) -> Result<Scene, String> {
-        Scene::of(robot, angles, angles)
+    fn at(robot: &Robot, angles: [f64; 4]) -> Scene {
+        let mut twin = Twin::new(robot, ServoModel::IDEAL);
+        twin.push_angles(angles);
+        Scene::of(&twin).expect("closes")
     }
 
     #[test]
     fn the_neutral_pose_is_the_papers() {
         let robot = paper();
-        let scene = at(&robot, robot.neutral().into()).expect("closes");
+        let scene = at(&robot, robot.neutral().into());
         assert!(
             (scene.points[0].1 - (67.5 + 57.840)).abs() < 1e-3,
             "{:?}",
@@ -173,15 +186,29 @@ mod tests {
         );
         assert_eq!(scene.refusal, None);
         assert_eq!(scene.margins.len(), 10);
+        assert!(scene.legs.iter().all(|leg| leg.spring.is_none()));
     }
 
     #[test]
     fn a_pose_near_a_singularity_says_why_not() {
-        let robot = paper();
-        let scene = at(&robot, [75.0, 105.0, 318.59, 221.41]).expect("closes");
+        let scene = at(&paper(), [75.0, 105.0, 318.59, 221.41]);
         let refusal = scene.refusal.expect("refused");
         assert!(refusal.contains("type2_head"), "{refusal}");
-        let fault = at(&robot, [f64::NAN, 41.0, 318.0, 221.0]).expect_err("no pose");
-        assert!(fault.contains("not a finite number"), "{fault}");
+    }
+
+    #[test]
+    fn a_loop_that_does_not_close_is_said() {
+        // Couplers that just reach at neutral.
+        let text = include_str!("../../../robots/paper.toml");
+        let short = ["l2", "l3"].iter().fold(text.to_string(), |text, link| {
+            text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
+        });
+        let gaits = short.find("[gait.walk]").expect("walk");
+        let limits = short[..gaits].replace("type2 = 0.3", "type2 = 0.1");
+        let robot = Robot::parse(&limits).expect("it stands");
+        let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+        twin.push_angles([170.0, 10.0, 318.59, 221.41]);
+        let fault = Scene::of(&twin).expect_err("out of reach");
+        assert!(fault.contains("head"), "{fault}");
     }
 }
