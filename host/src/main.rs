@@ -10,6 +10,8 @@ use clap::{Parser, Subcommand};
 use lizard_host::absent;
 #[cfg(feature = "console")]
 use lizard_host::console;
+#[cfg(all(feature = "simulator", feature = "paper"))]
+use lizard_host::tune;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
 use lizard_host::{draw, gaits, spring};
@@ -58,6 +60,8 @@ enum Command {
     Sim(sim::Args),
     #[cfg(feature = "simulator")]
     Twin(twin::Args),
+    #[cfg(all(feature = "simulator", feature = "paper"))]
+    Tune(tune::Args),
     Draw(draw::Args),
     Spring(spring::Args),
     #[cfg(feature = "simulator")]
@@ -107,6 +111,8 @@ fn main() -> ExitCode {
         Command::Sim(args) => sim::run(args),
         #[cfg(feature = "simulator")]
         Command::Twin(args) => twin::run(args),
+        #[cfg(all(feature = "simulator", feature = "paper"))]
+        Command::Tune(args) => tune::run(args),
         Command::Draw(args) => draw::run(args),
         Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
