@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use crate::Failure;
 
-const SIMULATOR: [&str; 3] = ["sim", "twin", "bench"];
+const SIMULATOR: [&str; 4] = ["sim", "twin", "tune", "bench"];
 /// `replay` needs the simulator's pictures, too.
 const CONSOLE: [&str; 6] = [
     "console",
@@ -34,7 +34,11 @@ pub fn explain(words: &[OsString]) -> Failure {
     let name = words.first().map(|word| word.to_string_lossy());
     let name = name.as_deref().unwrap_or_default();
     let draws = name == "replay" && cfg!(feature = "console");
-    let without = if SIMULATOR.contains(&name) || draws {
+    // It searches on all cores, as the commands that compute do.
+    let searches = name == "tune" && cfg!(feature = "simulator");
+    let without = if searches {
+        "the commands that compute"
+    } else if SIMULATOR.contains(&name) || draws {
         "the simulator"
     } else if PAPER.contains(&name) {
         "the commands that compute"

@@ -9,6 +9,8 @@ pub mod absent;
 pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
+#[cfg(feature = "simulator")]
+mod chance;
 #[cfg(feature = "console")]
 pub mod console;
 pub mod draw;
@@ -25,6 +27,8 @@ mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
 pub mod spring;
+#[cfg(all(feature = "simulator", feature = "paper"))]
+pub mod tune;
 #[cfg(feature = "simulator")]
 pub mod twin;
 

@@ -22,6 +22,8 @@ use lizard_host::absent;
 use lizard_host::console;
 #[cfg(feature = "parts")]
 use lizard_host::parts;
+#[cfg(all(feature = "simulator", feature = "paper"))]
+use lizard_host::tune;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
 use lizard_host::{draw, gaits, spring};
@@ -70,6 +72,8 @@ enum Command {
     Sim(sim::Args),
     #[cfg(feature = "simulator")]
     Twin(twin::Args),
+    #[cfg(all(feature = "simulator", feature = "paper"))]
+    Tune(tune::Args),
     Draw(draw::Args),
     #[cfg(feature = "parts")]
     Parts(parts::Args),
@@ -126,6 +130,8 @@ fn main() -> ExitCode {
         Command::Sim(args) => sim::run(args),
         #[cfg(feature = "simulator")]
         Command::Twin(args) => twin::run(args),
+        #[cfg(all(feature = "simulator", feature = "paper"))]
+        Command::Tune(args) => tune::run(args),
         Command::Draw(args) => draw::run(args),
         #[cfg(feature = "parts")]
         Command::Parts(args) => parts::run(args),

@@ -20,6 +20,8 @@ import { World } from './view/world';
 
 /** Texts that follow the robot are written so many times a second. */
 const TEXTS = 10;
+/** Scope, margins and maps are drawn in each third picture: painting is what costs. */
+const PANELS = 3;
 
 declare global {
   interface Window {
@@ -174,6 +176,7 @@ async function start(): Promise<void> {
   window.lizard = session;
   void calibrate;
   let sinceTexts = 0;
+  let pictures = 0;
   run(
     (ms) => {
       sinceTexts += ms;
@@ -181,9 +184,12 @@ async function start(): Promise<void> {
     },
     () => {
       floor.draw(session.last);
-      scope.draw(latest);
-      margins.draw(session.last?.scene ?? null);
-      maps.draw();
+      pictures += 1;
+      if (pictures % PANELS === 0) {
+        scope.draw(latest);
+        margins.draw(session.last?.scene ?? null);
+        maps.draw();
+      }
       if (sinceTexts >= 1000 / TEXTS) {
         sinceTexts = 0;
         texts();

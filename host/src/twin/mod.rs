@@ -118,7 +118,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         write_file(path, apng::draw(&replay)?)?;
     }
     if let Some(times) = args.robust {
-        robust::run(&robot, &replay, times, args.json, &mut out)?;
+        robust::run(&robot, &replay, model, times, args.json, &mut out)?;
     }
     Ok(out.flush()?)
 }

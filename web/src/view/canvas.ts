@@ -7,8 +7,26 @@ export interface Surface {
   height: number;
 }
 
-/** The canvas, cleared, in CSS pixels; null while it is not shown. */
-export function surface(canvas: HTMLCanvasElement): Surface | null {
+/** Canvases that are scrolled out of sight, which nobody sees painted. */
+const away = new WeakSet<Element>();
+const watched = new WeakSet<Element>();
+const watcher = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) {
+    if (isIntersecting) away.delete(target);
+    else away.add(target);
+  }
+});
+
+/**
+ * The canvas, cleared, in CSS pixels; null while it is not to be seen. An opaque one is for the caller to
+ * fill, which saves blending it with what is below.
+ */
+export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | null {
+  if (!watched.has(canvas)) {
+    watched.add(canvas);
+    watcher.observe(canvas);
+  }
+  if (away.has(canvas)) return null;
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;
   const scale = devicePixelRatio;
@@ -17,10 +35,10 @@ export function surface(canvas: HTMLCanvasElement): Surface | null {
     canvas.width = w;
     canvas.height = h;
   }
-  const pen = canvas.getContext('2d');
+  const pen = canvas.getContext('2d', { alpha: !opaque });
   if (!pen) return null;
   pen.setTransform(scale, 0, 0, scale, 0, 0);
-  pen.clearRect(0, 0, width, height);
+  if (!opaque) pen.clearRect(0, 0, width, height);
   return { pen, width, height };
 }
 

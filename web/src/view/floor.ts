@@ -67,7 +67,7 @@ export class Floor {
   }
 
   draw(frame: Frame | null): void {
-    const area = surface(this.canvas);
+    const area = surface(this.canvas, true);
     if (!area) return;
     const { pen, width, height } = area;
     if (this.zoom === 0) this.zoom = Math.min(width, height) / VIEW;

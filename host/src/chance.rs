@@ -1,0 +1,164 @@
+//! Robots and floors that are not quite alike: what a print, a floor and a kitchen scale
+//! leave open.
+
+use fastrand::Rng;
+use lizard_robot::{Body, CheckedGait, Feet, Ground, Robot, Spring, Travel, Walker};
+use lizard_twin::ServoModel;
+
+/// Phases of a cycle.
+const PHASES: f64 = 65536.0;
+
+/// How far robots and floors differ: each value is uniform within these bounds around
+/// robot.toml's.
+const FRICTION: (f64, f64) = (0.5, 1.5);
+const PADS: (f64, f64) = (0.9, 1.1);
+const CENTRE: f64 = 8.0;
+const MOUNT: f64 = 4.0;
+const HIPS: f64 = 2.0;
+const SPRING: (f64, f64) = (0.8, 1.2);
+
+/// The same in words.
+pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
+mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2";
+
+/// A robot on a floor of chance.
+#[derive(Debug, Clone, Copy)]
+pub struct Chance {
+    ground: Ground,
+    /// How much harder each pad presses.
+    pads: [f64; 4],
+    /// Friction backward over forward, beside the ground's own.
+    ratio: f64,
+}
+
+impl Chance {
+    /// The one of a seed, around this ground.
+    #[must_use]
+    pub fn of(ground: &Ground, seed: u64) -> Self {
+        let mut rng = Rng::with_seed(seed);
+        let mut within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
+        let feet = ground.feet;
+        let ground = Ground {
+            feet: Feet {
+                mount: feet.mount + within((-MOUNT, MOUNT)),
+                hip_forward: feet.hip_forward + within((-HIPS, HIPS)),
+                hip_side: feet.hip_side + within((-HIPS, HIPS)),
+                ..feet
+            },
+            body: Body {
+                centre: ground.body.centre.map(|at| at + within((-CENTRE, CENTRE))),
+                ..ground.body
+            },
+            friction: ground.friction * within(FRICTION),
+            spring: ground.spring.map(|spring| Spring {
+                rate: spring.rate * within(SPRING),
+                preload: spring.preload * within(SPRING),
+            }),
+            ..*ground
+        };
+        Self {
+            ground,
+            pads: std::array::from_fn(|_| within(PADS)),
+            ratio: within(PADS),
+        }
+    }
+
+    /// No chance: the ground as it is.
+    #[cfg(any(test, feature = "paper"))]
+    #[must_use]
+    pub fn none(ground: &Ground) -> Self {
+        Self {
+            ground: *ground,
+            pads: [1.0; 4],
+            ratio: 1.0,
+        }
+    }
+
+    /// Where the second cycle of a gait leads it, which all later ones repeat: frame by frame,
+    /// with such servos.
+    #[must_use]
+    pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
+        let mut sweeps = gait.sweeps(gait.phase(0.0));
+        let mut next = |phase: u16| {
+            let targets = gait.sweeps(f64::from(phase) / PHASES);
+            sweeps = std::array::from_fn(|i| {
+                model.turned(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
+            });
+            sweeps
+        };
+        let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
+        let [begin, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
+        // Of rigid legs the first cycle leaves nothing but where the servos are.
+        let sprung = self.ground.spring.is_some();
+        let from = if sprung { begin } else { end };
+        let mut walker = Walker::uneven(self.ground, from, self.pads, self.ratio);
+        if sprung {
+            first.into_iter().for_each(|sweeps| {
+                walker.step(sweeps);
+            });
+        }
+        let begin = walker.place();
+        for (_, phase) in gait.frames() {
+            walker.step(next(phase));
+        }
+        walker.place().seen_from(begin)
+    }
+}
+
+/// The values below which so large a share of all lies: nearest rank.
+#[must_use]
+pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    shares.map(|share| {
+        let at = (share * last as f64).round() as usize;
+        values.get(at).copied().unwrap_or(f64::NAN)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_twin::Twin;
+
+    use super::*;
+
+    #[test]
+    fn walk_goes_ahead_on_nearly_every_robot_and_floor() {
+        let robot = Robot::parse(include_str!("../../robots/paper.toml")).expect("right");
+        let walk = robot.gait("walk").expect("walk");
+        let ways: Vec<Travel> = (0..40)
+            .map(|seed| Chance::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
+            .collect();
+        let of = |part: fn(&Travel) -> f64| {
+            quantiles(ways.iter().map(part).collect(), [0.05, 0.5, 0.95])
+        };
+        let [low, middle, high] = of(|way| way.forward);
+        assert!(25.0 < low && low < middle && middle < high && high < 40.0);
+        let turn = of(|way| way.turn);
+        assert!(turn[0] < 0.0 && turn[2] > 0.0, "{turn:?}");
+    }
+
+    #[test]
+    fn without_chance_it_walks_as_the_twin_does() {
+        let text = include_str!("../../robots/paper.toml");
+        let springs = text.replace("[leg]", "[leg]\nspring = 5.0");
+        for text in [text, &springs] {
+            let robot = Robot::parse(text).expect("right");
+            for name in ["walk", "left"] {
+                let gait = robot.gait(name).expect(name);
+                for model in [ServoModel::IDEAL, ServoModel::SG90] {
+                    let way = Chance::none(robot.ground()).walked(&robot, gait, model);
+                    let twin = Twin::new(&robot, model).cycle(gait).travel();
+                    let off = (way.forward - twin.forward).hypot(way.turn - twin.turn);
+                    assert!(off < 0.1, "{name} {way:?} {twin:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_share_is_below_each_quantile() {
+        let values = (0..=100).rev().map(f64::from).collect();
+        assert_eq!(quantiles(values, [0.05, 0.5, 0.95]), [5.0, 50.0, 95.0]);
+    }
+}

@@ -1,0 +1,227 @@
+use lizard_robot::Travel;
+
+use super::*;
+
+const PAPER: &str = include_str!("../../../../robots/paper.toml");
+
+#[test]
+fn a_refused_robot_leaves_the_one_of_before() {
+    let mut page = Page::default();
+    assert_eq!(page.pulses([24_000; 4]), None);
+    page.read(PAPER).expect("right");
+    let error = page.read("[links]").expect_err("refused");
+    assert!(error.refused.starts_with("robot.toml"), "{error:?}");
+    assert!(page.pulses([24_000; 4]).is_some());
+}
+
+#[test]
+fn a_length_that_will_not_do_says_why_and_its_text_is_kept() {
+    let edited = Page::edit(PAPER, "links.l2", 21.0).expect("there");
+    assert!(edited.text.contains("l2 = 21.0"));
+    let refusal = edited.refusal.expect("the head is out of reach");
+    assert_eq!(refusal.key, "gait.look.head");
+    assert!(refusal.refused.contains("out of reach"), "{refusal:?}");
+    assert_eq!(
+        Page::edit(PAPER, "links.l1", 35.0).expect("there").refusal,
+        None
+    );
+    assert!(Page::edit(PAPER, "links.l99", 51.0).is_err());
+}
+
+fn page() -> Page {
+    let mut page = Page::default();
+    page.read(PAPER).expect("right");
+    page
+}
+
+/// The place of a gait among the robot's.
+fn index(page: &Page, name: &str) -> usize {
+    let gait = page.robot().and_then(|robot| robot.gait(name));
+    gait.expect(name).index()
+}
+
+#[test]
+fn pulses_that_end_leave_a_servo_where_it_is() {
+    let mut page = page();
+    page.set_servos("ideal");
+    let scene = |frame: Option<Frame>| frame.and_then(|frame| frame.scene).expect("closes");
+    let first = scene(page.pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
+    assert!((first.angles[0] - 148.590378).abs() < 1e-9, "{first:?}");
+    assert_eq!(scene(page.pulses([0; 4])), first);
+}
+
+#[test]
+fn an_sg90_stays_inside_its_dead_band_and_turns_at_its_rate() {
+    let mut page = page();
+    let turned = |page: &mut Page, cycles: u32| {
+        let frame = page.pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
+        let frame = frame.expect("a robot");
+        (
+            frame.scene.expect("closes").angles[0] - 138.590378,
+            frame.errors[0],
+        )
+    };
+    let near = |(turned, error): (f64, f64), wanted: [f64; 2]| {
+        assert!((turned - wanted[0]).abs() < 1e-9, "{turned}");
+        assert!((error - wanted[1]).abs() < 1e-9, "{error}");
+    };
+    // 4 us are less than half of its dead band of 10 us.
+    near(turned(&mut page, 64), [0.0, 0.4]);
+    // 20 deg: 10 in a frame of 20 ms, at 500 deg/s; then to the edge of the dead band.
+    near(turned(&mut page, 3200), [10.0, 10.0]);
+    near(turned(&mut page, 3200), [19.5, 0.5]);
+    page.set_servos("ideal");
+    near(turned(&mut page, 3200), [20.0, 0.0]);
+    page.set_servos("better");
+    near(turned(&mut page, 0), [0.0, 0.0]);
+}
+
+/// The second cycle of a gait with ideal servos: its way, how far each foot slid in each of
+/// its frames, and the largest lag.
+fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
+    page.set_servos("ideal");
+    let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
+    let poses: Vec<[f64; 4]> = gait
+        .frames()
+        .step_by(frames as usize)
+        .map(|(_, phase)| gait.table_angles(phase))
+        .collect();
+    let mut follow = || -> Vec<Frame> {
+        let follow = |angles: &[f64; 4]| page.pose(*angles, frames).expect("a robot");
+        poses.iter().map(follow).collect()
+    };
+    let (first, second) = (follow(), follow());
+    let end = |frames: &[Frame]| frames.last().expect("frames").place;
+    let slides = second.iter().map(|frame| frame.slides).collect();
+    let lag = second.iter().flat_map(|frame| frame.lag);
+    let lag = lag.fold(0.0, |most: f64, lag| most.max(lag.abs()));
+    (end(&first).way_to(end(&second)), slides, lag)
+}
+
+#[test]
+fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
+    for name in ["walk", "left", "arc-right", "back"] {
+        let mut page = page();
+        let robot = page.robot().expect("a robot");
+        let wanted = robot.predict(robot.gait(name).expect("a gait"));
+        // Every frame, and every second one, as a board on USB tells.
+        for frames in [1, 2] {
+            let (way, _, _) = cycle(&mut page, name, frames);
+            let near = |got: f64, wanted: Option<f64>, within: f64| {
+                let off = got - wanted.expect("decided");
+                assert!(off.abs() < within, "{name} {frames} {way:?}");
+            };
+            // What lies between two poses is taken for straight.
+            near(way.forward, wanted.forward, 0.4 * f64::from(frames));
+            near(way.left, wanted.left, 0.5);
+            near(way.turn, wanted.turn, 0.3);
+        }
+    }
+}
+
+#[test]
+fn servos_with_a_dead_band_are_predicted_to_lose_it() {
+    let mut page = page();
+    let walk = index(&page, "walk");
+    let forward = |page: &Page| page.predict(walk).and_then(|way| way.way.forward());
+    let sg90 = forward(&page).expect("decided");
+    page.set_servos("ideal");
+    let ideal = forward(&page).expect("decided");
+    // A degree of 40, as twin/tests/stream.rs has it.
+    assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.01, "{sg90} {ideal}");
+}
+
+#[test]
+fn in_a_walk_most_feet_hold() {
+    let (_, slides, _) = cycle(&mut page(), "walk", 1);
+    let mut slid = [0.0; 4];
+    for frame in slides {
+        let holds = frame.iter().filter(|mm| **mm < 0.3).count();
+        assert!(holds >= 2, "{frame:?}");
+        slid = [0, 1, 2, 3].map(|i| slid[i] + frame[i]);
+    }
+    assert!(
+        slid.iter().all(|mm| *mm > 20.0),
+        "each foot is dragged once: {slid:?}"
+    );
+}
+
+#[test]
+fn springs_that_are_set_act_and_are_predicted() {
+    let mut page = page();
+    page.set_servos("ideal");
+    let walk = index(&page, "walk");
+    let rigid = page.predict(walk).expect("a gait");
+    assert_eq!((rigid.lag, rigid.share), (None, None));
+    for stiffness in [2.0, 5.0] {
+        page.set_floor(Floor {
+            stiffness,
+            ..Floor::of(page.robot().expect("a robot").ground())
+        });
+        let soft = page.predict(walk).expect("a gait");
+        let (way, _, lag) = cycle(&mut page, "walk", 1);
+        let forward = |way: &Outlook| way.way.forward().expect("decided");
+        assert!(
+            (way.forward - forward(&soft)).abs() < 0.5,
+            "{way:?} {soft:?}"
+        );
+        assert!(
+            (lag - soft.lag.expect("springs")).abs() < 0.3,
+            "{lag} {soft:?}"
+        );
+        let share = forward(&soft) / forward(&rigid);
+        assert!(
+            (soft.share.expect("springs") - share).abs() < 0.01,
+            "{soft:?}"
+        );
+        assert!(share < 0.9, "{share}");
+    }
+}
+
+#[test]
+fn a_stop_that_bears_the_friction_is_as_good_as_rigid() {
+    let mut page = page();
+    let floor = Floor {
+        stiffness: 1.0,
+        preload: 60.0,
+        ..Floor::of(page.robot().expect("a robot").ground())
+    };
+    page.set_floor(floor);
+    let strut = page.predict(index(&page, "walk")).expect("a gait");
+    assert!(strut.share.expect("springs") > 0.99, "{strut:?}");
+}
+
+#[test]
+fn weight_and_friction_matter_to_springs_alone() {
+    let walked = |stiffness: f64, mass: f64, friction: f64| {
+        let mut page = page();
+        let floor = Floor {
+            stiffness,
+            mass,
+            friction,
+            ..Floor::of(page.robot().expect("a robot").ground())
+        };
+        page.set_floor(floor);
+        let way = page.predict(index(&page, "walk")).expect("a gait").way;
+        way.forward().expect("decided")
+    };
+    let rigid = f64::INFINITY;
+    assert_eq!(walked(rigid, 280.0, 0.7), walked(rigid, 560.0, 0.2));
+    let same = walked(5.0, 280.0, 0.7) - walked(5.0, 140.0, 1.4);
+    assert!(same.abs() < 1e-6, "{same}");
+    assert!(walked(5.0, 280.0, 1.4) < walked(5.0, 280.0, 0.7) - 1.0);
+}
+
+#[test]
+fn friction_that_differs_by_direction_changes_the_prediction() {
+    let mut page = page();
+    let walk = index(&page, "walk");
+    let even = page.predict(walk);
+    let floor = Floor {
+        ratio: 1.4,
+        ..Floor::of(page.robot().expect("a robot").ground())
+    };
+    page.set_floor(floor);
+    assert_ne!(page.predict(walk), even);
+    assert_eq!(page.predict(99), None);
+}
