@@ -42,6 +42,8 @@ pub struct Args {
 struct Listed {
     part: String,
     count: usize,
+    /// The bodies that are made so, by their names in the assembly.
+    bodies: Vec<String>,
     /// Of one, mm^3.
     volume: f64,
     files: Vec<String>,
@@ -83,6 +85,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         list.push(Listed {
             part: part.name.clone(),
             count: part.count(),
+            bodies: part.bodies.clone(),
             volume: part.volume(),
             files: made.iter().map(|file| file.path.clone()).collect(),
         });
