@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
+.PHONY: help parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -49,6 +49,8 @@ web-test: ## the page in a real browser: it walks, turns, refuses, calibrates, f
 	$(call prepared,.web-test)
 lint: ## rustfmt and clippy, warnings are errors
 	$(call prepared,.lint)
+parts-test: ## the files of `lizard parts`, read by ezdxf, FreeCAD and admesh, sliced by PrusaSlicer
+	$(call prepared,.parts-test)
 cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)
 bench: ## measured budgets, beside the Arduino Servo library's; speed beside numpy's
@@ -128,6 +130,12 @@ TESTS ?= --workspace
 	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
 	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test $(TESTS) --no-fail-fast --quiet
+
+# FreeCAD and PrusaSlicer are large, so they are set up here alone.
+.parts-test:
+	@scripts/setup-parts
+	@cd host && cargo build -p lizard-host --no-default-features --features parts --quiet
+	@scripts/parts-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
 	@scripts/setup-bench

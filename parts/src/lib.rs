@@ -38,6 +38,7 @@
 #![warn(clippy::missing_errors_doc)]
 
 mod assembly;
+mod bill;
 mod body;
 mod builder;
 mod chassis;
@@ -46,12 +47,14 @@ mod coupon;
 mod dxf;
 mod ends;
 mod files;
+mod guide;
 mod layout;
 mod legs;
 mod links;
 mod mesh;
 mod outline;
 mod part;
+mod picture;
 mod place;
 mod shape;
 mod sheet;
@@ -64,15 +67,18 @@ mod svg;
 mod unfit;
 
 pub use assembly::Assembly;
+pub use bill::{Bill, Hold, Item, STALL};
 pub use body::{Body, Kind, Mount, Prism};
 pub use clearance::Clearance;
 pub use coupon::coupon;
 pub use dxf::dxf;
 pub use files::{File, part_files};
+pub use guide::guide;
 pub use layout::{Layout, LegLayout};
 pub use mesh::Mesh;
 pub use outline::{Loop, Outline, Side};
 pub use part::Part;
+pub use picture::{Drawn, View, picture, whole};
 pub use place::Place;
 pub use shape::Shape;
 pub use sheet::{Layer, Sheet, extent, sheets};

@@ -78,10 +78,12 @@ fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec
             .collect()
     };
     let mut add = |name: String, line: Loop| {
+        // From below to above, a pocket that is known already is deeper there.
+        if layers.iter().any(|layer| layer.loops.contains(&line)) {
+            return;
+        }
         if let Some(layer) = layers.iter_mut().find(|layer| layer.name == name) {
-            if !layer.loops.contains(&line) {
-                layer.loops.push(line);
-            }
+            layer.loops.push(line);
         } else {
             layers.push(Layer {
                 name,

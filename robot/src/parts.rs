@@ -5,6 +5,7 @@
 //! springs, a board, a battery. None of it moves a joint, so the firmware does not
 //! depend on it. All of it may be left out.
 
+use crate::coil::Coil;
 use crate::error::Checked;
 use crate::reader::Section;
 
@@ -40,7 +41,7 @@ pub struct Parts {
     /// Screws that are joints.
     pub screw: Screw,
     /// The legs' springs, which are hung in their struts.
-    pub spring: SpringBody,
+    pub spring: Coil,
     /// The battery: to the right, forward, up.
     pub battery: [f64; 3],
 }
@@ -98,17 +99,6 @@ pub struct Screw {
     pub nut_height: f64,
 }
 
-/// A close-wound tension spring, mm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpringBody {
-    /// Diameter of the wire.
-    pub wire: f64,
-    /// Outer diameter of the coil.
-    pub outer: f64,
-    /// Length inside its hooks without load.
-    pub length: f64,
-}
-
 impl Default for Parts {
     fn default() -> Self {
         Self {
@@ -147,11 +137,7 @@ impl Default for Parts {
                 nut: 5.5,
                 nut_height: 4.0,
             },
-            spring: SpringBody {
-                wire: 0.6,
-                outer: 5.55,
-                length: 25.4,
-            },
+            spring: Coil::paper(0.6),
             battery: [31.0, 56.0, 16.0],
         }
     }
@@ -206,7 +192,7 @@ impl Parts {
             servo: ServoBody::read(&section, all.servo)?,
             horn: Horn::read(&section, all.horn)?,
             screw: Screw::read(&section, all.screw)?,
-            spring: SpringBody::read(&section, all.spring)?,
+            spring: Coil::read(&section, all.spring)?,
             battery,
         })
     }
@@ -251,7 +237,7 @@ lengths!(
     "screw",
     [diameter, head, head_height, nut, nut_height]
 );
-lengths!(SpringBody, "spring", [wire, outer, length]);
+lengths!(Coil, "spring", [wire, outer, length]);
 
 #[cfg(test)]
 mod tests {

@@ -5,15 +5,16 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lizard_parts::{Assembly, File, Unfit, coupon, part_files};
+use lizard_parts::{Assembly, Bill, File, Unfit, coupon, guide, part_files};
 use serde::Serialize;
 
 use crate::{Failure, RobotFile};
 
 /// Make the parts of the robot: files to print and to cut, what to buy, how to build it
 ///
-/// Into DIR go step/ (solids for a drawing program), stl/ (lying as they are printed)
-/// and cut/ (DXF and SVG, 1:1 in mm, of what can be cut from a sheet). Links, servos,
+/// Into DIR go step/ (solids for a drawing program), stl/ (lying as they are printed),
+/// cut/ (DXF and SVG, 1:1 in mm, of what can be cut from a sheet), guide/ (how to build
+/// it, as HTML and Markdown) and bill.json (what to print and to buy). Links, servos,
 /// screws and fits are taken from robot.toml; a robot whose parts would meet is refused.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
@@ -42,6 +43,8 @@ pub struct Args {
 struct Listed {
     part: String,
     count: usize,
+    /// The bodies that are made so, by their names in the assembly.
+    bodies: Vec<String>,
     /// Of one, mm^3.
     volume: f64,
     files: Vec<String>,
@@ -83,6 +86,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         list.push(Listed {
             part: part.name.clone(),
             count: part.count(),
+            bodies: part.bodies.clone(),
             volume: part.volume(),
             files: made.iter().map(|file| file.path.clone()).collect(),
         });
@@ -90,6 +94,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
         bar.inc(1);
     }
     bar.finish_and_clear();
+    if !args.coupon {
+        let pose = robot
+            .lizard()
+            .solve(&robot.neutral())
+            .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+        let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+        files.push(File::text(
+            "bill.json".to_owned(),
+            serde_json::to_string_pretty(&bill)? + "\n",
+        ));
+        files.extend(guide(&assembly, &bill, &pose));
+    }
     write(&args.folder, &files)?;
     let mut out = io::stdout().lock();
     if args.json {

@@ -1,8 +1,6 @@
 //! Three ways to hang a spring between a servo's crank and its leg.
 
-use lizard_robot::Spring;
-
-use super::coil::Coil;
+use lizard_robot::{Coil, Spring};
 
 /// How the leg is pulled along.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,15 +1,13 @@
 //! `lizard spring`: does a spring from the shop make this robot walk?
 
-mod coil;
 mod geometry;
 
 use std::io::{self, Write};
 
-use lizard_robot::{Ground, Robot, Spring, Sprung};
+use lizard_robot::{Coil, Ground, Robot, Spring, Sprung};
 use serde::Serialize;
 
 use crate::{Failure, RobotFile};
-use coil::Coil;
 use geometry::{Geometry, Hung};
 
 /// Turn a tension spring and its anchors into what the legs feel

@@ -18,7 +18,7 @@ pub struct Coil {
 
 impl Coil {
     /// The one size that the paper gives, with this wire.
-    #[cfg(test)]
+    #[must_use]
     pub const fn paper(wire: f64) -> Self {
         Self {
             wire,
@@ -28,18 +28,21 @@ impl Coil {
     }
 
     /// Mean diameter of the coil, mm.
-    fn mean(&self) -> f64 {
+    #[must_use]
+    pub fn mean(&self) -> f64 {
         self.outer - self.wire
     }
 
     /// How many coils give way. The wound body is what the two hooks, each an inner
     /// diameter long, leave of the length.
+    #[must_use]
     pub fn coils(&self) -> f64 {
         let inner = self.outer - 2.0 * self.wire;
         (self.length - 2.0 * inner) / self.wire - 1.0
     }
 
     /// Force for each mm, N/mm: G d^4 / (8 D^3 n).
+    #[must_use]
     pub fn rate(&self) -> f64 {
         SHEAR * self.wire.powi(4) / (8.0 * self.mean().powi(3) * self.coils())
     }
@@ -47,17 +50,20 @@ impl Coil {
     /// The force that opens its coils, N. Winding leaves a shear stress that falls with
     /// the ratio of coil to wire C; makers reach 231 / e^(0.105 C) MPa, give or take
     /// 6.9 (4 - (C - 3) / 6.5) MPa.
+    #[must_use]
     pub fn initial_tension(&self) -> f64 {
         let ratio = self.mean() / self.wire;
         self.force_of(231.0 * (-0.105 * ratio).exp())
     }
 
     /// Its force at a length inside its hooks, N.
+    #[must_use]
     pub fn force(&self, length: f64) -> f64 {
         self.initial_tension() + self.rate() * (length - self.length).max(0.0)
     }
 
     /// The shear stress at a force, N/mm^2.
+    #[must_use]
     pub fn stress(&self, force: f64) -> f64 {
         force / self.force_of(1.0)
     }

@@ -1,0 +1,304 @@
+//! What the robot is made of: a list to buy by, its mass and its mass centre.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use lizard_kinematics::{Solution, Vector};
+use lizard_robot::{Coil, Spring};
+use serde::Serialize;
+
+use crate::assembly::Assembly;
+use crate::body::{Body, Kind, Prism};
+use crate::outline::Outline;
+use crate::part::Part;
+
+/// A printed part's mass over its volume, g/mm^3: PLA of 1.24, a third of infill within
+/// three lines of wall. PrusaSlicer's parts are within a tenth of it in sum.
+const PRINTED: f64 = 1.0e-3;
+/// What is bought, g: a servo, its horn, an UNO, a battery for each mm^3, a spring's
+/// steel for each mm^3, screws and standoffs for each mm and a head, a nut.
+const SERVO: f64 = 9.5;
+const HORN: f64 = 0.8;
+const BOARD: f64 = 25.0;
+const BATTERY: f64 = 1.1e-3;
+const STEEL: f64 = 7.85e-3;
+const SCREW_MM: f64 = 0.044;
+const SCREW_HEAD: f64 = 0.25;
+const STANDOFF_MM: f64 = 0.06;
+const NUT: f64 = 0.4;
+const SERVO_SCREW: f64 = 0.2;
+
+/// What an SG-90 turns at a stall with 4.8 V, N mm: 1.8 kg cm.
+pub const STALL: f64 = 176.0;
+
+/// One kind of thing, and how many.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Item {
+    /// How many.
+    pub count: usize,
+    /// What.
+    pub what: String,
+    /// Of one, g.
+    pub grams: f64,
+}
+
+/// Everything, and what it weighs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Bill {
+    /// To print.
+    pub printed: Vec<Item>,
+    /// To buy.
+    pub bought: Vec<Item>,
+    /// All of it at neutral, g, without wires.
+    pub grams: f64,
+    /// The mass centre: ahead of, left of and above the plate's middle, mm.
+    pub centre: [f64; 3],
+    /// What the leg feels of its spring.
+    pub hold: Hold,
+}
+
+/// A leg's spring in its strut.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Hold {
+    /// Length inside its hooks in the strut, mm.
+    pub installed: f64,
+    /// Its pull there, N.
+    pub force: f64,
+    /// N/mm.
+    pub rate: f64,
+    /// Up to this torque the leg follows its servo exactly, N mm.
+    pub preload: f64,
+    /// Beyond it the leg lags by a degree for each, N mm/deg.
+    pub per_degree: f64,
+    /// How far it may lag until the slot ends, deg.
+    pub way: f64,
+    /// What dry friction of its pad asks of a leg, N mm.
+    pub friction: f64,
+}
+
+impl Hold {
+    /// Of the robot's first leg; all are alike.
+    #[must_use]
+    pub fn of(assembly: &Assembly) -> Self {
+        let robot = assembly.robot();
+        let parts = robot.parts();
+        let radius = parts.anchor[0];
+        let coil: Coil = parts.spring;
+        // Both hooks lie around the far sides of their screws.
+        let installed = assembly.layout().legs[0].strut_length + parts.screw.diameter;
+        let force = coil.force(installed);
+        let ground = robot.ground();
+        Self {
+            installed,
+            force,
+            rate: coil.rate(),
+            preload: force * radius,
+            per_degree: (coil.rate() * radius * radius).to_radians(),
+            way: (crate::legs::SLOT / radius).to_degrees(),
+            friction: ground.grip() * ground.feet.reach,
+        }
+    }
+
+    /// As robot.toml has it under [leg].
+    #[must_use]
+    pub fn spring(&self) -> Spring {
+        Spring {
+            rate: self.per_degree,
+            preload: self.preload,
+        }
+    }
+}
+
+/// A name for what is not printed, and its mass in g.
+fn bought(body: &Body, assembly: &Assembly, hold: &Hold) -> (String, f64) {
+    let parts = assembly.robot().parts();
+    let diameter = parts.screw.diameter;
+    match body.kind {
+        Kind::Printed => (String::new(), 0.0),
+        Kind::Servo => ("servo SG-90 with its horn and screws".to_owned(), SERVO),
+        Kind::Horn => (String::new(), HORN),
+        Kind::Screw(length) => (
+            format!("screw M{diameter} x {length}, button head (ISO 7380)"),
+            SCREW_HEAD + SCREW_MM * length,
+        ),
+        Kind::ServoScrew => (String::new(), SERVO_SCREW),
+        Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
+        Kind::Standoff(length) => (
+            format!("standoff M{diameter}, {length} mm, thread in both ends"),
+            STANDOFF_MM * length,
+        ),
+        Kind::Spring => {
+            let Coil {
+                wire,
+                outer,
+                length,
+            } = parts.spring;
+            let volume = coil_volume(&parts.spring);
+            (
+                format!(
+                    "tension spring, wire {wire} mm, coil {outer} mm, {length} mm inside its hooks, {:.1} N at {:.1} mm",
+                    hold.force, hold.installed
+                ),
+                STEEL * volume,
+            )
+        }
+        Kind::Board => ("Arduino UNO".to_owned(), BOARD),
+        Kind::Battery => {
+            let [x, y, z] = parts.battery;
+            (
+                format!("battery, two lithium cells, at most {x} x {y} x {z} mm"),
+                BATTERY * x * y * z,
+            )
+        }
+    }
+}
+
+/// The wire of a spring, mm^3: its coils and one more for the hooks.
+fn coil_volume(coil: &Coil) -> f64 {
+    use std::f64::consts::PI;
+    (coil.coils() + 3.0) * PI * coil.mean() * PI * coil.wire * coil.wire / 4.0
+}
+
+impl Bill {
+    /// The bill of a robot, whose mass centre is taken at a pose.
+    #[must_use]
+    pub fn of(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
+        let hold = Hold::of(assembly);
+        let mut list: BTreeMap<String, (usize, f64)> = BTreeMap::new();
+        let (mut grams, mut moment) = (0.0, [0.0; 3]);
+        for body in assembly.bodies() {
+            let (volume, middle) = middle(&body.prisms);
+            let mass = match body.kind {
+                Kind::Printed => PRINTED * volume,
+                _ => {
+                    let (what, mass) = bought(body, assembly, &hold);
+                    if !what.is_empty() {
+                        let known = list.entry(what).or_insert((0, mass));
+                        known.0 += 1;
+                    }
+                    mass
+                }
+            };
+            let at = assembly
+                .place(body.mount, pose)
+                .map(Vector::new(middle[0], middle[1]));
+            grams += mass;
+            for (sum, part) in moment.iter_mut().zip([at.y, -at.x, middle[2]]) {
+                *sum += mass * part;
+            }
+        }
+        let printed = parts.iter().map(|part| Item {
+            count: part.count(),
+            what: part.name.clone(),
+            grams: PRINTED * part.volume(),
+        });
+        let bought = list
+            .into_iter()
+            .map(|(what, (count, grams))| Item { count, what, grams });
+        let more = [
+            (1, "converter to 5 V, 3 A, for the servos"),
+            (1, "capacitor 1000 uF, 10 V, across their supply"),
+            (
+                8,
+                "small self-tapping screws, 1.6 to 2 mm thick, 5 mm long, for the horns",
+            ),
+            (1, "low-voltage alarm for the battery"),
+        ];
+        Self {
+            printed: printed.collect(),
+            bought: bought
+                .chain(more.map(|(count, what)| Item {
+                    count,
+                    what: what.to_owned(),
+                    grams: 0.0,
+                }))
+                .collect(),
+            grams,
+            centre: moment.map(|sum| sum / grams),
+            hold,
+        }
+    }
+
+    /// Screws, nuts and so on whose name begins so, in all.
+    #[must_use]
+    pub fn count(&self, what: &str) -> usize {
+        let alike = self
+            .bought
+            .iter()
+            .filter(|item| item.what.starts_with(what));
+        alike.map(|item| item.count).sum()
+    }
+}
+
+/// Volume and middle of a body in its own frame, mm^3 and mm.
+fn middle(prisms: &[Prism]) -> (f64, [f64; 3]) {
+    let (mut volume, mut sum) = (0.0, [0.0; 3]);
+    for prism in prisms {
+        let outline = Outline::of(prism);
+        let high = prism.z[1] - prism.z[0];
+        let (area, moment) = (outline.area(), outline.moment());
+        volume += area * high;
+        sum[0] += moment.x * high;
+        sum[1] += moment.y * high;
+        sum[2] += area * high * (prism.z[0] + prism.z[1]) / 2.0;
+    }
+    (volume, sum.map(|part| part / volume))
+}
+
+impl fmt::Display for Bill {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "To print:\n")?;
+        writeln!(f, "| pieces | part | g each |\n|---|---|---|")?;
+        for Item { count, what, grams } in &self.printed {
+            writeln!(f, "| {count} | {what} | {grams:.1} |")?;
+        }
+        writeln!(f, "\nTo buy:\n")?;
+        writeln!(f, "| pieces | what |\n|---|---|")?;
+        for Item { count, what, .. } in &self.bought {
+            writeln!(f, "| {count} | {what} |")?;
+        }
+        let [ahead, left, up] = self.centre.map(|part| part + 0.0);
+        writeln!(
+            f,
+            "\nIn all about {:.0} g without wires; the mass centre is {ahead:.1} mm ahead of, {left:.1} mm \
+             left of and {up:.1} mm above the middle of the plate's top.\n",
+            self.grams
+        )?;
+        let Hold {
+            installed,
+            force,
+            rate,
+            preload,
+            per_degree,
+            way,
+            friction,
+        } = self.hold;
+        writeln!(
+            f,
+            "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm). \
+             Up to {preload:.0} N mm at the leg the foot follows its servo without any lag; the pad's friction asks \
+             for about {friction:.0} N mm. Beyond, it lags a degree for each {per_degree:.1} N mm, at most {way:.0} deg. {}",
+            if preload < 0.7 * STALL {
+                format!(
+                    "An SG-90 stalls at {STALL:.0} N mm, so a foot that is held spares its servo."
+                )
+            } else {
+                format!(
+                    "An SG-90 stalls at {STALL:.0} N mm, before the spring yields much: it spares no servo."
+                )
+            }
+        )?;
+        if preload < friction {
+            writeln!(
+                f,
+                "That is less than the friction: the legs will lag. Take a stronger spring."
+            )?;
+        }
+        writeln!(
+            f,
+            "\nIn robot.toml:\n\n```toml\n[leg]\nspring = {per_degree:.2}\npreload = {preload:.1}\n\n\
+             [body]\nmass = {:.0}.0\ncentre = [{ahead:.1}, {left:.1}]\n```",
+            self.grams
+        )
+    }
+}

@@ -1,0 +1,320 @@
+//! The robot, or some of its bodies, in perspective.
+//!
+//! Everything is a flat layer seen from above, so what hides what is known without a
+//! search: the space is cut at every height at which something begins or ends, and the
+//! slices are drawn from below to above. In a slice, walls are drawn from far to near
+//! and then the tops: a wall never rises above its own slice, so it hides no top of it.
+
+use std::fmt::Write;
+
+use lizard_kinematics::{Solution, Vector, sin_cos};
+
+use crate::assembly::Assembly;
+use crate::body::{Body, Kind, Mount};
+use crate::outline::{Loop, Outline};
+
+/// A body to be drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn<'a> {
+    /// Which.
+    pub body: &'a Body,
+    /// How far it is lifted off its place, mm.
+    pub lift: f64,
+    /// Whether it is drawn in grey, because the picture is about others.
+    pub pale: bool,
+}
+
+/// Where it is seen from.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Where the eye is, seen from above: deg counter-clockwise from the robot's right.
+    pub azimuth: f64,
+    /// How high it is, deg above the floor.
+    pub elevation: f64,
+    /// Width of the picture, pixels.
+    pub width: f64,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            azimuth: 240.0,
+            elevation: 38.0,
+            width: 900.0,
+        }
+    }
+}
+
+/// From the middle to the eye, mm.
+const AWAY: f64 = 900.0;
+/// Around the robot, pixels.
+const MARGIN: f64 = 12.0;
+/// Largest angle of a chord, rad.
+const CHORD: f64 = 0.42;
+
+/// Servos A1 to A4 and what they move: Okabe and Ito's colours and a purple of Tol's.
+const SERVO: [[f64; 3]; 4] = [
+    [0.0, 114.0, 178.0],
+    [213.0, 94.0, 0.0],
+    [0.0, 158.0, 115.0],
+    [170.0, 68.0, 153.0],
+];
+
+struct Eye {
+    right: Vector,
+    away: Vector,
+    sin: f64,
+    cos: f64,
+}
+
+impl Eye {
+    fn new(view: &View) -> Self {
+        let away = Vector::direction(view.azimuth);
+        let (sin, cos) = sin_cos(view.elevation);
+        Self {
+            right: away.left(),
+            away,
+            sin,
+            cos,
+        }
+    }
+
+    /// A point of space on the page, mm before the page's scale; y down.
+    fn page(&self, at: Vector, z: f64) -> (f64, f64) {
+        let (x, along) = (at.dot(self.right), at.dot(self.away));
+        let near = along * self.cos + z * self.sin;
+        let up = z * self.cos - along * self.sin;
+        let scale = AWAY / (AWAY - near);
+        (x * scale, -up * scale)
+    }
+
+    /// Where the eye is, from above.
+    fn at(&self) -> Vector {
+        self.away * (AWAY * self.cos)
+    }
+}
+
+/// What is drawn in a slice.
+struct Layer {
+    colour: [f64; 3],
+    /// Outer loops and holes as points.
+    loops: Vec<Vec<Vector>>,
+    z: [f64; 2],
+    /// Whether nothing of the same body lies on it.
+    tops: Vec<Vec<Vector>>,
+}
+
+/// Some bodies at a pose, as SVG.
+#[must_use]
+pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &View) -> String {
+    let eye = Eye::new(view);
+    let layers = layers(assembly, drawn, pose);
+    let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+    let mut ink = Ink::default();
+    for slice in heights.windows(2) {
+        let [low, high] = [slice[0], slice[1]];
+        let present = || {
+            layers
+                .iter()
+                .filter(|layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6)
+        };
+        let mut walls: Vec<(f64, Vec<(f64, f64)>, [f64; 3])> = Vec::new();
+        for layer in present() {
+            for line in &layer.loops {
+                layer.walls(line, &eye, [low, high], &mut walls);
+            }
+        }
+        walls.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, points, colour) in walls {
+            ink.polygon(&[points], colour, false);
+        }
+        for layer in present() {
+            if layer.z[1] < high + 1e-6 && !layer.tops.is_empty() {
+                let loops: Vec<Vec<_>> = layer
+                    .tops
+                    .iter()
+                    .map(|line| line.iter().map(|at| eye.page(*at, high)).collect())
+                    .collect();
+                ink.polygon(&loops, layer.colour, true);
+            }
+        }
+    }
+    ink.finish(view.width)
+}
+
+fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
+    let mut layers = Vec::new();
+    for Drawn { body, lift, pale } in drawn {
+        let place = assembly.place(body.mount, pose);
+        let colour = colour(body, *pale);
+        for prism in &body.prisms {
+            let outline = Outline::of(prism);
+            let loops: Vec<Vec<Vector>> = outline
+                .loops()
+                .map(|line| points(line).into_iter().map(|at| place.map(at)).collect())
+                .collect();
+            layers.push(Layer {
+                colour,
+                tops: loops.clone(),
+                loops,
+                z: prism.z.map(|z| z + lift),
+            });
+        }
+    }
+    layers
+}
+
+/// A loop as points.
+fn points(line: &Loop) -> Vec<Vector> {
+    let mut points = Vec::new();
+    for (side, to) in line.ends() {
+        points.push(side.from);
+        if let Some((centre, _)) = side.arc(to) {
+            let whole = 4.0 * side.bulge.atan();
+            let count = (whole.abs() / CHORD).ceil() as u32;
+            let arm = side.from - centre;
+            for i in 1..count {
+                let (sin, cos) = sin_cos((whole * f64::from(i) / f64::from(count)).to_degrees());
+                points.push(centre + arm * cos + arm.left() * sin);
+            }
+        }
+    }
+    points
+}
+
+impl Layer {
+    /// The walls of a loop that the eye sees; neighbours of one shade are one.
+    fn walls(
+        &self,
+        line: &[Vector],
+        eye: &Eye,
+        [low, high]: [f64; 2],
+        walls: &mut Vec<(f64, Vec<(f64, f64)>, [f64; 3])>,
+    ) {
+        let n = line.len();
+        let shade = |i: usize| {
+            let (a, b) = (line[i], line[(i + 1) % n]);
+            let out = (b - a).right();
+            let seen = out.dot(eye.at() - a) > 0.0;
+            let long = out.length();
+            // The light comes from the eye's left.
+            let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * long.max(1e-9));
+            seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
+        };
+        let mut i = 0;
+        while i < n {
+            let Some(light) = shade(i) else {
+                i += 1;
+                continue;
+            };
+            let mut chain = vec![line[i]];
+            while i < n && shade(i) == Some(light) {
+                chain.push(line[(i + 1) % n]);
+                i += 1;
+            }
+            let far = chain
+                .iter()
+                .map(|at| (eye.at() - *at).length())
+                .sum::<f64>()
+                / chain.len() as f64;
+            let mut points: Vec<_> = chain.iter().map(|at| eye.page(*at, low)).collect();
+            points.extend(chain.iter().rev().map(|at| eye.page(*at, high)));
+            let dark = 0.5 + 0.09 * f64::from(light);
+            walls.push((far, points, self.colour.map(|part| part * dark)));
+        }
+    }
+}
+
+/// The colour of a body.
+fn colour(body: &Body, pale: bool) -> [f64; 3] {
+    if pale {
+        return [222.0, 222.0, 218.0];
+    }
+    let servo = match body.mount {
+        Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => None,
+        Mount::Link(i)
+        | Mount::Crank(i)
+        | Mount::Follower(i)
+        | Mount::Foot(i)
+        | Mount::Strut(i)
+        | Mount::Coupler(i) => Some(i),
+    };
+    match (body.kind, servo) {
+        (Kind::Printed, Some(servo)) => SERVO[servo].map(|part| 0.72 * part + 70.0),
+        (Kind::Printed, None) if body.mount == Mount::Chassis => [236.0, 224.0, 190.0],
+        (Kind::Printed, None) => [240.0, 228.0, 66.0],
+        (Kind::Servo, _) => [70.0, 110.0, 200.0],
+        (Kind::Horn, _) => [250.0, 250.0, 250.0],
+        (Kind::Board, _) => [20.0, 130.0, 135.0],
+        (Kind::Battery, _) => [120.0, 120.0, 130.0],
+        _ => [170.0, 170.0, 176.0],
+    }
+}
+
+#[derive(Default)]
+struct Ink {
+    shapes: Vec<(String, Vec<Vec<(f64, f64)>>, bool)>,
+}
+
+impl Ink {
+    fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], edge: bool) {
+        let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
+        self.shapes
+            .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), edge));
+    }
+
+    fn finish(self, width: f64) -> String {
+        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
+        for &(x, y) in self.shapes.iter().flat_map(|shape| &shape.1).flatten() {
+            low = (low.0.min(x), low.1.min(y));
+            high = (high.0.max(x), high.1.max(y));
+        }
+        let scale = (width - 2.0 * MARGIN) / (high.0 - low.0);
+        let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
+        let mut text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             width=\"{width}\" height=\"{height}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
+             <g fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n"
+        );
+        for (colour, loops, edge) in self.shapes {
+            let mut data = String::new();
+            for line in loops {
+                for (number, (x, y)) in line.into_iter().enumerate() {
+                    let _ = write!(
+                        data,
+                        "{}{:.1} {:.1}",
+                        if number == 0 { "M" } else { "L" },
+                        (x - low.0) * scale + MARGIN,
+                        (y - low.1) * scale + MARGIN
+                    );
+                }
+                data.push('Z');
+            }
+            // A wall's own colour as a hair line closes the seams between walls.
+            let (stroke, thick) = if edge {
+                ("#333", 0.5)
+            } else {
+                (colour.as_str(), 0.4)
+            };
+            let _ = writeln!(
+                text,
+                "<path fill=\"{colour}\" stroke=\"{stroke}\" stroke-width=\"{thick}\" d=\"{data}\"/>"
+            );
+        }
+        text.push_str("</g>\n</svg>\n");
+        text
+    }
+}
+
+/// All bodies in their places.
+#[must_use]
+pub fn whole(assembly: &Assembly) -> Vec<Drawn<'_>> {
+    let draw = |body| Drawn {
+        body,
+        lift: 0.0,
+        pale: false,
+    };
+    assembly.bodies().iter().map(draw).collect()
+}

@@ -1,0 +1,138 @@
+//! What is in the files: lengths from hole to hole, and the same bytes every time.
+
+use lizard_parts::{Assembly, Body, Loop, Outline, part_files, sheets};
+use lizard_robot::Robot;
+
+fn assembly(name: &str) -> Assembly {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Assembly::new(&Robot::load(path).expect(name))
+}
+
+/// The middles of the holes of a body through which an M3 screw turns, from above.
+fn holes(body: &Body) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    for prism in &body.prisms {
+        for (middle, radius) in Outline::of(prism).loops().filter_map(Loop::circle) {
+            let known = |at: &(f64, f64)| (at.0 - middle.x).hypot(at.1 - middle.y) < 1e-6;
+            if (radius - 1.6).abs() < 1e-6 && !found.iter().any(known) {
+                found.push((middle.x, middle.y));
+            }
+        }
+    }
+    found
+}
+
+/// Whether some two holes of a body are this far apart.
+#[track_caller]
+fn spans(assembly: &Assembly, body: &str, mm: f64) {
+    let body = assembly.body(body).expect(body);
+    let holes = holes(body);
+    let near = holes.iter().any(|a| {
+        holes
+            .iter()
+            .any(|b| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs() < 1e-9)
+    });
+    assert!(near, "{}: no two of {holes:?} are {mm} mm apart", body.name);
+}
+
+#[test]
+fn from_hole_to_hole_is_the_length_of_the_link() {
+    for name in ["paper", "large", "unequal"] {
+        let assembly = assembly(name);
+        let l = assembly.robot().lizard().links;
+        let leg = assembly.robot().lizard().leg;
+        for (coupler, length) in [("A1", l.l2), ("A2", l.l3), ("A3", l.l8), ("A4", l.l7)] {
+            spans(&assembly, &format!("coupler {coupler}"), length);
+        }
+        // Crank and arm stand at a right angle on the shaft.
+        for (link, crank, arm) in [
+            ("A1", l.l1, l.l14),
+            ("A2", l.l4, l.l19),
+            ("A3", l.l9, l.l16),
+            ("A4", l.l6, l.l11),
+        ] {
+            let body = format!("link {link}");
+            spans(&assembly, &body, crank.hypot(arm));
+            let holes = holes(assembly.body(&body).expect("a link"));
+            for length in [crank, arm] {
+                let from_shaft = |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
+                assert!(holes.iter().any(from_shaft), "{name} {link} {length}");
+            }
+        }
+        for of in ["LF", "RF", "RH", "LH"] {
+            spans(&assembly, &format!("crank {of}"), leg.crank);
+            spans(&assembly, &format!("follower {of}"), leg.follower);
+            spans(&assembly, &format!("leg coupler {of}"), leg.coupler);
+            spans(&assembly, "plate", leg.ground);
+        }
+    }
+}
+
+#[test]
+fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
+    let assembly = assembly("unequal");
+    let plate = assembly.body("plate").expect("a plate");
+    let holes = holes(plate);
+    for leg in &assembly.layout().legs {
+        for pivot in [leg.driven, leg.idle] {
+            let at = |hole: &(f64, f64)| (hole.0 - pivot.x).hypot(hole.1 - pivot.y) < 1e-9;
+            assert!(holes.iter().any(at), "{pivot:?}");
+        }
+    }
+}
+
+#[test]
+fn the_foot_stands_where_the_contact_model_has_it() {
+    for name in ["paper", "large", "unequal"] {
+        let assembly = assembly(name);
+        let robot = assembly.robot();
+        for pose in assembly.poses(7) {
+            for servo in 0..4 {
+                let angles: [f64; 4] = pose.pose.into();
+                let foot = robot.leg(servo, angles[servo]).foot();
+                let mount = lizard_parts::Mount::Foot(servo);
+                let place = assembly.place(mount, &pose);
+                let built = place.map(assembly.layout().legs[servo].foot);
+                assert!((built - foot).length() < 1e-9, "{name} {servo}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_file_is_the_same_on_every_run() {
+    let files = || -> Vec<_> {
+        let assembly = assembly("unequal");
+        let parts = assembly.parts();
+        let made = parts
+            .iter()
+            .map(|part| part_files(part, 0.2).expect("files"));
+        made.flatten().collect()
+    };
+    let (first, second) = (files(), files());
+    assert!(first.len() > 50);
+    assert!(first == second);
+    let mut paths: Vec<_> = first.iter().map(|file| &file.path).collect();
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), first.len(), "two files have one path");
+}
+
+#[test]
+fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
+    let assembly = assembly("paper");
+    let parts = assembly.parts();
+    let link = parts.iter().find(|part| part.name == "link A1 A3");
+    let sheets = sheets(link.expect("a link"));
+    assert_eq!(sheets.len(), 1);
+    let layers: Vec<_> = sheets[0]
+        .layers
+        .iter()
+        .map(|layer| (layer.name.as_str(), layer.loops.len()))
+        .collect();
+    // Outline, crank, arm, anchor, hub and two small screws; the horn; the head.
+    assert_eq!(
+        layers,
+        [("CUT", 7), ("POCKET_2.20_TOP", 1), ("POCKET_1.90_TOP", 1)]
+    );
+}
