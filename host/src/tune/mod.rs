@@ -213,7 +213,10 @@ mod tests {
         let robot = Robot::parse(&format!("{PAPER}\n{printed}")).expect("it builds");
         let gait = robot.gait("tuned").expect("the gait");
         let forward = robot.predict(gait).forward.expect("decided");
-        assert!((forward / gait.period() - found.predicted).abs() < 0.01, "{forward}");
+        assert!(
+            (forward / gait.period() - found.predicted).abs() < 0.01,
+            "{forward}"
+        );
         assert!(
             include_str!("../../../docs/twin.md").contains(&format!("```text\n{printed}```")),
             "docs/twin.md does not quote\n{printed}"
