@@ -27,11 +27,11 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
+.PHONY: help fit .fit parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
-	@echo "firmware, sim, test, bench, prove and flash take ROBOT=robots/x.toml; without it, robot.toml"
+	@echo "firmware, sim, test, bench, prove, fit and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
@@ -55,6 +55,8 @@ cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)
 bench: ## measured budgets, beside the Arduino Servo library's; speed beside numpy's
 	$(call prepared,.bench)
+fit: ## proof that no two parts meet at any pose that the guard accepts
+	$(call prepared,.fit)
 prove: ## the guard against floating point at every pose there is; about a minute
 	$(call prepared,.prove)
 physics: ## the contact model against the rigid-body engine rapier
@@ -145,6 +147,9 @@ TESTS ?= --workspace
 
 .prove: .cli
 	@$(LIZARD) prove $(FOR_ROBOT)
+
+.fit: .cli
+	@$(LIZARD) fit $(FOR_ROBOT)
 
 # Apart from the other tests, because rapier takes minutes to compile.
 .physics:

@@ -14,7 +14,7 @@ const CONSOLE: [&str; 6] = [
     "record",
     "replay",
 ];
-const PARTS: [&str; 1] = ["parts"];
+const PARTS: [&str; 2] = ["parts", "fit"];
 const PAPER: [&str; 10] = [
     "solve",
     "inverse",

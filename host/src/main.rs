@@ -77,6 +77,8 @@ enum Command {
     Draw(draw::Args),
     #[cfg(feature = "parts")]
     Parts(parts::Args),
+    #[cfg(feature = "parts")]
+    Fit(parts::fit::Args),
     Spring(spring::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
@@ -135,6 +137,8 @@ fn main() -> ExitCode {
         Command::Draw(args) => draw::run(args),
         #[cfg(feature = "parts")]
         Command::Parts(args) => parts::run(args),
+        #[cfg(feature = "parts")]
+        Command::Fit(args) => parts::fit::run(args),
         Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),

@@ -5,6 +5,7 @@ use crate::five_bar::FiveBarPose;
 use crate::leg;
 use crate::lizard::Solution;
 use crate::margins::Check;
+use crate::real::Real;
 
 impl Solution {
     /// The value of every condition of a safe pose: margins, strokes, crank tips
@@ -20,11 +21,11 @@ impl Solution {
     }
 }
 
-impl FiveBarPose {
+impl<T: Real> FiveBarPose<T> {
     /// The value of every condition of a safe pose that this end alone decides:
     /// type-2, type-1 and leg margins, the left crank's first, and the crank tips
     /// across.
-    pub fn conditions(&self, end: End) -> [(Check, f64); 6] {
+    pub fn conditions(&self, end: End) -> [(Check, T); 6] {
         let of_end = |[head, tail]: [Check; 2]| match end {
             End::Head => head,
             End::Tail => tail,

@@ -1,10 +1,11 @@
 //! The whole robot: every body, and where each is at a pose.
 
-use lizard_kinematics::{End, Side, Solution, Vector};
+use lizard_kinematics::{End, Real, Side, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::body::{Body, Mount, at_end};
 use crate::builder::Builder;
+use crate::joints::Joints;
 use crate::layout::Layout;
 use crate::place::Place;
 use crate::stack::Stack;
@@ -67,6 +68,13 @@ impl Assembly {
         self.bodies.iter().find(|body| body.name == name)
     }
 
+    /// The same robot with bodies changed: a part of one's own, or a mistake on purpose.
+    #[must_use]
+    pub fn altered(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
+        change(&mut self.bodies);
+        self
+    }
+
     /// Whether two bodies may touch: they move together, or are made to meet.
     #[must_use]
     pub fn meet(&self, a: &Body, b: &Body) -> bool {
@@ -76,48 +84,59 @@ impl Assembly {
     /// Where a mount's frame is at a pose, legs without lag.
     #[must_use]
     pub fn place(&self, mount: Mount, pose: &Solution) -> Place {
-        let angles: [f64; 4] = pose.pose.into();
-        let link = |servo: usize| Place {
-            at: self.layout.shafts[servo],
-            turn: Vector::direction(angles[servo]),
+        self.place_on(mount, pose)
+    }
+
+    /// The same for joints in any kind of number.
+    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Place<T> {
+        let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
+        let turned = |servo: usize, at: Vector| Place {
+            at: vector(at),
+            turn: joints.crank(servo),
         };
-        let crank = |servo: usize, at: Vector| Place { at, ..link(servo) };
+        let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
         match mount {
-            Mount::Chassis => Place::CHASSIS,
+            Mount::Chassis => Place {
+                at: vector(Place::CHASSIS.at),
+                turn: vector(Place::CHASSIS.turn),
+            },
             Mount::Link(servo) => link(servo),
-            Mount::Crank(servo) => crank(servo, self.layout.legs[servo].driven),
-            Mount::Follower(servo) => crank(servo, self.layout.legs[servo].idle),
+            Mount::Crank(servo) => turned(servo, self.layout.legs[servo].driven),
+            Mount::Follower(servo) => turned(servo, self.layout.legs[servo].idle),
             Mount::Foot(servo) => {
                 let leg = &self.layout.legs[servo];
                 Place {
-                    at: leg.driven + self.robot.leg(servo, angles[servo]).reach,
-                    turn: leg.along,
+                    at: turned(servo, leg.driven).map(leg.joint),
+                    turn: vector(leg.along),
                 }
             }
             Mount::Strut(servo) => {
                 let leg = &self.layout.legs[servo];
                 Place {
                     at: link(servo).map(leg.anchor),
-                    turn: leg.strut,
+                    turn: vector(leg.strut),
                 }
             }
             Mount::Coupler(servo) => {
                 let (end, hand) = at_end(servo);
+                let bars = joints.end(end);
+                let tip = [bars.left_tip, bars.right_tip][hand];
+                let along = [bars.left_coupler, bars.right_coupler][hand];
                 Place {
-                    at: pose.crank_tips()[servo],
-                    turn: pose.couplers(end)[hand],
+                    at: self.robot.lizard().to_chassis(end, tip),
+                    turn: end.mirror(along),
                 }
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
-                let slider = pose.side(side);
-                let rear = self.layout.shafts[side.servos()[1]];
+                let slider = joints.side(side);
+                let rear = vector(self.layout.shafts[side.servos()[1]]);
                 let tip = match mount {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,
                 };
                 Place {
                     at: rear + tip,
-                    turn: slider.span * (1.0 / slider.d),
+                    turn: slider.span.scaled(T::of(1.0) / slider.d),
                 }
             }
         }

@@ -68,6 +68,27 @@ pub enum Mount {
     Rod(Side),
 }
 
+impl Mount {
+    /// The servos that decide where it is, in servo order.
+    #[must_use]
+    pub fn servos(self) -> Vec<usize> {
+        match self {
+            Self::Chassis => Vec::new(),
+            Self::Link(servo)
+            | Self::Crank(servo)
+            | Self::Follower(servo)
+            | Self::Foot(servo)
+            | Self::Strut(servo) => vec![servo],
+            Self::Coupler(servo) => sorted(End::of_servo(servo).servos()),
+            Self::Sleeve(side) | Self::Rod(side) => sorted(side.servos()),
+        }
+    }
+}
+
+fn sorted([a, b]: [usize; 2]) -> Vec<usize> {
+    vec![a.min(b), a.max(b)]
+}
+
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {

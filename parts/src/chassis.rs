@@ -15,6 +15,8 @@ pub const STANDOFFS: [f64; 2] = [8.0, 38.0];
 const STANDOFF: f64 = 3.2;
 /// Width of the plate beside a servo's case, mm.
 const BESIDE_SERVO: f64 = 5.0;
+/// Radius of a servo's spline, mm.
+pub const SPLINE: f64 = 2.4;
 /// Radius of the hole that a servo's own screw cuts its thread into, mm.
 const PILOT: f64 = 0.8;
 
@@ -162,7 +164,7 @@ fn case(builder: &mut Builder, servo: usize) {
         layer(vec![flange], body.flange_height, over),
         layer(vec![case], over, body.height),
         layer(gears, body.height, body.boss),
-        layer(vec![Shape::disc(shaft, 2.4)], body.boss, body.boss + 3.0),
+        layer(vec![Shape::disc(shaft, SPLINE)], body.boss, body.boss + 3.0),
     ];
     builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.meeting(&format!("horn {name}"));

@@ -21,6 +21,8 @@ pub struct LegLayout {
     pub along: Vector,
     /// From the servo's angle to the direction of the leg's crank, deg.
     pub set: f64,
+    /// The crank's joint with the coupler, in the crank's frame, mm.
+    pub joint: Vector,
     /// The foot in the coupler's frame, mm.
     pub foot: Vector,
     /// From the shaft to the driven pivot, length one.
@@ -92,13 +94,15 @@ fn leg(robot: &Robot, servo: usize, shaft: Vector, hand: f64) -> LegLayout {
     };
     let along = (idle - driven) * (1.0 / (idle - driven).length());
     let foot = place.hip - driven;
+    let set = place.reach.angle() - neutral;
     let strut = driven - shaft;
     let [radius, angle] = parts.anchor;
     LegLayout {
         driven,
         idle,
         along,
-        set: place.reach.angle() - neutral,
+        set,
+        joint: Vector::direction(set) * robot.lizard().leg.crank,
         foot: Vector::new(foot.dot(along), along.cross(foot)),
         strut: strut * (1.0 / strut.length()),
         strut_length: strut.length(),

@@ -5,7 +5,7 @@
 //! so the leg follows its servo exactly until the foot is held with more than the
 //! spring's pull; then the screw runs along the slot.
 
-use lizard_kinematics::{Vector, sin_cos};
+use lizard_kinematics::Vector;
 
 use crate::assembly::names;
 use crate::body::{Kind, Mount, Prism};
@@ -34,8 +34,7 @@ pub fn add(builder: &mut Builder) {
 
 /// The leg's crank from its pivot to its joint, in its own frame.
 fn to_joint(builder: &Builder, servo: usize) -> Vector {
-    let (sin, cos) = sin_cos(builder.layout.legs[servo].set);
-    Vector::new(cos, sin) * builder.robot.lizard().leg.crank
+    builder.layout.legs[servo].joint
 }
 
 fn crank(builder: &mut Builder, servo: usize) {

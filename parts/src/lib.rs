@@ -32,6 +32,8 @@
 //! - [`Assembly::meet`] says which pairs touch by design: what moves together, and what
 //!   names the other in [`Body::meets`], as a screw does with what it passes through, the
 //!   rod with its sleeve, the strut with the leg's crank that its spring pulls at.
+//! - [`Assembly::prove`] proves how near any two bodies come at any pose that the guard
+//!   accepts; [`Assembly::nearest`] only looks at some.
 //! - [`Layout`] has pivots and anchors seen from above, for drawings.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -48,6 +50,7 @@ mod dxf;
 mod ends;
 mod files;
 mod guide;
+mod joints;
 mod layout;
 mod legs;
 mod links;
@@ -56,6 +59,7 @@ mod outline;
 mod part;
 mod picture;
 mod place;
+mod proof;
 mod shape;
 mod sheet;
 mod sliders;
@@ -80,6 +84,7 @@ pub use outline::{Loop, Outline, Side};
 pub use part::Part;
 pub use picture::{Drawn, View, picture, whole};
 pub use place::Place;
+pub use proof::{Clash, ENOUGH, LEAST, Near, Proof};
 pub use shape::Shape;
 pub use sheet::{Layer, Sheet, extent, sheets};
 pub use sliders::SliderLengths;

@@ -9,6 +9,7 @@ use lizard_robot::Horn;
 use crate::assembly::names;
 use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
+use crate::chassis::SPLINE;
 use crate::shape::Shape;
 use crate::stack::PLAY;
 
@@ -54,14 +55,15 @@ fn horn(builder: &mut Builder, servo: usize) {
     let (name, _) = names(servo);
     let horn = builder.parts.horn;
     let [low, _] = builder.stack.horn;
+    let spline = Shape::disc(Vector::default(), SPLINE);
     let hub = Prism {
         add: vec![Shape::disc(Vector::default(), horn.hub / 2.0)],
-        cut: Vec::new(),
+        cut: vec![spline.clone()],
         z: [low + horn.thickness - horn.height, low],
     };
     let arm = Prism {
         add: arm(&horn, 0.0),
-        cut: Vec::new(),
+        cut: vec![spline],
         z: [low, low + horn.thickness],
     };
     builder.body(

@@ -1,14 +1,14 @@
 //! Where a body is: its origin, and how far it is turned about an upright axis.
 
-use lizard_kinematics::Vector;
+use lizard_kinematics::{Real, Vector};
 
-/// The place of a body's own frame in the chassis frame.
+/// The place of a body's own frame in the chassis frame; or in another body's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct Place<T = f64> {
     /// The frame's origin, mm.
-    pub at: Vector,
+    pub at: Vector<T>,
     /// The direction of its x axis, length one.
-    pub turn: Vector,
+    pub turn: Vector<T>,
 }
 
 impl Place {
@@ -18,16 +18,28 @@ impl Place {
         turn: Vector::new(1.0, 0.0),
     };
 
-    /// A point of the body's frame in the chassis frame.
-    #[must_use]
-    pub fn map(&self, point: Vector) -> Vector {
-        self.at + self.turn * point.x + self.turn.left() * point.y
-    }
-
     /// A point of the chassis frame in the body's frame.
     #[must_use]
     pub fn unmap(&self, point: Vector) -> Vector {
         let from = point - self.at;
         Vector::new(from.dot(self.turn), self.turn.cross(from))
+    }
+}
+
+impl<T: Real> Place<T> {
+    /// A point of the body's frame in the chassis frame.
+    #[must_use]
+    pub fn map(&self, point: Vector) -> Vector<T> {
+        self.at + self.turn * point.x + self.turn.left() * point.y
+    }
+
+    /// This place as it is in another body's frame.
+    #[must_use]
+    pub fn seen_from(&self, frame: &Self) -> Self {
+        let of = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
+        Self {
+            at: of(self.at - frame.at),
+            turn: of(self.turn),
+        }
     }
 }

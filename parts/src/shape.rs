@@ -111,8 +111,9 @@ impl Shape {
         }
     }
 
-    /// The distance to another shape, mm: 0 where they touch, and below where they
-    /// overlap, down to less both radii where even the polygons do.
+    /// The distance to another shape, mm: 0 where they touch. Where they overlap, minus
+    /// the shortest way that takes them apart. No point that moves by a length changes
+    /// it by more than that length.
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let between = if self.holds(other.points[0]) || other.holds(self.points[0]) {
@@ -126,7 +127,65 @@ impl Shape {
             }
             least
         };
+        let between = if between == 0.0 {
+            let deep = self.beyond(other).max(other.beyond(self));
+            // Two points have no sides.
+            if deep.is_finite() { deep.min(0.0) } else { 0.0 }
+        } else {
+            between
+        };
         between - self.radius - other.radius
+    }
+
+    /// How far this shape is within another, mm: below 0 where it stands out. If each
+    /// point may have `strayed` by so much along x and y, how far at the least.
+    #[must_use]
+    pub fn within(&self, hole: &Self, strayed: Vector) -> f64 {
+        let sharp = Self {
+            points: hole.points.clone(),
+            radius: 0.0,
+        };
+        let air = hole.radius - self.radius;
+        let out = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp);
+        let outermost = self
+            .points
+            .iter()
+            .map(out)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let anyhow = air - outermost - strayed.length();
+        // Nearer to the truth where a long hole holds what runs along it.
+        let lines = hole.lines().flat_map(|(from, out)| {
+            let more = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
+            self.points
+                .iter()
+                .map(move |&point| out.dot(point - from) + more)
+        });
+        let outermost = lines.fold(f64::NEG_INFINITY, f64::max);
+        if hole.points.len() > 2 && outermost <= 0.0 {
+            anyhow.max(air - outermost)
+        } else {
+            anyhow
+        }
+    }
+
+    /// The lines along the polygon's sides: a point of each, and the way out, length
+    /// one. A disc has none.
+    fn lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
+        let n = self.points.len();
+        (0..if n > 1 { n } else { 0 }).map(move |i| {
+            let (from, to) = (self.points[i], self.points[(i + 1) % n]);
+            (from, (to - from).right() * (1.0 / (to - from).length()))
+        })
+    }
+
+    /// Of the lines along the polygon's sides: how far the other polygon is beyond the
+    /// one that it is farthest beyond; of a disc, nothing.
+    fn beyond(&self, other: &Self) -> f64 {
+        let beyond = self.lines().map(|(from, out)| {
+            let depths = other.points.iter().map(|&point| out.dot(point - from));
+            depths.fold(f64::INFINITY, f64::min)
+        });
+        beyond.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Whether the polygon holds a point.
@@ -188,11 +247,38 @@ mod tests {
     #[test]
     fn what_lies_in_a_polygon_or_crosses_it_overlaps() {
         let plate = Shape::rectangle(at(0.0, 0.0), at(10.0, 8.0), 0.0);
-        assert_eq!(plate.distance(&Shape::disc(at(1.0, 1.0), 0.5)), -0.5);
+        assert_eq!(plate.distance(&Shape::disc(at(1.0, 1.0), 0.5)), -3.5);
         let across = Shape::bar(at(-20.0, 0.0), at(20.0, 0.0), 1.0);
-        assert_eq!(plate.distance(&across), -1.0);
+        assert_eq!(plate.distance(&across), -5.0);
+        assert_eq!(across.distance(&plate), -5.0);
+        let aside = Shape::rectangle(at(9.0, 1.0), at(10.0, 8.0), 0.0);
+        assert_eq!(plate.distance(&aside), -1.0);
+        let upright = Shape::bar(at(3.0, -9.0), at(3.0, 2.0), 1.0);
+        assert_eq!(across.distance(&upright), -4.0);
+        assert_eq!(
+            Shape::disc(at(1.0, 0.0), 2.0).distance(&Shape::disc(at(1.0, 0.0), 3.0)),
+            -5.0
+        );
         assert_eq!(plate.distance(&Shape::disc(at(8.0, 0.0), 1.0)), 2.0);
         assert_eq!(plate.distance(&Shape::disc(at(8.0, 8.0), 1.0)), 4.0);
+    }
+
+    #[test]
+    fn a_pin_in_its_hole_has_the_air_that_is_left() {
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        let still = at(0.0, 0.0);
+        let slot = Shape::bar(at(0.0, 0.0), at(5.0, 0.0), 1.6);
+        let pin = |x: f64, y: f64| Shape::disc(at(x, y), 1.5).within(&slot, still);
+        near(pin(5.0, 0.0), 0.1);
+        near(pin(2.0, 0.05), 0.05);
+        near(pin(6.0, 0.0), -0.9);
+        let bore = Shape::rectangle(at(0.0, 0.0), at(50.0, 6.4), 0.0);
+        let rod = Shape::rectangle(at(1.0, 0.0), at(40.0, 6.0), 1.0);
+        near(rod.within(&bore, still), 0.2);
+        // A way along the bore costs nothing until the end, one across it all.
+        near(rod.within(&bore, at(3.0, 0.1)), 0.1);
+        near(rod.within(&bore, at(3.9, 0.0)), 0.1);
+        assert!(bore.within(&rod, still) < 0.0);
     }
 
     #[test]

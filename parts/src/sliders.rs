@@ -63,8 +63,12 @@ fn sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer), 0.8);
     // The sleeve's corners must not stand out beyond the eye's arm.
     let arm = Shape::bar(pin, Vector::new(half, lengths.beside), half - 0.02);
-    // The bore is open at both ends.
-    let open = Shape::rectangle(middle, Vector::new(lengths.sleeve + 4.0 * half, bore), 0.0);
+    // The bore is open at both ends, for as far as the rod reaches.
+    let open = Shape::rectangle(
+        middle,
+        Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore),
+        0.0,
+    );
     let eye = vec![Shape::disc(pin, half), arm, case.clone()];
     let hole = builder.hole(pin);
     let top = stack.lower[1];

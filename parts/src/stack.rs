@@ -29,7 +29,7 @@ const BEARING: f64 = 8.5;
 /// What remains above a nut that is sunk into a part, mm.
 const OVER_NUT: f64 = 1.2;
 /// The strut below the spring's hooks, and beside them, mm.
-const STRUT: [f64; 2] = [3.0, 2.0];
+const STRUT: [f64; 2] = [2.7, 2.0];
 /// What remains of a link under the horn's arm, mm.
 const UNDER_HORN: f64 = 1.8;
 /// Floor and roof of a sleeve, mm.

@@ -1,14 +1,14 @@
 //! Why a robot cannot be built.
 
 use crate::assembly::Assembly;
-use crate::clearance::Clearance;
+use crate::proof::Clash;
 
 /// What does not fit, in the sentence that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Unfit {
-    /// Two parts would be in one place.
+    /// Two parts would be in one place, or nearly.
     #[error("{0}; other links, or other measures under [parts] in robot.toml, may keep them apart")]
-    Overlap(Clearance),
+    Clash(#[from] Clash),
     /// A bar is too narrow for the head of its screw.
     #[error(
         "parts.bar is {bar} mm, but the head of a screw and a wall on each side need {least:.1} mm"
@@ -74,16 +74,23 @@ pub enum Unfit {
 const OFF_FLOOR: f64 = 8.0;
 /// The shortest sleeve that guides a rod, mm.
 const SLEEVE: f64 = 25.0;
-/// Angles of each servo that are tried for collisions.
-const STEPS: u32 = 10;
 
 impl Assembly {
-    /// Whether the robot can be built: measures that must go together, and no two parts
-    /// in one place at any pose of a grid over the poses that the guard accepts.
+    /// Whether the robot can be built: measures go together, and no two parts meet at
+    /// any pose that the guard accepts, which is proved and takes seconds.
+    ///
+    /// # Errors
+    /// The first measure that does not fit, else the two parts that overlap most.
+    pub fn fits(&self) -> Result<(), Unfit> {
+        self.measures_fit()?;
+        Ok(self.prove(|_, _| ()).judge()?)
+    }
+
+    /// Whether measures go together.
     ///
     /// # Errors
     /// The first that does not fit.
-    pub fn fits(&self) -> Result<(), Unfit> {
+    pub fn measures_fit(&self) -> Result<(), Unfit> {
         let (parts, stack) = (self.robot().parts(), self.stack());
         let least = parts.screw.head + 2.0 * parts.fit + 1.2;
         if parts.bar < least {
@@ -129,10 +136,6 @@ impl Assembly {
                 return Err(Unfit::Surface(body.name.clone()));
             }
         }
-        let near = self.nearest(self.poses(STEPS), 0.0);
-        match near.into_iter().next() {
-            Some(overlap) => Err(Unfit::Overlap(overlap)),
-            None => Ok(()),
-        }
+        Ok(())
     }
 }

@@ -110,7 +110,7 @@ impl Default for Parts {
             gap: 0.5,
             kerf: 0.2,
             pivot: [28.5, 10.0],
-            anchor: [22.0, 5.0],
+            anchor: [22.0, 0.0],
             height: 34.0,
             servo: ServoBody {
                 length: 22.8,

@@ -1,5 +1,7 @@
 //! `lizard parts`: everything that is needed to build the robot, as files.
 
+pub mod fit;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -67,13 +69,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let assembly = Assembly::new(&robot);
     let mut parts = coupon(robot.parts()).to_vec();
     if !args.coupon {
-        let style = ProgressStyle::with_template("{spinner} {msg}").expect("a template");
-        let bar = ProgressBar::new_spinner()
-            .with_style(style)
-            .with_message("looking for parts that meet");
-        bar.tick();
-        assembly.fits()?;
-        bar.finish_and_clear();
+        assembly.measures_fit()?;
+        fit::proof(&assembly).judge().map_err(Unfit::from)?;
         parts.extend(assembly.parts());
     }
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}").expect("a template");

@@ -1,0 +1,50 @@
+//! The joints that places follow from, in any kind of number.
+
+use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
+
+/// What the mechanism does, as far as it is asked for.
+pub trait Joints<T> {
+    /// Direction of a servo's crank, length one, chassis frame.
+    fn crank(&self, servo: usize) -> Vector<T>;
+    /// The five-bar of an end, in the end's own frame.
+    fn end(&self, end: End) -> FiveBarPose<T>;
+    /// The slider of a side.
+    fn side(&self, side: Side) -> SliderPose<T>;
+}
+
+impl Joints<f64> for Solution {
+    fn crank(&self, servo: usize) -> Vector {
+        self.legs[servo].direction
+    }
+
+    fn end(&self, end: End) -> FiveBarPose {
+        *Self::end(self, end)
+    }
+
+    fn side(&self, side: Side) -> SliderPose {
+        *Self::side(self, side)
+    }
+}
+
+/// Joints that are computed when they are asked for: those of servos whose crank is
+/// not known have no meaning.
+pub struct Cranks<'a, T> {
+    /// The robot's dimensions.
+    pub lizard: &'a Lizard,
+    /// Directions of the cranks, length one, chassis frame, servo order.
+    pub cranks: [Vector<T>; 4],
+}
+
+impl<T: Real> Joints<T> for Cranks<'_, T> {
+    fn crank(&self, servo: usize) -> Vector<T> {
+        self.cranks[servo]
+    }
+
+    fn end(&self, end: End) -> FiveBarPose<T> {
+        self.lizard.shape_end(end, self.cranks)
+    }
+
+    fn side(&self, side: Side) -> SliderPose<T> {
+        self.lizard.shape_side(side, self.cranks)
+    }
+}

@@ -1,0 +1,269 @@
+//! The poses that the guard accepts, as bounds of the servos' angles.
+//!
+//! What a safe pose is, [`Limits`] says, and here it is only asked. The firmware asks
+//! it in integers, and may decide otherwise within a band ([`SINE`], [`LENGTH`]); by
+//! that much the limits are relaxed, so what the firmware lets pass is looked at, too.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+
+use lizard_kinematics::{Check, End, Limits, Pose, Real, Side, Solution, Vector};
+use lizard_robot::Robot;
+
+use super::interval::Interval;
+use super::slope::Slope;
+use crate::joints::{Cranks, Joints};
+
+/// How far below the limit of a margin a pose is still looked at.
+pub const SINE: f64 = 0.005;
+/// How far beyond the ends of a slider's stroke, and crank tips crossed, mm.
+pub const LENGTH: f64 = 0.05;
+/// How exactly the ends of the servos' ranges are found, deg.
+const FINE: f64 = 0.01;
+/// In so many regions a pose is looked for that has some angles.
+const ATTEMPTS: u32 = 300;
+/// The same for what the other servo does there, deg.
+const COARSE: f64 = 0.2;
+
+/// Bounds of the angles of `N` servos: middles and half widths, deg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region<const N: usize> {
+    pub middle: [f64; N],
+    pub half: [f64; N],
+}
+
+impl<const N: usize> Region<N> {
+    pub fn of(bounds: [Interval; N]) -> Self {
+        Self {
+            middle: bounds.map(|of| of.low + (of.high - of.low) / 2.0),
+            half: bounds.map(|of| (of.high - of.low) / 2.0),
+        }
+    }
+
+    /// Cut into two across one servo's angle.
+    pub fn halves(&self, servo: usize) -> [Self; 2] {
+        [-0.5, 0.5].map(|share| {
+            let mut part = *self;
+            part.middle[servo] += share * self.half[servo];
+            part.half[servo] *= 0.5;
+            part
+        })
+    }
+
+    /// From and to, of one servo. A hair wider, so that halves overlap.
+    pub fn bounds(&self, servo: usize) -> Interval {
+        let half = self.half[servo] + 1e-10;
+        Interval::new(self.middle[servo] - half, self.middle[servo] + half)
+    }
+}
+
+/// Cranks of which some turn within bounds; the others have no meaning.
+pub fn within<'a, const N: usize>(
+    robot: &'a Robot,
+    servos: &[usize; N],
+    region: &Region<N>,
+) -> Cranks<'a, Slope<N>> {
+    let mut angles = [Slope::of(0.0); N];
+    for (i, angle) in angles.iter_mut().enumerate() {
+        *angle = Slope::angle(i, region.bounds(i));
+    }
+    turned(robot, servos, angles)
+}
+
+/// The same in the middle of the bounds.
+pub fn middle<'a, const N: usize>(
+    robot: &'a Robot,
+    servos: &[usize; N],
+    region: &Region<N>,
+) -> Cranks<'a, f64> {
+    turned(robot, servos, region.middle)
+}
+
+fn turned<'a, const N: usize, T: Real>(
+    robot: &'a Robot,
+    servos: &[usize; N],
+    angles: [T; N],
+) -> Cranks<'a, T> {
+    let (sines, cosines) = T::sin_cos_each(angles);
+    let mut cranks = [Vector::new(T::of(1.0), T::of(0.0)); 4];
+    for (i, servo) in servos.iter().enumerate() {
+        cranks[*servo] = Vector::new(cosines[i], sines[i]);
+    }
+    Cranks {
+        lizard: robot.lizard(),
+        cranks,
+    }
+}
+
+/// What the guard of a robot accepts.
+pub struct Guard<'a> {
+    robot: &'a Robot,
+    /// The robot's limits, relaxed.
+    limits: Limits,
+    /// No servo is ever beyond this in a pose that is accepted, deg, servo order.
+    pub ranges: [Interval; 4],
+}
+
+impl<'a> Guard<'a> {
+    pub fn new(robot: &'a Robot) -> Self {
+        let limits = robot.limits();
+        let mut guard = Self {
+            robot,
+            limits: Limits {
+                type2: limits.type2 - SINE,
+                type1: limits.type1 - SINE,
+                leg: limits.leg - SINE,
+                stroke_min: limits.stroke_min - LENGTH,
+                stroke_max: limits.stroke_max + LENGTH,
+            },
+            ranges: std::array::from_fn(|servo| {
+                let servo = &robot.servos()[servo];
+                let (low, high) = servo.travel();
+                Interval::new(servo.neutral + low, servo.neutral + high)
+            }),
+        };
+        // Twice, because what one pair may do depends on the pairs beside it.
+        for _ in 0..2 {
+            let ends = End::ALL.map(|end| end.servos());
+            for pair in ends.into_iter().chain(Side::ALL.map(|side| side.servos())) {
+                for which in 0..2 {
+                    let [low, high] = [false, true].map(|high| guard.end_of(pair, which, high));
+                    guard.ranges[pair[which]] = Interval::new(low, high);
+                }
+            }
+        }
+        guard
+    }
+
+    /// Beyond this angle of one of two servos no pose is accepted, whatever the other
+    /// one does.
+    fn end_of(&self, pair: [usize; 2], which: usize, high: bool) -> f64 {
+        let sign = if high { -1.0 } else { 1.0 };
+        let end = |region: &Region<2>| region.middle[which] - sign * region.half[which];
+        // Orders floats that are numbers.
+        let key = |region: &Region<2>| {
+            let bits = (sign * end(region)).to_bits() as i64;
+            Reverse(bits ^ (((bits >> 63) as u64) >> 1) as i64)
+        };
+        let whole = Region::of(pair.map(|servo| self.ranges[servo]));
+        let mut regions = vec![whole];
+        let mut heap = BinaryHeap::from([(key(&whole), 0)]);
+        while let Some((_, index)) = heap.pop() {
+            let region: Region<2> = regions[index];
+            if self.refuses(&pair, &region) {
+                continue;
+            }
+            let least = if which == 0 {
+                [FINE, COARSE]
+            } else {
+                [COARSE, FINE]
+            };
+            let [a, b] = [0, 1].map(|i| region.half[i] / least[i]);
+            if a.max(b) < 1.0 {
+                return end(&region);
+            }
+            for half in region.halves(usize::from(b > a)) {
+                heap.push((key(&half), regions.len()));
+                regions.push(half);
+            }
+        }
+        // Nothing is accepted at all; a robot whose neutral pose is safe has something.
+        end(&whole)
+    }
+
+    /// Whether no pose of a region is accepted, for all that these servos decide alone.
+    pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
+        let bounds = within(self.robot, servos, region);
+        let middle = middle(self.robot, servos, region);
+        self.breaks(servos, region, &bounds, &middle)
+    }
+
+    /// The same for joints that are known already.
+    pub fn breaks<const N: usize>(
+        &self,
+        servos: &[usize; N],
+        region: &Region<N>,
+        bounds: &Cranks<Slope<N>>,
+        middle: &Cranks<f64>,
+    ) -> bool {
+        let broken = |(what, bounds, middle): (Check, Slope<N>, f64)| {
+            let value = bounds.near(middle, &region.half).value;
+            // Crossed tips have no limit that could be relaxed.
+            let off = match what {
+                Check::UncrossedHead | Check::UncrossedTail => LENGTH,
+                _ => 0.0,
+            };
+            let [low, high] = [value.low, value.high]
+                .map(|value| self.limits.broken(what, value + off).map(|of| of.limit));
+            low.is_some() && low == high
+        };
+        let all = |of: [usize; 2]| of.iter().all(|servo| servos.contains(servo));
+        let legs = servos.iter().any(|&servo| {
+            let end = End::of_servo(servo);
+            let shape = &self.robot.lizard().leg;
+            // Its margin depends on the direction alone.
+            let bounds = shape.shape(end, Slope::of(0.0), bounds.crank(servo)).margin;
+            let middle = shape.shape(end, 0.0, middle.crank(servo)).margin;
+            broken((Check::LEG[servo], bounds, middle))
+        });
+        legs || End::ALL
+            .into_iter()
+            .filter(|end| all(end.servos()))
+            .any(|end| {
+                let values = middle.end(end).conditions(end);
+                let conditions = bounds.end(end).conditions(end);
+                conditions
+                    .into_iter()
+                    .zip(values)
+                    .any(|((what, bounds), (_, middle))| broken((what, bounds, middle)))
+            })
+            || Side::ALL
+                .into_iter()
+                .filter(|side| all(side.servos()))
+                .any(|side| {
+                    let what = Check::STROKE[usize::from(side == Side::Right)];
+                    broken((what, bounds.side(side).s, middle.side(side).s))
+                })
+    }
+
+    /// A pose that the guard accepts, with its own limits, where some servos have an
+    /// angle; `None` if none is found.
+    pub fn pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
+        const ALL: [usize; 4] = [0, 1, 2, 3];
+        let or = |of: fn(&lizard_robot::Servo) -> f64| {
+            ALL.map(|servo| angles[servo].unwrap_or(of(&self.robot.servos()[servo])))
+        };
+        if let Some(pose) = self.accepted(or(|servo| servo.neutral).into()) {
+            return Some(pose);
+        }
+        let bounds = ALL.map(|servo| match angles[servo] {
+            Some(angle) => Interval::new(angle, angle),
+            None => self.ranges[servo],
+        });
+        let mut regions = VecDeque::from([Region::of(bounds)]);
+        for _ in 0..ATTEMPTS {
+            let region: Region<4> = regions.pop_front()?;
+            if let Some(pose) = self.accepted(region.middle.into()) {
+                return Some(pose);
+            }
+            if !self.refuses(&ALL, &region) {
+                let by = |a: &usize, b: &usize| region.half[*a].total_cmp(&region.half[*b]);
+                let widest = ALL.into_iter().max_by(by)?;
+                regions.extend(region.halves(widest));
+            }
+        }
+        None
+    }
+
+    fn accepted(&self, pose: Pose) -> Option<Solution> {
+        let angles: [f64; 4] = pose.into();
+        for (servo, angle) in self.robot.servos().iter().zip(angles) {
+            let (low, high) = servo.travel();
+            if !(low..=high).contains(&(angle - servo.neutral)) {
+                return None;
+            }
+        }
+        let solution = self.robot.lizard().solve(&pose).ok()?;
+        self.robot.limits().allow(&solution).then_some(solution)
+    }
+}

@@ -1,0 +1,216 @@
+//! Numbers that are known to lie between two bounds.
+//!
+//! Every result is rounded outward by a step, so the bounds hold for the exact result,
+//! too. Crates that do this want a compiler for the newest processors (inari, for its
+//! rounding modes) or have no sines, and either needs a wrapper to be a [`Real`].
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use lizard_kinematics::{Real, sin_cos};
+
+/// Beyond the error of a computed sine: 1.5 units in the last place.
+const SINE: f64 = 1e-15;
+
+/// All numbers from one to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The lower bound.
+    pub low: f64,
+    /// The upper bound.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Every number there is.
+    const ALL: Self = Self {
+        low: f64::NEG_INFINITY,
+        high: f64::INFINITY,
+    };
+
+    /// From one number to another.
+    pub const fn new(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    /// The farthest from 0.
+    pub fn most(self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    /// What lies in this and in another interval; both hold the same number.
+    pub fn and(self, other: Self) -> Self {
+        Self::new(self.low.max(other.low), self.high.min(other.high))
+    }
+
+    /// Bounds of a result, from some that are rounded; all numbers where they are none.
+    fn outward(low: f64, high: f64) -> Self {
+        if low.is_nan() || high.is_nan() {
+            return Self::ALL;
+        }
+        Self::new(low.next_down(), high.next_up())
+    }
+
+    fn sine_and_cosine(self) -> (Self, Self) {
+        // Where a sine is 1 and where it is -1, or may be for all that rounding knows.
+        let passes = |angle: f64| {
+            let turns = ((self.low - angle) / 360.0 - 1e-9).ceil();
+            turns * 360.0 + angle <= self.high + 1e-6
+        };
+        let (sin_a, cos_a) = sin_cos(self.low);
+        let (sin_b, cos_b) = sin_cos(self.high);
+        let between = |a: f64, b: f64, top: f64, bottom: f64| Self {
+            low: if passes(bottom) {
+                -1.0
+            } else {
+                a.min(b) - SINE
+            },
+            high: if passes(top) { 1.0 } else { a.max(b) + SINE },
+        };
+        (
+            between(sin_a, sin_b, 90.0, -90.0),
+            between(cos_a, cos_b, 0.0, 180.0),
+        )
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::outward(self.low + other.low, self.high + other.high)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.high, -self.low)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let [a, b, c, d] = [
+            self.low * other.low,
+            self.low * other.high,
+            self.high * other.low,
+            self.high * other.high,
+        ];
+        // 0 times infinity is no number, and must not get lost in min and max.
+        if (a + b + c + d).is_nan() {
+            return Self::ALL;
+        }
+        Self::outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
+    }
+}
+
+impl Mul<f64> for Interval {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        let (a, b) = (self.low * factor, self.high * factor);
+        Self::outward(a.min(b), a.max(b))
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+    // A quotient is a product with a reciprocal; its own rounding is outward, too.
+    #[allow(clippy::suspicious_arithmetic_impl)]
+    fn div(self, other: Self) -> Self {
+        if other.low <= 0.0 && other.high >= 0.0 {
+            return Self::ALL;
+        }
+        self * Self::outward(1.0 / other.high, 1.0 / other.low)
+    }
+}
+
+impl Real for Interval {
+    fn of(value: f64) -> Self {
+        Self::new(value, value)
+    }
+
+    fn root(self) -> Self {
+        let root = |value: f64| value.max(0.0).sqrt();
+        let Self { low, high } = Self::outward(root(self.low), root(self.high));
+        Self::new(low.max(0.0), high)
+    }
+
+    fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
+        let both = degrees.map(Self::sine_and_cosine);
+        (both.map(|(sine, _)| sine), both.map(|(_, cosine)| cosine))
+    }
+
+    fn atan2_each<const K: usize>(_: [Self; K], _: [Self; K]) -> [Self; K] {
+        [Self::ALL; K]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn holds(interval: Interval, value: f64) -> bool {
+        interval.low <= value && value <= interval.high
+    }
+
+    #[test]
+    fn a_result_holds_what_any_two_numbers_of_its_operands_give() {
+        let mut random = 1_u64;
+        let mut next = || {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (random >> 11) as f64 / (1_u64 << 53) as f64 * 8.0 - 4.0
+        };
+        for _ in 0..20_000 {
+            let [a, b, c, d] = [next(), next(), next(), next()];
+            let x = Interval::new(a.min(b), a.max(b));
+            let y = Interval::new(c.min(d), c.max(d));
+            for share in [0.0, 0.3, 1.0] {
+                let (p, q) = (
+                    (x.low + share * (x.high - x.low)).clamp(x.low, x.high),
+                    (y.low + share * (y.high - y.low)).clamp(y.low, y.high),
+                );
+                assert!(holds(x + y, p + q) && holds(x - y, p - q) && holds(-x, -p));
+                assert!(holds(x * y, p * q) && holds(x * c, p * c));
+                assert!(q == 0.0 || holds(x / y, p / q), "{x:?} / {y:?}");
+                assert!(holds(x.root(), p.max(0.0).sqrt()));
+                let degrees = Interval::new(x.low * 100.0, x.high * 100.0);
+                let ([sine], [cosine]) = Interval::sin_cos_each([degrees]);
+                let (sin, cos) = (p * 100.0).to_radians().sin_cos();
+                let wider = |i: Interval| Interval::new(i.low - 1e-14, i.high + 1e-14);
+                assert!(holds(wider(sine), sin) && holds(wider(cosine), cos));
+            }
+        }
+    }
+
+    #[test]
+    fn a_result_is_no_wider_than_it_has_to_be() {
+        let near = |interval: Interval, low: f64, high: f64| {
+            (interval.low - low).abs() < 1e-14 && (interval.high - high).abs() < 1e-14
+        };
+        let (x, y) = (Interval::new(-1.0, 2.0), Interval::new(3.0, 5.0));
+        assert!(near(x + y, 2.0, 7.0) && near(x - y, -6.0, -1.0));
+        assert!(near(x * y, -5.0, 10.0) && near(x / y, -1.0 / 3.0, 2.0 / 3.0));
+        assert!(near(y.root(), 3.0_f64.sqrt(), 5.0_f64.sqrt()));
+        let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(30.0, 120.0)]);
+        assert!(near(sine, 0.5, 1.0) && near(cosine, -0.5, 0.75_f64.sqrt()));
+        let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(-450.0, -340.0)]);
+        assert!(near(sine, -1.0, 20.0_f64.to_radians().sin()) && near(cosine, 0.0, 1.0));
+    }
+
+    #[test]
+    fn what_may_be_divided_by_0_may_be_anything() {
+        let over = Interval::of(1.0) / Interval::new(-1.0, 2.0);
+        assert_eq!(over, Interval::ALL);
+        assert_eq!(over * Interval::of(0.0), Interval::ALL);
+        assert_eq!(over - over, Interval::ALL);
+    }
+}

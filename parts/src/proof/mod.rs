@@ -1,0 +1,251 @@
+//! Proof that no two parts meet at any pose that the guard accepts.
+//!
+//! Poses are not sampled. The servos' angles are cut into regions, and of each region
+//! is shown that the guard accepts nothing in it, or that in all of it the parts keep
+//! apart: in its middle they are apart by a distance, and no point can move from there
+//! by more than its rate times the region's half width. Rates come from the closed forms
+//! of the mechanism, taken on bounds instead of numbers (`interval.rs`, `slope.rs`),
+//! which give a coupler's turn near a singularity as well as a crank's. What is not
+//! shown in a region is asked in its halves (`search.rs`).
+//!
+//! How two parts stand to each other depends on the servos of their mounts alone
+//! ([`Mount::servos`](crate::Mount::servos)): on one or two, rarely three, so all of it
+//! takes seconds. `solids.rs` says what has to keep clear of what, `sweep.rs` leaves out
+//! what is never near, `guard.rs` says what the guard certainly refuses.
+
+mod guard;
+mod interval;
+mod search;
+mod slope;
+mod solids;
+mod sweep;
+
+use std::fmt;
+
+use lizard_kinematics::Solution;
+
+use crate::assembly::Assembly;
+use crate::body::Body;
+use crate::clearance::Clearance;
+use guard::Guard;
+pub use search::ENOUGH;
+use search::Found;
+use solids::Task;
+
+/// What all parts keep from each other, but those that are made to meet, mm: more than
+/// a printed part is off.
+pub const LEAST: f64 = 0.2;
+/// What is made to meet may touch; by so much it is not an overlap, mm.
+const TOUCH: f64 = 0.02;
+
+/// Angles of each servo at whose poses joints are looked at.
+const JOINT_STEPS: u32 = 6;
+
+/// Two parts, and how near they come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Near {
+    /// One body.
+    pub first: String,
+    /// The other.
+    pub second: String,
+    /// At every pose that the guard accepts they are apart by this or more, mm; below
+    /// 0 they may overlap.
+    pub proved: f64,
+    /// A pose that it accepts where they are nearly as near as that; `None` where they
+    /// are no nearer than [`ENOUGH`], or none is found.
+    pub seen: Option<Clearance>,
+    /// Servo angles, deg, near which no more is proved, if that is much less than what
+    /// was seen. The guard hardly accepts them, if at all.
+    pub doubt: Option<[f64; 4]>,
+}
+
+/// That a robot's parts keep clear of each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// Parts that are not made to meet, the nearest first: of all that moves with one
+    /// mount and all that moves with another, the nearest two.
+    pub apart: Vec<Near>,
+    /// The same for parts that are made to meet, as a pin and its hole: the air between
+    /// them.
+    pub meeting: Vec<Near>,
+    /// From and to, deg: no servo is ever beyond this in a pose that the guard accepts.
+    pub ranges: [[f64; 2]; 4],
+    /// Pairs of shapes looked at.
+    pub pairs: usize,
+    /// Regions of poses looked at.
+    pub regions: u64,
+}
+
+/// Two parts that do not keep clear of each other.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Clash {
+    /// Two parts overlap.
+    #[error("{0}")]
+    Overlap(Clearance),
+    /// Two parts come too near to each other.
+    #[error("{0}, which is less than {LEAST} mm")]
+    Narrow(Clearance),
+    /// At poses that the guard hardly accepts, two parts may overlap.
+    #[error("{0}")]
+    Unsure(Near),
+}
+
+impl fmt::Display for Near {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self {
+            first,
+            second,
+            proved,
+            ..
+        } = self;
+        match self.doubt {
+            Some([a, b, c, d]) => write!(
+                f,
+                "{first} and {second} are not proved to be apart by more than {proved:.2} mm near pose {a:.2} {b:.2} {c:.2} {d:.2}"
+            ),
+            None => write!(f, "{first} and {second} are {proved:.2} mm apart or more"),
+        }
+    }
+}
+
+impl Near {
+    /// What is wrong with it, if they have to keep this distance, mm.
+    fn clash(&self, least: f64) -> Option<Clash> {
+        match &self.seen {
+            Some(seen) if seen.mm < least.min(0.0) => Some(Clash::Overlap(seen.clone())),
+            Some(seen) if seen.mm < least => Some(Clash::Narrow(seen.clone())),
+            _ if self.proved < least => Some(Clash::Unsure(self.clone())),
+            _ => None,
+        }
+    }
+
+    /// How near they are for all that is known, mm.
+    fn mm(&self) -> f64 {
+        self.seen.as_ref().map_or(self.proved, |seen| seen.mm)
+    }
+}
+
+impl Proof {
+    /// The nearest two parts that are not made to meet.
+    #[must_use]
+    pub fn least(&self) -> Option<&Near> {
+        self.apart.first()
+    }
+
+    /// Whether the parts fit.
+    ///
+    /// # Errors
+    /// The two parts that overlap most, the pose, and by how much; else two that come
+    /// nearer than [`LEAST`].
+    pub fn judge(&self) -> Result<(), Clash> {
+        let apart = self.apart.iter().map(|near| (near, LEAST));
+        let meeting = self.meeting.iter().map(|near| (near, -TOUCH));
+        let worst = apart
+            .chain(meeting)
+            .filter_map(|(near, least)| near.clash(least).map(|clash| (near.mm(), clash)))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        worst.map_or(Ok(()), |(_, clash)| Err(clash))
+    }
+}
+
+impl Assembly {
+    /// How near any two parts come at any pose that the guard accepts; whether that is
+    /// near enough to fit, [`Proof::judge`] says. `progress` is called with what is
+    /// done and what there is to do.
+    pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
+        self.prove_some(|_, _| true, progress)
+    }
+
+    /// The same for some pairs of bodies.
+    pub fn prove_some(
+        &self,
+        which: impl Fn(&Body, &Body) -> bool,
+        mut progress: impl FnMut(usize, usize),
+    ) -> Proof {
+        let guard = Guard::new(self.robot());
+        let tasks = Task::all(self, &guard, ENOUGH, which);
+        let mut proof = Proof {
+            apart: Vec::new(),
+            meeting: Vec::new(),
+            ranges: guard.ranges.map(|range| [range.low, range.high]),
+            pairs: tasks.iter().map(|task| task.solids.len()).sum(),
+            regions: 0,
+        };
+        let joints: Vec<_> = self.poses(JOINT_STEPS).collect();
+        let count = tasks.len();
+        for (done, mut task) in tasks.into_iter().enumerate() {
+            progress(done, count);
+            let list = if task.meet {
+                proof.meeting.extend(self.take_joint(&mut task, &joints));
+                &mut proof.meeting
+            } else {
+                &mut proof.apart
+            };
+            if !task.solids.is_empty() {
+                let found = search::least(self, &guard, &task);
+                proof.regions += found.regions;
+                list.push(self.near(found));
+            }
+        }
+        progress(count, count);
+        for list in [&mut proof.apart, &mut proof.meeting] {
+            list.sort_by(|a, b| a.proved.total_cmp(&b.proved));
+        }
+        proof
+    }
+
+    /// Takes what is pinned out of a task: pins in round holes, whose centres are one
+    /// point of the linkage, so that they stay as they are.
+    fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<Near> {
+        let places: Vec<_> = poses
+            .iter()
+            .map(|pose| {
+                let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
+                b.seen_from(&a)
+            })
+            .collect();
+        let pose = poses.first()?.pose.into();
+        let mut least: Option<Near> = None;
+        task.solids.retain(|solid| {
+            let Some(mm) = solid.pinned(&places) else {
+                return true;
+            };
+            if least.as_ref().is_none_or(|least| mm < least.proved) {
+                let [first, second] = solid.bodies.map(|body| self.bodies()[body].name.clone());
+                least = Some(Near {
+                    seen: Some(Clearance {
+                        first: first.clone(),
+                        second: second.clone(),
+                        pose,
+                        mm,
+                    }),
+                    first,
+                    second,
+                    proved: mm,
+                    doubt: None,
+                });
+            }
+            false
+        });
+        least
+    }
+
+    fn near(&self, found: Found) -> Near {
+        let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
+        let servos = self.robot().servos();
+        Near {
+            seen: found.seen.map(|(pose, mm)| Clearance {
+                first: first.clone(),
+                second: second.clone(),
+                pose: pose.pose.into(),
+                mm,
+            }),
+            doubt: found.doubt.map(|angles| {
+                [0, 1, 2, 3].map(|servo| angles[servo].unwrap_or(servos[servo].neutral))
+            }),
+            first,
+            second,
+            proved: found.proved,
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Where a body can be at all: the rectangle that it never leaves.
+//!
+//! Most pairs are never near each other, such as a head's and a tail's coupler. Their
+//! rectangles tell, and no poses of both have to be looked at.
+
+use lizard_kinematics::Vector;
+
+use super::guard::{Guard, Region, middle, within};
+use super::interval::Interval;
+use crate::assembly::Assembly;
+use crate::body::{Body, Mount};
+
+/// Regions of this half width are not halved, deg.
+const FINE: f64 = 2.0;
+
+/// From and to along x and y, mm, chassis frame.
+pub type Rectangle = [Interval; 2];
+
+/// The rectangle of each body, in the order of [`Assembly::bodies`].
+pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
+    const NOWHERE: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+    let mut rectangles = vec![[NOWHERE; 2]; assembly.bodies().len()];
+    let mut mounts: Vec<Mount> = Vec::new();
+    for body in assembly.bodies() {
+        if mounts.contains(&body.mount) {
+            continue;
+        }
+        mounts.push(body.mount);
+        let mut sweep = Sweep {
+            assembly,
+            guard,
+            mount: body.mount,
+            rectangles: &mut rectangles,
+        };
+        match body.mount.servos()[..] {
+            [] => sweep.run([]),
+            [a] => sweep.run([a]),
+            [a, b] => sweep.run([a, b]),
+            _ => sweep.run([0, 1, 2, 3]),
+        }
+    }
+    rectangles
+}
+
+/// Whether two rectangles are apart by a length, mm.
+pub fn apart(a: &Rectangle, b: &Rectangle, by: f64) -> bool {
+    a.iter()
+        .zip(b)
+        .any(|(a, b)| a.low - b.high >= by || b.low - a.high >= by)
+}
+
+struct Sweep<'a> {
+    assembly: &'a Assembly,
+    guard: &'a Guard<'a>,
+    mount: Mount,
+    rectangles: &'a mut [Rectangle],
+}
+
+impl Sweep<'_> {
+    fn run<const N: usize>(&mut self, servos: [usize; N]) {
+        let ranges = servos.map(|servo| self.guard.ranges[servo]);
+        let mut regions = vec![Region::of(ranges)];
+        while let Some(region) = regions.pop() {
+            let robot = self.assembly.robot();
+            let bounds = within(robot, &servos, &region);
+            let middle = middle(robot, &servos, &region);
+            if self.guard.breaks(&servos, &region, &bounds, &middle) {
+                continue;
+            }
+            let widest = (0..N).max_by(|a, b| region.half[*a].total_cmp(&region.half[*b]));
+            match widest {
+                Some(widest) if region.half[widest] > FINE => {
+                    regions.extend(region.halves(widest));
+                }
+                _ => {
+                    let place = self.assembly.place_on(self.mount, &bounds);
+                    self.cover(|point| {
+                        let at = place.map(point);
+                        [at.x.value, at.y.value]
+                    });
+                }
+            }
+        }
+    }
+
+    /// Every body of the mount may be where its points may be.
+    fn cover(&mut self, at: impl Fn(Vector) -> Rectangle) {
+        let bodies = self
+            .assembly
+            .bodies()
+            .iter()
+            .zip(self.rectangles.iter_mut());
+        for (body, rectangle) in bodies.filter(|(body, _)| body.mount == self.mount) {
+            for (point, radius) in points(body) {
+                for (side, at) in rectangle.iter_mut().zip(at(point)) {
+                    *side = Interval::new(
+                        side.low.min(at.low - radius),
+                        side.high.max(at.high + radius),
+                    );
+                }
+            }
+        }
+    }
+}
+
+fn points(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
+    let shapes = body.prisms.iter().flat_map(|prism| &prism.add);
+    shapes.flat_map(|shape| shape.points.iter().map(|&point| (point, shape.radius)))
+}

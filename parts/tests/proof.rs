@@ -1,0 +1,352 @@
+//! The proof that parts keep apart: it is never more than what is seen at any pose, it
+//! finds mistakes made on purpose, and every robot's file passes it.
+
+use lizard_kinematics::{Pose, Side, Solution, Vector};
+use lizard_parts::{Assembly, Body, Clash, ENOUGH, LEAST, Mount, Proof, Shape};
+use lizard_robot::Robot;
+
+fn text(name: &str) -> String {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).expect(&path)
+}
+
+fn assembly(name: &str, parts: &str) -> Assembly {
+    Assembly::new(&Robot::parse(&format!("{}\n{parts}", text(name))).expect(parts))
+}
+
+/// Numbers from 0 to 1, the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Poses that the guard accepts: half of them anywhere in the servos' travel, half at
+/// the edge of what is accepted, where parts come nearest.
+fn poses(robot: &Robot, count: usize) -> Vec<Solution> {
+    let mut random = Random(7);
+    let mut poses = Vec::new();
+    let allowed = |angles: [f64; 4]| {
+        let solution = robot.lizard().solve(&Pose::from(angles)).ok()?;
+        robot.limits().allow(&solution).then_some(solution)
+    };
+    let neutral = robot.servos().map(|servo| servo.neutral);
+    while poses.len() < count {
+        let far = robot.servos().each_ref().map(|servo| {
+            let (low, high) = servo.travel();
+            servo.neutral + low + (high - low) * random.next()
+        });
+        poses.extend(allowed(far));
+        let (mut within, mut beyond) = (0.0, 1.0);
+        for _ in 0..30 {
+            let share = (within + beyond) / 2.0;
+            let at = |servo: usize| neutral[servo] + share * (far[servo] - neutral[servo]);
+            match allowed([0, 1, 2, 3].map(at)) {
+                Some(_) => within = share,
+                None => beyond = share,
+            }
+        }
+        let at = |servo: usize| neutral[servo] + within * (far[servo] - neutral[servo]);
+        poses.extend(allowed([0, 1, 2, 3].map(at)));
+    }
+    poses
+}
+
+fn bodies(proof: &Proof, assembly: &Assembly) -> Vec<([Mount; 2], f64)> {
+    let mount = |name: &str| assembly.body(name).expect(name).mount;
+    let mounts = proof.apart.iter().map(|near| {
+        let mounts = [mount(&near.first), mount(&near.second)];
+        (mounts, near.proved)
+    });
+    mounts.collect()
+}
+
+/// Proves a robot's file, and holds the proof against many poses.
+fn holds(name: &str) {
+    let assembly = assembly(name, "");
+    let proof = assembly.prove(|_, _| ());
+    proof
+        .judge()
+        .unwrap_or_else(|clash| panic!("{name}: {clash}"));
+    let known = bodies(&proof, &assembly);
+    let poses = poses(assembly.robot(), 300);
+    for pose in &poses {
+        let angles: [f64; 4] = pose.pose.into();
+        for (angle, [low, high]) in angles.into_iter().zip(proof.ranges) {
+            assert!((low..=high).contains(&angle), "{name}: {angle}");
+        }
+    }
+    for near in assembly.nearest(poses, ENOUGH - 0.2) {
+        let mounts =
+            [&near.first, &near.second].map(|body| assembly.body(body).expect("a body").mount);
+        let proved = known
+            .iter()
+            .find(|(of, _)| *of == mounts)
+            .map(|(_, mm)| *mm);
+        let proved = proved.unwrap_or_else(|| panic!("{name}: nothing proved of {near}"));
+        assert!(proved <= near.mm, "{name}: {near}, proved {proved}");
+    }
+    for near in proof.apart.iter().chain(&proof.meeting) {
+        let Some(seen) = &near.seen else { continue };
+        let solution = assembly.robot().lizard().solve(&Pose::from(seen.pose));
+        let limits = assembly.robot().limits();
+        assert!(
+            limits.allow(&solution.expect("it closes")),
+            "{name}: {near}"
+        );
+        assert!(near.proved <= seen.mm, "{name}: {near}");
+        // And what is proved is not much less than what there is, but where the guard
+        // hardly accepts a pose.
+        let close = seen.mm < near.proved.max(0.0) * 2.1 + 0.02;
+        assert!(close || near.doubt.is_some(), "{name}: {near}");
+    }
+}
+
+#[test]
+fn the_papers_robot_fits_and_no_pose_is_nearer_than_proved() {
+    holds("paper");
+}
+
+#[test]
+fn the_large_robot_fits_and_no_pose_is_nearer_than_proved() {
+    holds("large");
+}
+
+#[test]
+fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
+    holds("unequal");
+}
+
+#[test]
+fn the_robot_with_gaits_of_its_own_has_the_papers_parts() {
+    let [own, paper] = ["own-gaits", "paper"].map(|name| assembly(name, ""));
+    assert_eq!(own.bodies(), paper.bodies());
+    assert_eq!(own.robot().limits(), paper.robot().limits());
+    let travel = |of: &Assembly| of.robot().servos().each_ref().map(|servo| servo.travel());
+    assert_eq!(travel(&own), travel(&paper));
+}
+
+#[test]
+fn every_file_of_robots_is_here() {
+    let folder = format!("{}/../robots", env!("CARGO_MANIFEST_DIR"));
+    let mut names: Vec<_> = std::fs::read_dir(folder)
+        .expect("robots/")
+        .map(|entry| {
+            entry
+                .expect("a file")
+                .file_name()
+                .into_string()
+                .expect("a name")
+        })
+        .collect();
+    names.sort();
+    let here = ["large", "own-gaits", "paper", "unequal"].map(|name| format!("{name}.toml"));
+    assert_eq!(names, here);
+}
+
+/// What is found of those pairs of bodies one of which is the given.
+fn clash(assembly: &Assembly, of: impl Fn(&Body) -> bool) -> Clash {
+    let proof = assembly.prove_some(|a, b| of(a) || of(b), |_, _| ());
+    proof.judge().expect_err("nothing is found")
+}
+
+#[track_caller]
+fn overlap(clash: Clash, first: &str, second: &str) {
+    let Clash::Overlap(found) = clash else {
+        panic!("{clash}");
+    };
+    assert!(found.mm < 0.0);
+    let names = [found.first.as_str(), found.second.as_str()];
+    let right = |a: &str, b: &str| a.starts_with(first) && b.starts_with(second);
+    assert!(
+        right(names[0], names[1]) || right(names[1], names[0]),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_bar_that_is_too_wide_is_found() {
+    let wide = assembly("paper", "[parts]\nbar = 20.0");
+    overlap(
+        clash(&wide, |body| body.name.starts_with("link")),
+        "link A",
+        "link A",
+    );
+}
+
+/// A screw of the paper's robot, longer by so much.
+fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
+    assembly("paper", "").altered(|bodies| {
+        let screw = bodies
+            .iter_mut()
+            .find(|body| body.name == name)
+            .expect(name);
+        let thin = |body: &Body, i: usize| body.prisms[i].add[0].radius;
+        let shank = usize::from(thin(screw, 1) < thin(screw, 0));
+        let z = &mut screw.prisms[shank].z;
+        if downwards {
+            z[0] -= by;
+        } else {
+            z[1] += by;
+        }
+    })
+}
+
+#[test]
+fn a_screw_that_is_too_long_is_found() {
+    for (name, by, downwards, other) in [
+        ("screw tip A1", 6.0, true, "strut LF"),
+        ("screw foot LF 2", 3.0, false, "follower LF"),
+        ("screw crank pivot LF", 5.0, false, "screw arm A1"),
+        ("screw crank joint LF", 5.0, true, "foot LF"),
+        ("screw leg anchor LF", 5.0, false, "link A1"),
+    ] {
+        let long = longer(name, by, downwards);
+        overlap(clash(&long, |body| body.name == name), name, other);
+    }
+}
+
+#[test]
+fn a_hip_that_was_moved_is_found() {
+    let moved = assembly("paper", "[parts]\npivot = [22.0, 6.0]");
+    overlap(
+        clash(&moved, |body| body.name.starts_with("crank")),
+        "crank",
+        "plate",
+    );
+}
+
+#[test]
+fn swapped_layers_are_found() {
+    // The upper coupler of the head, laid where the lower one is.
+    let swapped = assembly("paper", "").altered(|bodies| {
+        let z = |bodies: &[Body], name: &str| {
+            bodies
+                .iter()
+                .find(|body| body.name == name)
+                .expect(name)
+                .prisms[0]
+                .z
+        };
+        let [lower, upper] = ["coupler A1", "coupler A2"].map(|name| z(bodies, name));
+        for body in bodies.iter_mut() {
+            match body.name.as_str() {
+                "coupler A1" => body.prisms[0].z = upper,
+                "coupler A2" => body.prisms[0].z = lower,
+                _ => {}
+            }
+        }
+    });
+    overlap(
+        clash(&swapped, |body| body.name.starts_with("coupler")),
+        "coupler A",
+        "",
+    );
+}
+
+#[test]
+fn a_hole_beside_its_pin_is_found() {
+    let off = assembly("paper", "").altered(|bodies| {
+        for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
+            for cut in &mut body.prisms[0].cut {
+                for point in &mut cut.points {
+                    *point = *point + Vector::new(0.0, 0.3);
+                }
+            }
+        }
+    });
+    let Clash::Overlap(found) = clash(&off, |body| body.name == "coupler A4") else {
+        panic!("no overlap");
+    };
+    assert!((found.mm + 0.2).abs() < 0.02, "{found}");
+    assert!(found.second.starts_with("screw"), "{found}");
+}
+
+#[test]
+fn parts_that_come_too_near_are_refused_with_their_pose() {
+    // So far as the guard lets the servo turn, the strut comes to the servo's screws.
+    let near = assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
+    let found = clash(&near, |body| body.name.starts_with("strut"));
+    let sentence = found.to_string();
+    assert!(sentence.contains("strut"), "{sentence}");
+    assert!(sentence.contains(" pose "), "{sentence}");
+}
+
+/// Where a shape begins and ends along x, placed.
+fn along(shape: &Shape, from: f64) -> [f64; 2] {
+    let x = shape.points.iter().map(|point| point.x + from);
+    let low = x.clone().fold(f64::INFINITY, f64::min) - shape.radius;
+    [low, x.fold(f64::NEG_INFINITY, f64::max) + shape.radius]
+}
+
+#[test]
+fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
+    for name in ["paper", "large", "unequal"] {
+        let assembly = assembly(name, "");
+        let (lizard, limits) = (assembly.robot().lizard(), assembly.robot().limits());
+        for side in Side::ALL {
+            let slider = lizard.side(side);
+            let [sleeve, rod] = ["sleeve", "rod"].map(|part| {
+                let body = assembly.body(&format!("{part} {side}")).expect(part);
+                let straight = |shape: &&Shape| shape.points.len() > 2;
+                body.prisms
+                    .iter()
+                    .flat_map(|prism| &prism.add)
+                    .find(straight)
+                    .expect(part)
+            });
+            let [begin, end] = along(sleeve, 0.0);
+            let mut least = f64::INFINITY;
+            for step in 0..=100 {
+                let share = f64::from(step) / 100.0;
+                let stroke = limits.stroke_min + share * (limits.stroke_max - limits.stroke_min);
+                let [rear, front] = along(rod, slider.nominal + stroke);
+                least = least.min(front.min(end) - rear.max(begin));
+            }
+            // At the longest the rod is drawn out to what it must keep.
+            assert!((least - 20.0).abs() < 1e-9, "{name} {side}: {least}");
+        }
+        let sliders = assembly.prove_some(
+            |a, b| a.name.starts_with("sleeve") && b.name.starts_with("rod"),
+            |_, _| (),
+        );
+        // In the bore, 0.2 mm of air at each side of the rod.
+        assert_eq!(sliders.meeting.len(), 2);
+        for near in &sliders.meeting {
+            let seen = near.seen.as_ref().expect("they are near").mm;
+            assert!((seen - assembly.robot().parts().fit).abs() < 1e-9, "{near}");
+        }
+    }
+}
+
+#[test]
+fn a_struts_screw_has_air_in_its_slot_all_the_way() {
+    let assembly = assembly("paper", "");
+    let strut = assembly.body("strut LF").expect("a strut");
+    let leg = assembly.layout().legs[0];
+    let screw = assembly.robot().parts().screw.diameter / 2.0;
+    let slot = strut.prisms[0]
+        .cut
+        .iter()
+        .find(|cut| cut.points.len() == 2 && (cut.points[0].x - leg.strut_length).abs() < 1e-9);
+    let slot = slot.expect("a slot");
+    for step in 0..=10 {
+        let way = 5.0 * f64::from(step) / 10.0;
+        let pin = Shape::disc(Vector::new(leg.strut_length + way, 0.0), screw);
+        let air = pin.within(slot, Vector::default());
+        assert!((air - 0.1).abs() < 1e-9, "{way}: {air}");
+    }
+    let beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw);
+    assert!(beyond.within(slot, Vector::default()) < 0.0);
+}
+
+#[test]
+fn what_has_to_be_kept_is_more_than_a_printer_is_off() {
+    assert!(LEAST >= assembly("paper", "").robot().parts().fit);
+}
