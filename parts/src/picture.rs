@@ -98,6 +98,11 @@ impl Eye {
     }
 }
 
+/// Points on the page.
+type Trail = Vec<(f64, f64)>;
+/// How far a wall is, its outline and its colour.
+type Wall = (f64, Trail, [f64; 3]);
+
 /// What is drawn in a slice.
 struct Layer {
     colour: [f64; 3],
@@ -122,7 +127,7 @@ pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &Vie
                 .iter()
                 .filter(|layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6)
         };
-        let mut walls: Vec<(f64, Vec<(f64, f64)>, [f64; 3])> = Vec::new();
+        let mut walls: Vec<Wall> = Vec::new();
         for layer in present() {
             for line in &layer.loops {
                 layer.walls(line, &eye, [low, high], &mut walls);
@@ -208,13 +213,7 @@ fn points(line: &Loop) -> Vec<Vector> {
 
 impl Layer {
     /// The walls of a loop that the eye sees; neighbours of one shade are one.
-    fn walls(
-        &self,
-        line: &[Vector],
-        eye: &Eye,
-        [low, high]: [f64; 2],
-        walls: &mut Vec<(f64, Vec<(f64, f64)>, [f64; 3])>,
-    ) {
+    fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
         let n = line.len();
         let shade = |i: usize| {
             let (a, b) = (line[i], line[(i + 1) % n]);
@@ -277,7 +276,7 @@ fn colour(body: &Body, pale: bool) -> [f64; 3] {
 
 #[derive(Default)]
 struct Ink {
-    shapes: Vec<(String, Vec<Vec<(f64, f64)>>, bool)>,
+    shapes: Vec<(String, Vec<Trail>, bool)>,
 }
 
 impl Ink {
