@@ -166,6 +166,8 @@ TESTS ?= --workspace
 .docs: .firmware .cli
 	@$(LIZARD) errata --markdown > docs/errata.md
 	@$(LIZARD) draw --robot robots/paper.toml --output docs/lizard.svg
+	@$(LIZARD) parts out/parts --robot robots/paper.toml
+	@cp out/parts/guide/robot.svg docs/robot.svg
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
@@ -179,4 +181,5 @@ TESTS ?= --workspace
 	@cd host && cargo clippy --workspace --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
+	@cd host && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
 	@echo "lint: clean"

@@ -50,7 +50,11 @@ const AWAY: f64 = 900.0;
 /// Around the robot, pixels.
 const MARGIN: f64 = 12.0;
 /// Largest angle of a chord, rad.
-const CHORD: f64 = 0.42;
+const CHORD: f64 = 0.55;
+/// The thinnest slice, mm.
+const SLICE: f64 = 0.45;
+/// Holes that are smaller have a screw in them, mm.
+const HOLE: f64 = 1.75;
 
 /// Servos A1 to A4 and what they move: Okabe and Ito's colours and a purple of Tol's.
 const SERVO: [[f64; 3]; 4] = [
@@ -94,6 +98,11 @@ impl Eye {
     }
 }
 
+/// Points on the page.
+type Trail = Vec<(f64, f64)>;
+/// How far a wall is, its outline and its colour.
+type Wall = (f64, Trail, [f64; 3]);
+
 /// What is drawn in a slice.
 struct Layer {
     colour: [f64; 3],
@@ -108,10 +117,8 @@ struct Layer {
 #[must_use]
 pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &View) -> String {
     let eye = Eye::new(view);
-    let layers = layers(assembly, drawn, pose);
-    let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
-    heights.sort_by(f64::total_cmp);
-    heights.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+    let mut layers = layers(assembly, drawn, pose);
+    let heights = slices(&mut layers);
     let mut ink = Ink::default();
     for slice in heights.windows(2) {
         let [low, high] = [slice[0], slice[1]];
@@ -120,7 +127,7 @@ pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &Vie
                 .iter()
                 .filter(|layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6)
         };
-        let mut walls: Vec<(f64, Vec<(f64, f64)>, [f64; 3])> = Vec::new();
+        let mut walls: Vec<Wall> = Vec::new();
         for layer in present() {
             for line in &layer.loops {
                 layer.walls(line, &eye, [low, high], &mut walls);
@@ -144,6 +151,21 @@ pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &Vie
     ink.finish(view.width)
 }
 
+/// The heights at which layers begin or end. What is nearer than `SLICE` is one, to
+/// which the layers are moved.
+fn slices(layers: &mut [Layer]) -> Vec<f64> {
+    let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|b, a| *b - *a < SLICE);
+    for layer in layers {
+        for z in &mut layer.z {
+            let below = heights.partition_point(|height| *height <= *z + 1e-9);
+            *z = heights[below.saturating_sub(1)];
+        }
+    }
+    heights
+}
+
 fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
     let mut layers = Vec::new();
     for Drawn { body, lift, pale } in drawn {
@@ -151,8 +173,13 @@ fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
         let colour = colour(body, *pale);
         for prism in &body.prisms {
             let outline = Outline::of(prism);
+            let filled = |line: &&Loop| {
+                let hole = line.circle().filter(|_| *pale || *lift == 0.0);
+                !hole.is_some_and(|(_, radius)| radius < HOLE && line.area() < 0.0)
+            };
             let loops: Vec<Vec<Vector>> = outline
                 .loops()
+                .filter(filled)
                 .map(|line| points(line).into_iter().map(|at| place.map(at)).collect())
                 .collect();
             layers.push(Layer {
@@ -186,13 +213,7 @@ fn points(line: &Loop) -> Vec<Vector> {
 
 impl Layer {
     /// The walls of a loop that the eye sees; neighbours of one shade are one.
-    fn walls(
-        &self,
-        line: &[Vector],
-        eye: &Eye,
-        [low, high]: [f64; 2],
-        walls: &mut Vec<(f64, Vec<(f64, f64)>, [f64; 3])>,
-    ) {
+    fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
         let n = line.len();
         let shade = |i: usize| {
             let (a, b) = (line[i], line[(i + 1) % n]);
@@ -255,7 +276,7 @@ fn colour(body: &Body, pale: bool) -> [f64; 3] {
 
 #[derive(Default)]
 struct Ink {
-    shapes: Vec<(String, Vec<Vec<(f64, f64)>>, bool)>,
+    shapes: Vec<(String, Vec<Trail>, bool)>,
 }
 
 impl Ink {

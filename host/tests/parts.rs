@@ -1,0 +1,67 @@
+//! `lizard parts` as its user runs it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn lizard(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lizard"))
+        .arg("parts")
+        .arg(folder)
+        .args(arguments)
+        .output()
+        .expect("lizard runs")
+}
+
+fn robots(name: &str) -> String {
+    format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn fresh(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+#[test]
+fn a_folder_holds_everything_to_build_the_robot() {
+    let folder = fresh("parts-all");
+    let made = lizard(&folder, &["--robot", &robots("paper")]);
+    assert!(made.status.success(), "{made:?}");
+    for file in [
+        "step/plate.step",
+        "stl/link-A1-A3.stl",
+        "cut/link-A1-A3.dxf",
+        "cut/coupler.svg",
+        "stl/coupon.stl",
+        "bill.json",
+        "guide/guide.html",
+        "guide/guide.md",
+        "guide/robot.svg",
+        "guide/step-8-done.svg",
+    ] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    for line in guide.lines().filter(|line| line.starts_with("![")) {
+        let (_, file) = line.trim_end_matches(')').rsplit_once('(').expect("a file");
+        assert!(folder.join("guide").join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
+    let folder = fresh("parts-refused");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wide.toml");
+    let text = fs::read_to_string(robots("paper")).expect("paper");
+    fs::write(&file, text + "\n[parts]\nbar = 24.0\n").expect("a file");
+    let made = lizard(&folder, &["--robot", &file.display().to_string()]);
+    assert_eq!(made.status.code(), Some(1));
+    let said = String::from_utf8(made.stderr).expect("text");
+    assert!(
+        said.contains(" overlap by ") && said.contains(" at pose "),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(!folder.exists());
+}

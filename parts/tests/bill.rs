@@ -1,0 +1,54 @@
+//! The bill counts what the assembly has, and the spring is the strut's.
+
+use lizard_parts::{Assembly, Bill, Kind, STALL};
+use lizard_robot::Robot;
+
+fn bill(name: &str) -> (Assembly, Bill) {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let robot = Robot::load(path).expect(name);
+    let assembly = Assembly::new(&robot);
+    let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
+    let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+    (assembly, bill)
+}
+
+#[test]
+fn every_body_is_printed_or_bought() {
+    for name in ["paper", "large", "unequal"] {
+        let (assembly, bill) = bill(name);
+        let count = |is: fn(&Kind) -> bool| {
+            let bodies = assembly.bodies().iter();
+            bodies.filter(|body| is(&body.kind)).count()
+        };
+        let printed: usize = bill.printed.iter().map(|item| item.count).sum();
+        assert_eq!(printed, count(|kind| *kind == Kind::Printed), "{name}");
+        assert_eq!(
+            bill.count("screw M3"),
+            count(|kind| matches!(kind, Kind::Screw(_)))
+        );
+        assert_eq!(bill.count("lock nut"), count(|kind| *kind == Kind::Nut));
+        assert_eq!(bill.count("servo SG-90"), 4);
+        assert_eq!(bill.count("tension spring"), 4);
+    }
+}
+
+#[test]
+fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
+    let (_, paper) = bill("paper");
+    // All but the board, whose holes are not.
+    assert!(paper.centre[0].abs() < 0.5 && paper.centre[1].abs() < 0.5);
+    assert!((250.0..350.0).contains(&paper.grams), "{}", paper.grams);
+    let (_, large) = bill("large");
+    assert!(large.grams > paper.grams);
+}
+
+#[test]
+fn a_leg_is_held_against_friction_and_spares_a_stalled_servo() {
+    let (assembly, bill) = bill("paper");
+    let hold = bill.hold;
+    let strut = 28.5f64.hypot(10.0);
+    assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
+    assert!((hold.installed - strut - 3.0).abs() < 1e-9);
+    assert!((hold.preload - 22.0 * hold.force).abs() < 1e-9);
+    assert!(hold.friction * 2.0 < hold.preload && hold.preload < 0.7 * STALL);
+}
