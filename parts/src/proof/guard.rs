@@ -15,9 +15,12 @@ use super::slope::Slope;
 use crate::joints::{Cranks, Joints};
 
 /// How far below the limit of a margin a pose is still looked at.
-pub const SINE: f64 = 0.005;
+const SINE: f64 = 0.005;
+/// If the limit of the type-2 margin is below this, as many times farther: a rounded
+/// length turns couplers by the more the nearer they are in line.
+const TYPE2: f64 = 0.3;
 /// How far beyond the ends of a slider's stroke, and crank tips crossed, mm.
-pub const LENGTH: f64 = 0.05;
+const LENGTH: f64 = 0.1;
 /// How exactly the ends of the servos' ranges are found, deg.
 const FINE: f64 = 0.01;
 /// In so many regions a pose is looked for that has some angles.
@@ -107,12 +110,13 @@ pub struct Guard<'a> {
 impl<'a> Guard<'a> {
     pub fn new(robot: &'a Robot) -> Self {
         let limits = robot.limits();
+        let sine = SINE * (TYPE2 / limits.type2).max(1.0);
         let mut guard = Self {
             robot,
             limits: Limits {
-                type2: limits.type2 - SINE,
-                type1: limits.type1 - SINE,
-                leg: limits.leg - SINE,
+                type2: limits.type2 - sine,
+                type1: limits.type1 - sine,
+                leg: limits.leg - sine,
                 stroke_min: limits.stroke_min - LENGTH,
                 stroke_max: limits.stroke_max + LENGTH,
             },

@@ -81,13 +81,13 @@ pub struct Proof {
 pub enum Clash {
     /// Two parts overlap.
     #[error("{0}")]
-    Overlap(Clearance),
+    Overlap(Box<Clearance>),
     /// Two parts come too near to each other.
     #[error("{0}, which is less than {LEAST} mm")]
-    Narrow(Clearance),
+    Narrow(Box<Clearance>),
     /// At poses that the guard hardly accepts, two parts may overlap.
     #[error("{0}")]
-    Unsure(Near),
+    Unsure(Box<Near>),
 }
 
 impl fmt::Display for Near {
@@ -112,9 +112,9 @@ impl Near {
     /// What is wrong with it, if they have to keep this distance, mm.
     fn clash(&self, least: f64) -> Option<Clash> {
         match &self.seen {
-            Some(seen) if seen.mm < least.min(0.0) => Some(Clash::Overlap(seen.clone())),
-            Some(seen) if seen.mm < least => Some(Clash::Narrow(seen.clone())),
-            _ if self.proved < least => Some(Clash::Unsure(self.clone())),
+            Some(seen) if seen.mm < least.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
+            Some(seen) if seen.mm < least => Some(Clash::Narrow(Box::new(seen.clone()))),
+            _ if self.proved < least => Some(Clash::Unsure(Box::new(self.clone()))),
             _ => None,
         }
     }

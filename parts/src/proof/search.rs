@@ -230,11 +230,11 @@ impl<'a, const N: usize> Search<'a, N> {
                 }
             }
         }
-        if nearest.0 < self.high() - NEAR / 4.0 {
-            if let Some(pose) = self.guard.pose(self.angles(&region)) {
-                self.seen = Some((pose, nearest.0));
-                self.by = nearest.1;
-            }
+        if nearest.0 < self.high() - NEAR / 4.0
+            && let Some(pose) = self.guard.pose(self.angles(&region))
+        {
+            self.seen = Some((pose, nearest.0));
+            self.by = nearest.1;
         }
         (!part.alive.is_empty()).then_some(part)
     }

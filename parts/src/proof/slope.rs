@@ -102,6 +102,8 @@ impl<const N: usize> Neg for Slope<N> {
 
 impl<const N: usize> Mul for Slope<N> {
     type Output = Self;
+    // The rule for the slopes has other operations in it.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn mul(self, other: Self) -> Self {
         self.zip(other, self.value * other.value, |a, b| {
             a * other.value + b * self.value
@@ -118,6 +120,8 @@ impl<const N: usize> Mul<f64> for Slope<N> {
 
 impl<const N: usize> Div for Slope<N> {
     type Output = Self;
+    // The rule for the slopes has other operations in it.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
         self.zip(other, quotient, |a, b| (a - quotient * b) / other.value)
