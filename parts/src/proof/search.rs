@@ -29,6 +29,8 @@ const SHARE_MEETING: f64 = 0.5;
 const NARROW: f64 = 0.002;
 /// So many regions are looked at, at most.
 const MANY: u64 = 100_000;
+/// And so many once an overlap is known: how deep it is at most changes no verdict.
+const FEW: u64 = 1_000;
 
 /// What is known of the least distance.
 #[derive(Clone, Debug)]
@@ -141,7 +143,8 @@ impl<'a, const N: usize> Search<'a, N> {
             if part.low >= high - NEAR - share * high.abs() {
                 return self.found(part.low.min(high), None);
             }
-            if part.region.half.iter().all(|half| *half < NARROW) || self.regions >= MANY {
+            let most = if high < 0.0 { FEW } else { MANY };
+            if part.region.half.iter().all(|half| *half < NARROW) || self.regions >= most {
                 return self.found(part.low, Some(&part));
             }
             for half in part.region.halves(part.across) {
