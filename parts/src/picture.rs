@@ -294,39 +294,61 @@ impl Ink {
         }
         let scale = (width - 2.0 * MARGIN) / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
+        // Each colour is named once, and a point is tenths of a pixel from the one before:
+        // a third of the text.
+        let mut styles: Vec<(&str, bool)> = Vec::new();
+        let mut paths = String::new();
+        let tenths = |x: f64| (10.0 * (x * scale + MARGIN)).round() as i64;
+        for (colour, loops, edge) in &self.shapes {
+            let style = (colour.as_str(), *edge);
+            let class = styles.iter().position(|of| *of == style);
+            let class = class.unwrap_or_else(|| {
+                styles.push(style);
+                styles.len() - 1
+            });
+            let mut data = String::new();
+            let mut at = (0, 0);
+            for line in loops {
+                let mut begin = None;
+                for (x, y) in line {
+                    let to = (tenths(x - low.0), tenths(y - low.1));
+                    let by = (to.0 - at.0, to.1 - at.1);
+                    let step = if begin.is_none() { "m" } else { "l" };
+                    let _ = write!(data, "{step}{} {}", tenth(by.0), tenth(by.1));
+                    begin.get_or_insert(to);
+                    at = to;
+                }
+                data.push('z');
+                at = begin.unwrap_or(at);
+            }
+            let _ = writeln!(paths, "<path class=\"c{class}\" d=\"{data}\"/>");
+        }
         let mut text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
-             width=\"{width}\" height=\"{height}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
-             <g fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n"
+             width=\"{width}\" height=\"{height}\">\n<style>\n"
         );
-        for (colour, loops, edge) in self.shapes {
-            let mut data = String::new();
-            for line in loops {
-                for (number, (x, y)) in line.into_iter().enumerate() {
-                    let _ = write!(
-                        data,
-                        "{}{:.1} {:.1}",
-                        if number == 0 { "M" } else { "L" },
-                        (x - low.0) * scale + MARGIN,
-                        (y - low.1) * scale + MARGIN
-                    );
-                }
-                data.push('Z');
-            }
+        for (class, (colour, edge)) in styles.into_iter().enumerate() {
             // A wall's own colour as a hair line closes the seams between walls.
-            let (stroke, thick) = if edge {
-                ("#333", 0.5)
-            } else {
-                (colour.as_str(), 0.4)
-            };
+            let (stroke, thick) = if edge { ("#333", 0.5) } else { (colour, 0.4) };
             let _ = writeln!(
                 text,
-                "<path fill=\"{colour}\" stroke=\"{stroke}\" stroke-width=\"{thick}\" d=\"{data}\"/>"
+                ".c{class}{{fill:{colour};stroke:{stroke};stroke-width:{thick}}}"
             );
         }
+        let _ = write!(
+            text,
+            "</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
+             <g fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
+        );
         text.push_str("</g>\n</svg>\n");
         text
     }
+}
+
+/// A number of tenths, without a point where it needs none.
+fn tenth(tenths: i64) -> String {
+    let text = format!("{:.1}", tenths as f64 / 10.0);
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 /// All bodies in their places.
