@@ -3,8 +3,7 @@
 //! The links' lengths say where the joints are. This says how wide and thick the parts
 //! are that hold the joints there, and what is bought for them: servos, screws,
 //! springs, a board, a battery. None of it moves a joint, so the firmware does not
-//! depend on it; only where the feet are depends on it, see `hips.rs`. All of it may be
-//! left out.
+//! depend on it. Where the feet stand does, see `hips.rs`. All of it may be left out.
 
 use crate::coil::Coil;
 use crate::error::Checked;
