@@ -42,7 +42,10 @@ impl Chance {
             feet: Feet {
                 mount: feet.mount + within((-MOUNT, MOUNT)),
                 hip_forward: feet.hip_forward + within((-HIPS, HIPS)),
-                hip_side: feet.hip_side + within((-HIPS, HIPS)),
+                hip_side: {
+                    let by = within((-HIPS, HIPS));
+                    feet.hip_side.map(|side| side + by)
+                },
                 ..feet
             },
             body: Body {

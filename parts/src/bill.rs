@@ -257,12 +257,13 @@ impl fmt::Display for Bill {
         for Item { count, what, .. } in &self.bought {
             writeln!(f, "| {count} | {what} |")?;
         }
-        let [ahead, left, up] = self.centre.map(|part| part + 0.0);
         writeln!(
             f,
-            "\nIn all about {:.0} g without wires; the mass centre is {ahead:.1} mm ahead of, {left:.1} mm \
-             left of and {up:.1} mm above the middle of the plate's top.\n",
-            self.grams
+            "\nIn all about {:.0} g without wires; the mass centre is {} the middle of the plate, \
+             {:.1} mm above its top.\n",
+            self.grams,
+            self.beside(),
+            self.centre[2]
         )?;
         let Hold {
             installed,
@@ -296,9 +297,8 @@ impl fmt::Display for Bill {
         }
         writeln!(
             f,
-            "\nIn robot.toml:\n\n```toml\n[leg]\nspring = {per_degree:.2}\npreload = {preload:.1}\n\n\
-             [body]\nmass = {:.0}.0\ncentre = [{ahead:.1}, {left:.1}]\n```",
-            self.grams
+            "\nIn robot.toml:\n\n```toml\n[leg]\nspring = {per_degree:.2}\npreload = {preload:.1}\n\n{}```",
+            self.body_toml()
         )
     }
 }

@@ -7,14 +7,10 @@ use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
 use crate::shape::Shape;
 
-/// Half the width of the plate's arms at the legs' pivots, mm.
-const ARM: f64 = 7.0;
 /// Where the standoffs are, mm: to the right, forward.
 pub const STANDOFFS: [f64; 2] = [8.0, 38.0];
 /// Radius of a standoff, mm: 5.5 mm over flats.
 const STANDOFF: f64 = 3.2;
-/// Width of the plate beside a servo's case, mm.
-const BESIDE_SERVO: f64 = 5.0;
 /// Radius of a servo's spline, mm.
 pub const SPLINE: f64 = 2.4;
 /// Radius of the hole that a servo's own screw cuts its thread into, mm.
@@ -56,10 +52,8 @@ fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
     )
 }
 
-/// The case reaches from its shaft towards the middle of the robot.
 fn middle(builder: &Builder, servo: usize) -> Vector {
-    let body = &builder.parts.servo;
-    builder.layout.shafts[servo] + inward(servo) * (body.length / 2.0 - body.shaft)
+    builder.layout.plate.cases[servo]
 }
 
 fn inward(servo: usize) -> Vector {
@@ -92,40 +86,29 @@ fn standoffs() -> [Vector; 4] {
 
 fn plate(builder: &mut Builder) {
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
-    let mut add = Vec::new();
+    let plate = layout.plate;
     let mut seats = Vec::new();
     let mut openings = Vec::new();
     let mut holes = Vec::new();
-    // Wide enough for the servos of both ends, and long enough for their flanges.
-    let (mut wide, mut long) = (0.0_f64, 0.0_f64);
     for servo in 0..4 {
-        let body = &parts.servo;
-        let middle = middle(builder, servo);
-        wide = wide.max(middle.x.abs() + body.width / 2.0 + BESIDE_SERVO);
-        long = long.max(middle.y.abs() + body.flange / 2.0 + 2.0);
         seats.push(seat(builder, servo));
         openings.push(opening(builder, servo, parts.fit));
         holes.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
     }
-    add.push(Shape::rectangle(
-        Vector::default(),
-        at(2.0 * wide, 2.0 * long),
-        4.0,
-    ));
+    let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
+    let mut add = vec![body];
     let mut through = Vec::new();
-    for leg in &layout.legs {
-        let inner = |pivot: Vector| at((wide - ARM).copysign(pivot.x), pivot.y);
-        add.push(Shape::bar(leg.driven, leg.idle, ARM));
-        for pivot in [leg.driven, leg.idle] {
-            let y = pivot.y.clamp(ARM - long, long - ARM);
-            let reach = at(inner(pivot).x, y);
-            add.push(Shape::bar(pivot, reach, ARM - 0.01));
+    for (leg, [between, driven, idle]) in layout.legs.iter().zip(plate.arms) {
+        let bar = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
+        add.push(bar(between, plate.arm));
+        for (pivot, arm) in [(leg.driven, driven), (leg.idle, idle)] {
+            add.push(bar(arm, plate.arm - 0.01));
             through.push(builder.hole(pivot));
         }
     }
     through.extend(standoffs().map(|at| builder.hole(at)));
     // Lighter, and a way for the straps of the battery.
-    let window = Shape::rectangle(Vector::default(), at(wide, 44.0), 3.0);
+    let window = Shape::rectangle(Vector::default(), at(plate.half.x, 44.0), 3.0);
     let cut = [&openings[..], &holes].concat();
     let prisms = vec![
         Prism {

@@ -34,7 +34,8 @@
 //!   rod with its sleeve, the strut with the leg's crank that its spring pulls at.
 //! - [`Assembly::prove`] proves how near any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only looks at some.
-//! - [`Layout`] has pivots and anchors seen from above, for drawings.
+//! - [`Layout`] has pivots and anchors seen from above. Those of the legs are
+//!   [`lizard_robot::LegPlan`], which the drawings use as well.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
@@ -69,6 +70,7 @@ mod step;
 mod stl;
 mod svg;
 mod unfit;
+mod weight;
 
 pub use assembly::Assembly;
 pub use bill::{Bill, Hold, Item, STALL};
@@ -78,7 +80,7 @@ pub use coupon::coupon;
 pub use dxf::dxf;
 pub use files::{File, part_files};
 pub use guide::guide;
-pub use layout::{Layout, LegLayout};
+pub use layout::Layout;
 pub use mesh::Mesh;
 pub use outline::{Loop, Outline, Side};
 pub use part::Part;

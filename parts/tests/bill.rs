@@ -43,6 +43,63 @@ fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
 }
 
 #[test]
+fn every_file_of_robots_weighs_what_its_bill_says() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots");
+    let files = std::fs::read_dir(folder).expect("robots/");
+    let paths = files.map(|file| file.expect("a file").path());
+    let mut count = 0;
+    for path in paths.filter(|path| path.extension().is_some_and(|end| end == "toml")) {
+        let name = path
+            .file_stem()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        let (assembly, bill) = bill(name);
+        let body = assembly.robot().ground().body;
+        let off = (body.mass - bill.grams).abs();
+        assert!(
+            off <= 1.0,
+            "{name}: mass {}, bill {}",
+            body.mass,
+            bill.grams
+        );
+        for (file, bill) in body.centre.into_iter().zip(bill.centre) {
+            assert!((file - bill).abs() <= 1.0, "{name}: {file} {bill}");
+        }
+        assert!(!bill.differs(&body), "{name}");
+        count += 1;
+    }
+    assert!(count >= 4);
+    let (assembly, _) = bill("paper");
+    assert_eq!(lizard_robot::Body::DEFAULT, assembly.robot().ground().body);
+}
+
+#[test]
+fn a_mass_centre_is_told_in_words_and_as_robot_toml_has_it() {
+    let (_, mut bill) = bill("paper");
+    (bill.grams, bill.centre) = (308.4, [-0.06, -0.11, 9.7]);
+    assert_eq!(bill.beside(), "0.1 mm behind and 0.1 mm to the right of");
+    assert_eq!(bill.body_toml(), "[body]\nmass = 308.0\n");
+    bill.centre = [4.26, 0.04, 9.7];
+    assert_eq!(bill.beside(), "4.3 mm ahead and 0.0 mm to the left of");
+    let body = bill.body();
+    assert_eq!(
+        bill.body_toml(),
+        "[body]\nmass = 308.0\ncentre = [4.3, 0.0]\n"
+    );
+    assert!(!bill.differs(&body));
+    for (mass, centre) in [
+        (280.0, [4.0, 0.0]),
+        (308.0, [0.0, 0.0]),
+        (330.0, [4.0, 0.0]),
+    ] {
+        assert!(
+            bill.differs(&lizard_robot::Body { mass, centre }),
+            "{mass} {centre:?}"
+        );
+    }
+}
+
+#[test]
 fn a_leg_is_held_against_friction_and_spares_a_stalled_servo() {
     let (assembly, bill) = bill("paper");
     let hold = bill.hold;

@@ -87,13 +87,32 @@ fn the_foot_stands_where_the_contact_model_has_it() {
         let assembly = assembly(name);
         let robot = assembly.robot();
         for pose in assembly.poses(7) {
-            for servo in 0..4 {
-                let angles: [f64; 4] = pose.pose.into();
-                let foot = robot.leg(servo, angles[servo]).foot();
+            let feet = robot.ground().feet.at(robot.sweeps(pose.pose.into()));
+            for (servo, [forward, left]) in feet.into_iter().enumerate() {
+                let foot = lizard_kinematics::Vector::new(-left, forward);
                 let mount = lizard_parts::Mount::Foot(servo);
                 let place = assembly.place(mount, &pose);
                 let built = place.map(assembly.layout().legs[servo].foot);
                 assert!((built - foot).length() < 1e-9, "{name} {servo}");
+                // And the drawings show these parts.
+                let angle = pose.legs[servo].direction.angle();
+                let drawn = assembly.layout().legs[servo].at(angle, angle);
+                assert!((drawn.foot - foot).length() < 1e-9, "{name} {servo}");
+                let at = |mount, point| assembly.place(mount, &pose).map(point);
+                let leg = &assembly.layout().legs[servo];
+                let crank = lizard_parts::Mount::Crank(servo);
+                let follower = lizard_parts::Mount::Follower(servo);
+                for (drawn, built) in [
+                    (drawn.joints[0], at(crank, leg.joint)),
+                    (drawn.joints[1], at(follower, leg.joint)),
+                    (
+                        drawn.strut[0],
+                        at(lizard_parts::Mount::Link(servo), leg.anchor),
+                    ),
+                    (drawn.strut[1], at(crank, leg.anchor)),
+                ] {
+                    assert!((drawn - built).length() < 1e-9, "{name} {servo}");
+                }
             }
         }
     }

@@ -130,6 +130,28 @@ pub enum Problem {
         /// Why they must be equal.
         why: &'static str,
     },
+    /// Hips in another place than the pivots and the foot put them.
+    #[error(
+        "is {value} mm, but parts.pivot and parts.foot put it at {follows:.2} mm; leave one of them out"
+    )]
+    OtherHip {
+        /// Its own value, mm.
+        value: f64,
+        /// Where it follows to be, mm.
+        follows: f64,
+    },
+    /// Hips that the pivots put where no leg can be.
+    #[error(
+        "is left out and follows from links, parts.pivot and parts.foot, which put it at {value:.2} mm; it must be within {min} to {max} mm"
+    )]
+    FarHip {
+        /// Where it follows to be, mm.
+        value: f64,
+        /// Smallest allowed, mm.
+        min: f64,
+        /// Largest allowed, mm.
+        max: f64,
+    },
     /// A value that must stay below another.
     #[error("is {value}; it must be less than {other}, which is {other_value}")]
     NotLess {

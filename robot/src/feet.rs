@@ -4,9 +4,9 @@ use crate::friction::Point;
 use crate::linear::solve;
 
 /// Which legs are in front, servo order.
-const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
+pub(crate) const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
 /// Which legs are on the left, servo order.
-const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
+pub(crate) const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
 
 /// Standard gravity, m/s^2.
 pub const GRAVITY: f64 = 9.80665;
@@ -16,8 +16,8 @@ pub const GRAVITY: f64 = 9.80665;
 pub struct Feet {
     /// Hips ahead of and behind the chassis centre, mm.
     pub hip_forward: f64,
-    /// Hips to either side, mm.
-    pub hip_side: f64,
+    /// Hips of the front and of the hind legs to either side, mm.
+    pub hip_side: [f64; 2],
     /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
     /// back.
     pub mount: f64,
@@ -29,7 +29,11 @@ impl Feet {
     /// The hips in servo order: (forward, left) from the chassis centre, mm.
     #[must_use]
     pub fn hips(&self) -> [Point; 4] {
-        std::array::from_fn(|i| [FRONT[i] * self.hip_forward, LEFT[i] * self.hip_side])
+        std::array::from_fn(|i| {
+            let [front, hind] = self.hip_side;
+            let side = if FRONT[i] > 0.0 { front } else { hind };
+            [FRONT[i] * self.hip_forward, LEFT[i] * side]
+        })
     }
 
     /// Where the feet are for sweeps in deg, servo order: (forward, left) from
@@ -41,7 +45,7 @@ impl Feet {
             let (sin, cos) = self.swept(i, sweeps[i]);
             [
                 hips[i][0] + self.reach * sin,
-                LEFT[i] * (self.hip_side + self.reach * cos),
+                hips[i][1] + LEFT[i] * self.reach * cos,
             ]
         })
     }
@@ -69,9 +73,10 @@ pub struct Body {
 }
 
 impl Body {
-    /// What robot.toml means where it says nothing.
+    /// What robot.toml means where it says nothing: what the parts of the paper's robot
+    /// weigh.
     pub const DEFAULT: Self = Self {
-        mass: 280.0,
+        mass: 308.0,
         centre: [0.0; 2],
     };
 
@@ -132,7 +137,7 @@ mod tests {
     fn feet_stand_where_the_parallelograms_put_them() {
         let feet = Feet {
             hip_forward: 55.0,
-            hip_side: 35.0,
+            hip_side: [35.0; 2],
             mount: 0.0,
             reach: 45.0,
         };
@@ -208,7 +213,7 @@ mod tests {
     fn a_foot_goes_along_its_circle() {
         let feet = Feet {
             hip_forward: 55.0,
-            hip_side: 35.0,
+            hip_side: [35.0; 2],
             mount: 12.0,
             reach: 45.0,
         };

@@ -455,7 +455,12 @@ mod tests {
             paper,
             "the floor is no part of it"
         );
-        assert_eq!(hash(&[("hip_side = 35.0", "hip_side = 36.0")]), paper);
+        for hips in ["hip_side = 36.0", "hip_forward = 70.0\nhip_side = 35.0"] {
+            let change = format!("{hips}\nmount = 0.0 ");
+            assert_eq!(hash(&[("mount = 0.0 ", &change)]), paper, "{hips}");
+        }
+        let parts = "[parts]\npivot = [31.0, 9.0]\nfoot = [-2.0, 1.0]\n[ground] ";
+        assert_eq!(hash(&[("[ground] ", parts)]), paper);
     }
 
     #[test]

@@ -217,7 +217,7 @@ mod tests {
     const GROUND: Ground = Ground {
         feet: Feet {
             hip_forward: 55.0,
-            hip_side: 35.0,
+            hip_side: [35.0; 2],
             mount: 0.0,
             reach: 45.0,
         },

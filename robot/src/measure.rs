@@ -6,6 +6,8 @@ use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use crate::error::{Checked, Problem};
 use crate::feet::{Body, Feet};
 use crate::ground::{DEFAULT_FRICTION, Ground};
+use crate::hips::Hips;
+use crate::legs::LegPlan;
 use crate::parts::Parts;
 use crate::reader::Section;
 use crate::scale::{self, LONGEST_BAR};
@@ -39,6 +41,8 @@ pub(crate) struct Measures {
     pub ground: Ground,
     pub supplies: Supplies,
     pub parts: Parts,
+    /// In servo order.
+    pub legs: [LegPlan; 4],
 }
 
 impl Measures {
@@ -46,17 +50,23 @@ impl Measures {
     /// safe.
     pub fn read(root: &Section) -> Checked<Self> {
         let links = links(root)?;
-        let (leg, feet, spring) = leg(root)?;
+        let (leg, hips, mount, spring) = leg(root)?;
         let servos = servos(root)?;
         let (limits, pace) = limits(root)?;
+        let parts = Parts::read(root)?;
+        let lizard = Lizard { links, leg };
+        let feet = hips.feet(&lizard, &parts, mount)?;
         let measures = Self {
-            lizard: Lizard { links, leg },
             servos,
             limits,
             pace,
             ground: ground(root, feet, spring)?,
             supplies: Supplies::read(root, &servos)?,
-            parts: Parts::read(root)?,
+            legs: std::array::from_fn(|servo| {
+                LegPlan::new(servo, servos[servo].neutral, &lizard, &parts, &feet)
+            }),
+            lizard,
+            parts,
         };
         measures.fits()?;
         measures.stands()?;
@@ -142,8 +152,9 @@ fn links(root: &Section) -> Checked<Links> {
     Ok(l)
 }
 
-/// The legs: their links, where their feet are, and what pulls them.
-fn leg(root: &Section) -> Checked<(Leg, Feet, Option<Spring>)> {
+/// The legs: their links, their hips, their sweep at neutral in deg, and what pulls
+/// them.
+fn leg(root: &Section) -> Checked<(Leg, Hips, f64, Option<Spring>)> {
     let keys = [
         "ground",
         "crank",
@@ -178,13 +189,9 @@ fn leg(root: &Section) -> Checked<(Leg, Feet, Option<Spring>)> {
         leg.crank,
         parallelogram,
     )?;
-    let feet = Feet {
-        hip_forward: section.number("hip_forward", 1.0, 500.0, "mm")?,
-        hip_side: section.number("hip_side", 0.0, 500.0, "mm")?,
-        mount: section.number("mount", -90.0, 90.0, "deg")?,
-        reach: leg.crank,
-    };
-    Ok((leg, feet, spring(&section)?))
+    let hips = Hips::read(&section)?;
+    let mount = section.number("mount", -90.0, 90.0, "deg")?;
+    Ok((leg, hips, mount, spring(&section)?))
 }
 
 /// What pulls a leg along; none, and the leg is rigid.

@@ -240,6 +240,7 @@ mod tests {
                 ground: *robot.ground(),
                 supplies: *robot.supplies(),
                 parts: *robot.parts(),
+                legs: *robot.legs(),
             },
             Tables::new(&[]).expect("no gait"),
         );

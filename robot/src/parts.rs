@@ -3,7 +3,8 @@
 //! The links' lengths say where the joints are. This says how wide and thick the parts
 //! are that hold the joints there, and what is bought for them: servos, screws,
 //! springs, a board, a battery. None of it moves a joint, so the firmware does not
-//! depend on it. All of it may be left out.
+//! depend on it; only where the feet are depends on it, see `hips.rs`. All of it may be
+//! left out.
 
 use crate::coil::Coil;
 use crate::error::Checked;
@@ -29,6 +30,10 @@ pub struct Parts {
     /// The leg's driven pivot on the chassis, from its servo's shaft: outward and
     /// towards the middle. The other pivot is a ground link further out.
     pub pivot: [f64; 2],
+    /// The foot's place on its coupler: from the crank's joint, outward and towards the
+    /// middle. So much lies the hip, the middle of the foot's circle, from the driven
+    /// pivot. None where it is left out; [`crate::LegPlan`] has where the foot is.
+    pub foot: Option<[f64; 2]>,
     /// Where the strut holds the servo's link and, in parallel, the leg: distance from
     /// the shaft, and angle (deg) from the crank, away from the arm.
     pub anchor: [f64; 2],
@@ -110,6 +115,7 @@ impl Default for Parts {
             gap: 0.5,
             kerf: 0.2,
             pivot: [28.5, 10.0],
+            foot: None,
             anchor: [22.0, 0.0],
             height: 34.0,
             servo: ServoBody {
@@ -143,7 +149,7 @@ impl Default for Parts {
     }
 }
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "fit",
     "wall",
     "bar",
@@ -152,6 +158,7 @@ const KEYS: [&str; 15] = [
     "gap",
     "kerf",
     "pivot",
+    "foot",
     "anchor",
     "height",
     "servo",
@@ -174,6 +181,10 @@ impl Parts {
             true => section.pair(name, min, max, "(mm; an angle in deg)"),
             false => Ok(default),
         };
+        let foot = match section.has("foot") {
+            true => Some(list("foot", [0.0; 2], -500.0, 500.0)?),
+            false => None,
+        };
         let battery = match section.has("battery") {
             true => section.numbers("battery", 1.0, 500.0, "mm")?,
             false => all.battery,
@@ -187,6 +198,7 @@ impl Parts {
             gap: mm("gap", all.gap, 0.1, 5.0)?,
             kerf: mm("kerf", all.kerf, 0.0, 2.0)?,
             pivot: list("pivot", all.pivot, -500.0, 500.0)?,
+            foot,
             anchor: list("anchor", all.anchor, -90.0, 500.0)?,
             height: mm("height", all.height, 5.0, 500.0)?,
             servo: ServoBody::read(&section, all.servo)?,

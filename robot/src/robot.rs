@@ -13,9 +13,11 @@ use crate::error::{Checked, Error, Fault, Problem};
 use crate::file;
 use crate::firmware::Firmware;
 use crate::ground::{Ground, Prediction, Travel};
+use crate::legs::LegPlan;
 use crate::measure::Measures;
 use crate::numbers::Numbers;
 use crate::parts::Parts;
+use crate::plate::Plate;
 use crate::reader::{self, Section};
 use crate::servo::{self, FORWARD, Pace, Servo};
 use crate::supply::Supplies;
@@ -156,6 +158,16 @@ impl Robot {
     /// What it is built of.
     pub fn parts(&self) -> &Parts {
         &self.measures.parts
+    }
+
+    /// Its legs seen from above, servo order.
+    pub fn legs(&self) -> &[LegPlan; 4] {
+        &self.measures.legs
+    }
+
+    /// Its chassis seen from above.
+    pub fn plate(&self) -> Plate {
+        Plate::new(self.legs(), self.parts())
     }
 
     /// Its feet on the floor.

@@ -14,6 +14,10 @@ pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 /// forward: theta1 down, theta4 up, theta8 up, theta5 down.
 pub const FORWARD: [f64; 4] = [-1.0, 1.0, 1.0, -1.0];
 
+/// 1 where the slider's arm of a servo's link stands counter-clockwise from its crank,
+/// else -1.
+pub const HAND: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
+
 /// The servo on the other side: left and right exchanged.
 pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
 

@@ -23,7 +23,7 @@ mod tally;
 mod twin;
 
 pub use servo::ServoModel;
-pub use shape::{LegShape, Shape};
+pub use shape::Shape;
 pub use state::State;
 pub use tally::Tally;
 pub use twin::Twin;

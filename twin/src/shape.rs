@@ -1,8 +1,8 @@
 //! Where every joint is: what a picture of the robot needs.
 
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
+use lizard_robot::{LegPlace, Robot};
 
 /// The joints of a robot, mm, chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,21 +15,8 @@ pub struct Shape {
     pub arms: [Vector; 4],
     /// The head and the tail.
     pub ends: [Vector; 2],
-    /// The legs.
-    pub legs: [LegShape; 4],
-}
-
-/// A leg: a parallelogram beside its hip.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LegShape {
-    /// The two pivots on the chassis, the middle between which is the hip.
-    pub pivots: [Vector; 2],
-    /// The two joints of the coupler that carries the foot.
-    pub joints: [Vector; 2],
-    /// The foot.
-    pub foot: Vector,
-    /// Where the spring is hooked: in the middle of the servo's crank and of the leg's.
-    pub spring: [Vector; 2],
+    /// The legs, which may lag behind their servos.
+    pub legs: [LegPlace; 4],
 }
 
 impl Shape {
@@ -47,6 +34,7 @@ impl Shape {
     pub fn of_solved(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let tips = solved.crank_tips();
+        let angles: [f64; 4] = solved.pose.into();
         let mut arms = shafts;
         for side in Side::ALL {
             let [front, rear] = side.servos();
@@ -60,29 +48,9 @@ impl Shape {
             arms,
             ends: End::ALL.map(|end| solved.point(end)),
             legs: std::array::from_fn(|i| {
-                let middle = (shafts[i] + tips[i]) * 0.5;
-                LegShape::of(robot, i, legs[i], middle)
+                let leg = robot.servos()[i].neutral + FORWARD[i] * legs[i];
+                robot.legs()[i].at(angles[i], leg)
             }),
-        }
-    }
-}
-
-impl LegShape {
-    /// A servo's leg at a sweep from neutral (deg, foot forward positive), its spring
-    /// hooked to this point of the crank.
-    #[must_use]
-    pub fn of(robot: &Robot, servo: usize, sweep: f64, hook: Vector) -> Self {
-        let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
-        let place = robot.leg(servo, angle);
-        let pivots = place.pivots();
-        // The leg's own link is the one nearer to the servo.
-        let away = pivots.map(|pivot| (pivot - hook).length());
-        let driven = pivots[usize::from(away[1] < away[0])];
-        Self {
-            pivots,
-            joints: place.joints(),
-            foot: place.foot(),
-            spring: [hook, driven + place.reach * 0.5],
         }
     }
 }
@@ -112,6 +80,21 @@ mod tests {
             assert!((length(leg.joints[0], leg.joints[1]) - 50.0).abs() < 1e-9);
             assert!((length(leg.pivots[0], leg.joints[0]) - 45.0).abs() < 1e-9);
             assert!((length(leg.pivots[1], leg.joints[1]) - 45.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_leg_that_lags_leaves_its_servo_and_opens_its_strut() {
+        let robot = paper();
+        let long = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
+        let [rigid, lags] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
+        for i in 0..4 {
+            let (before, after) = (rigid.legs[i], lags.legs[i]);
+            assert_eq!(before.pivots, after.pivots);
+            assert_eq!(before.strut[0], after.strut[0], "the servo stands");
+            assert!((long(before) - robot.legs()[i].strut_length).abs() < 1e-9);
+            assert!((long(after) - long(before)).abs() > 1.5, "{after:?}");
+            assert!(after.foot.y > before.foot.y + 4.0);
         }
     }
 

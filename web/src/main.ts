@@ -183,7 +183,7 @@ async function start(): Promise<void> {
       session.advance(ms);
     },
     () => {
-      floor.draw(session.last);
+      floor.draw(session.description.plate, session.last);
       pictures += 1;
       if (pictures % PANELS === 0) {
         scope.draw(latest);

@@ -35,6 +35,7 @@ export interface Description {
   servos: Four<Servo>;
   gaits: Gait[];
   lengths: Length[];
+  plate: Plate;
   margins: { name: string; limit: number }[];
   stroke: [number, number];
   supply: [number, number, number];
@@ -42,6 +43,19 @@ export interface Description {
   rail: [number, number] | null;
   floor: Floor;
   models: ServoModel[];
+}
+
+/** The chassis from above, mm. */
+export interface Plate {
+  /** Half its width and half its length, without the arms. */
+  half: Spot;
+  corner: number;
+  /** The arms that the legs are pivoted on, and half their width. */
+  arms: [Spot, Spot][];
+  arm: number;
+  /** The middles of the servos' cases, their width and length. */
+  cases: Four<Spot>;
+  case: Spot;
 }
 
 /** What the robot stands on, what it weighs, and what pulls its legs. */
@@ -79,7 +93,8 @@ export interface Scene {
   tips: Four<Spot>;
   points: [Spot, Spot];
   sliders: { shafts: [Spot, Spot]; tips: [Spot, Spot]; tube: Spot; travel: number }[];
-  legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot; spring: [Spot, Spot] | null }>;
+  /** The driven pivot first; the strut from the servo's link to the leg's crank. */
+  legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot; strut: [Spot, Spot]; sprung: boolean }>;
   margins: { name: string; value: number }[];
   smallest: { name: string; value: number };
   refusal: string | null;

@@ -5,7 +5,10 @@ use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
 
 use super::ink::{Anchor, DARK, GREY, SERVO, line, text};
-use super::top_view::{Joint, PIXELS_PER_MM, SIZE, View, page};
+use super::top_view::{Joint, NAME_BEYOND, SIZE, SKIN_BEYOND, View};
+
+/// How far the servos' names are from the page's middle, to the side and up, pixels.
+const NAMES_AT: f64 = 347.0;
 
 /// The name on the board of an Arduino pin number: D9, or A0 for 14.
 #[must_use]
@@ -26,10 +29,9 @@ impl View<'_> {
             let left = matches!(servo, 0 | 3);
             let side = if left { -1.0 } else { 1.0 };
             let up = shaft.y.signum();
-            let place = Vector::new(side * 112.0, up * 112.0);
             let anchor = if left { Anchor::End } else { Anchor::Start };
-            let (x, y) = page(place);
-            let toward = page(shaft + Vector::new(side * 3.5, up * 2.0));
+            let (x, y) = (SIZE.0 / 2.0 + side * NAMES_AT, SIZE.1 / 2.0 - up * NAMES_AT);
+            let toward = self.page(shaft + Vector::new(side * 3.5, up * 2.0));
             let name = format!(
                 "{} · {}",
                 NAMES[servo],
@@ -47,7 +49,7 @@ impl View<'_> {
                 .add(text(&angle, (x, y + 16.0), 18.0, DARK, anchor));
         }
         group = self.part_labels(group);
-        compass(group)
+        compass(group, self.scale)
     }
 
     fn part_labels(&self, mut group: Group) -> Group {
@@ -55,7 +57,7 @@ impl View<'_> {
         let head = solution.head_point();
         let tail = solution.tail_point();
         let coordinates = |name: &str, at: Joint| format!("{name} ({:.1}, {:.1}) mm", at.x, at.y);
-        let (x, y) = page(head + Vector::new(0.0, 36.0));
+        let (x, y) = self.page(head + Vector::new(0.0, SKIN_BEYOND * self.grown() + NAME_BEYOND));
         group = group.add(text(
             &coordinates("head", head),
             (x, y),
@@ -63,7 +65,7 @@ impl View<'_> {
             DARK,
             Anchor::Middle,
         ));
-        let (x, y) = page(tail + Vector::new(0.0, -34.0));
+        let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.grown() - 8.0));
         group = group.add(text(
             &coordinates("tail", tail),
             (x, y),
@@ -77,7 +79,7 @@ impl View<'_> {
             } else {
                 Anchor::Start
             };
-            let (x, y) = page(Vector::new(side * 50.0, 0.0));
+            let (x, y) = self.page(Vector::new(side * 50.0 * self.grown(), 0.0));
             let travel = if slider.s.abs() < 0.05 {
                 "s = 0.0 mm".to_owned()
             } else {
@@ -95,7 +97,7 @@ impl View<'_> {
             } else {
                 Anchor::Start
             };
-            let (x, y) = page(foot + Vector::new(side * 24.0, -2.0));
+            let (x, y) = self.page(foot + Vector::new(side * 24.0, -2.0));
             let name = [
                 "front left foot",
                 "front right foot",
@@ -109,7 +111,7 @@ impl View<'_> {
 }
 
 /// The axes of the chassis frame and a scale.
-fn compass(mut group: Group) -> Group {
+fn compass(mut group: Group, scale: f64) -> Group {
     let origin = (50.0, SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
         let (sin, cos) = sin_cos(degrees);
@@ -130,7 +132,7 @@ fn compass(mut group: Group) -> Group {
             .add(text(name, at, 16.0, DARK, Anchor::Start));
     }
     let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
-    let begin = (end.0 - 50.0 * PIXELS_PER_MM, end.1);
+    let begin = (end.0 - 50.0 * scale, end.1);
     for at in [begin, end] {
         group = group.add(line((at.0, at.1 - 7.0), (at.0, at.1 + 7.0), DARK, 2.0));
     }

@@ -1,5 +1,6 @@
 //! `lizard draw`: the robot from above, its wiring, and how its cranks are fitted.
 
+pub mod body;
 mod horns;
 pub mod ink;
 mod labels;

@@ -5,18 +5,23 @@ use lizard_robot::{LegPlace, Robot};
 use svg::Document;
 use svg::node::element::{Group, Path};
 
-use super::ink::{DARK, SERVO, circle, line, rectangle};
+use super::body::Sheet;
+use super::ink::{DARK, SERVO, circle, rectangle};
 
 pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
-pub(super) const PIXELS_PER_MM: f64 = 3.1;
-
-/// An SG-90's body seen from above and how far its shaft is from its end, mm.
-const SERVO_BODY: (f64, f64) = (12.2, 22.8);
-const SERVO_SHAFT: f64 = 6.0;
+/// Pixels of a mm, unless the robot is too large for the page.
+const PIXELS_PER_MM: f64 = 3.1;
+/// Pixels that are left at the page's edge for names and measures.
+const MARGIN: (f64, f64) = (80.0, 28.0);
+/// A head's skin reaches so far beyond its point, mm; a tail's less.
+pub(super) const SKIN_BEYOND: f64 = 30.0;
+/// From the skin to the name of what it is of, mm.
+pub(super) const NAME_BEYOND: f64 = 6.0;
+/// Half the length of the plate for which the skin is drawn, mm.
+const SKIN_LENGTH: f64 = 80.4;
 
 const SKIN: &str = "#e3ecdc";
 const STEEL: &str = "#555555";
-const FRAME: &str = "#f4f1ea";
 
 /// A joint of the robot: mm, chassis frame.
 pub(super) type Joint = Vector;
@@ -25,19 +30,20 @@ pub(super) type Joint = Vector;
 /// `labels`.
 #[must_use]
 pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
-    let view = View { robot, solution };
+    let view = View::new(robot, solution);
     let mut group = Group::new().add(rectangle((0.0, 0.0), SIZE, "white"));
     group = view.skin(group);
-    for servo in 0..4 {
-        group = view.leg(group, servo);
-    }
-    group = view.chassis(group);
+    let (legs, sheet) = (view.legs(), view.sheet());
+    group = sheet.feet(group, &legs, [DARK; 4]);
+    group = sheet.plate(group, &robot.plate());
+    group = sheet.cranks(group, view.shafts(), &legs);
     for side in Side::ALL {
         group = view.slider(group, side);
     }
     for end in End::ALL {
         group = view.five_bar(group, end);
     }
+    group = sheet.anchors(group, &legs);
     if labels {
         group = view.labels(group);
     }
@@ -52,27 +58,60 @@ pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
 pub(super) struct View<'a> {
     pub(super) robot: &'a Robot,
     pub(super) solution: &'a Solution,
+    /// Pixels of a mm.
+    pub(super) scale: f64,
 }
 
-/// From the chassis frame to the page.
-pub(super) fn page(joint: Joint) -> (f64, f64) {
-    (
-        SIZE.0 / 2.0 + PIXELS_PER_MM * joint.x,
-        SIZE.1 / 2.0 - PIXELS_PER_MM * joint.y,
-    )
-}
+impl<'a> View<'a> {
+    fn new(robot: &'a Robot, solution: &'a Solution) -> Self {
+        let view = Self {
+            robot,
+            solution,
+            scale: PIXELS_PER_MM,
+        };
+        let legs = view.legs();
+        let joints = legs.iter().flat_map(|leg| leg.joints);
+        let wide = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
+        let ends = [solution.head_point(), solution.tail_point()];
+        let beyond = SKIN_BEYOND * view.grown() + NAME_BEYOND;
+        let long = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
+        let fits = [(SIZE.0, MARGIN.0, wide), (SIZE.1, MARGIN.1, long)];
+        let fits = fits.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
+        Self {
+            scale: fits.into_iter().fold(PIXELS_PER_MM, f64::min),
+            ..view
+        }
+    }
 
-fn bar(from: Joint, to: Joint, colour: &str, mm: f64) -> svg::node::element::Line {
-    line(page(from), page(to), colour, mm * PIXELS_PER_MM)
-}
+    /// From the chassis frame to the page.
+    pub(super) fn page(&self, joint: Joint) -> (f64, f64) {
+        (
+            SIZE.0 / 2.0 + self.scale * joint.x,
+            SIZE.1 / 2.0 - self.scale * joint.y,
+        )
+    }
 
-fn pivot(at: Joint, mm: f64) -> svg::node::element::Circle {
-    circle(page(at), mm * PIXELS_PER_MM, "white")
-        .set("stroke", DARK)
-        .set("stroke-width", 2.0)
-}
+    /// How much larger than the paper's robot it is.
+    pub(super) fn grown(&self) -> f64 {
+        self.robot.plate().half.y / SKIN_LENGTH
+    }
 
-impl View<'_> {
+    fn sheet(&self) -> Sheet<impl Fn(Joint) -> (f64, f64)> {
+        Sheet {
+            at: |joint| self.page(joint),
+            scale: self.scale,
+            turn: 0.0,
+        }
+    }
+
+    fn bar(&self, from: Joint, to: Joint, colour: &str, mm: f64) -> svg::node::element::Line {
+        self.sheet().bar(from, to, colour, mm)
+    }
+
+    fn pivot(&self, at: Joint, mm: f64) -> svg::node::element::Circle {
+        self.sheet().joint(at, mm)
+    }
+
     pub(super) fn angles(&self) -> [f64; 4] {
         self.solution.pose.into()
     }
@@ -88,11 +127,12 @@ impl View<'_> {
 
     /// A lizard's outline, pale, so that a mechanism looks like an animal.
     fn skin(&self, group: Group) -> Group {
-        let at = |x: f64, y: f64| {
-            let (x, y) = page(Vector::new(x, y));
+        let grown = self.grown();
+        let around = |point: Joint, x: f64, y: f64| {
+            let (x, y) = self.page(point + Vector::new(x, y) * grown);
             format!("{x:.1} {y:.1}")
         };
-        let around = |point: Joint, x: f64, y: f64| at(point.x + x, point.y + y);
+        let at = |x: f64, y: f64| around(Vector::default(), x, y);
         let head = self.solution.head_point();
         let tail = self.solution.tail_point();
         let d = [
@@ -136,38 +176,8 @@ impl View<'_> {
             ),
         ];
         let outline = Path::new().set("d", d.join(" ")).set("fill", SKIN);
-        let eye = |x: f64| circle(page(head + Vector::new(x, 12.0)), 6.5, DARK);
+        let eye = |x: f64| circle(self.page(head + Vector::new(x, 12.0) * grown), 6.5, DARK);
         group.add(outline).add(eye(-9.0)).add(eye(9.0))
-    }
-
-    fn chassis(&self, mut group: Group) -> Group {
-        let shafts = self.shafts();
-        let half = shafts[1].x.max(shafts[2].x) + 9.0;
-        let top = shafts[0].y + 8.0;
-        let corner = page(Vector::new(-half, top));
-        let size = (2.0 * half * PIXELS_PER_MM, 2.0 * top * PIXELS_PER_MM);
-        group = group.add(
-            rectangle(corner, size, FRAME)
-                .set("rx", 16)
-                .set("stroke", "#b8b0a0")
-                .set("stroke-width", 2),
-        );
-        for (servo, shaft) in shafts.into_iter().enumerate() {
-            // The body reaches from the shaft towards the middle.
-            let outward = shaft.y.signum();
-            let (low, high) = (
-                shaft.y + outward * SERVO_SHAFT,
-                shaft.y - outward * (SERVO_BODY.1 - SERVO_SHAFT),
-            );
-            let corner = page(Vector::new(shaft.x - SERVO_BODY.0 / 2.0, low.max(high)));
-            let size = (SERVO_BODY.0 * PIXELS_PER_MM, SERVO_BODY.1 * PIXELS_PER_MM);
-            group = group.add(
-                rectangle(corner, size, SERVO[servo])
-                    .set("rx", 4)
-                    .set("fill-opacity", 0.35),
-            );
-        }
-        group
     }
 
     /// The prismatic joint between the arms of a front and a rear servo.
@@ -181,14 +191,19 @@ impl View<'_> {
             Side::Right => links.l17,
         };
         let along = (high - low) * (1.0 / slider.d);
-        group =
-            group
-                .add(bar(low, high, STEEL, 1.8))
-                .add(bar(low, low + along * tube, "#9a9a9a", 5.0));
+        group = group.add(self.bar(low, high, STEEL, 1.8)).add(self.bar(
+            low,
+            low + along * tube,
+            "#9a9a9a",
+            5.0,
+        ));
         for (servo, tip) in [(front, high), (rear, low)] {
             group = group
-                .add(bar(self.shafts()[servo], tip, SERVO[servo], 3.0).set("stroke-opacity", 0.75))
-                .add(pivot(tip, 2.0));
+                .add(
+                    self.bar(self.shafts()[servo], tip, SERVO[servo], 3.0)
+                        .set("stroke-opacity", 0.75),
+                )
+                .add(self.pivot(tip, 2.0));
         }
         group
     }
@@ -197,46 +212,31 @@ impl View<'_> {
     fn five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
-            group = group.add(bar(self.crank_tip(servo), point, STEEL, 3.4));
+            group = group.add(self.bar(self.crank_tip(servo), point, STEEL, 3.4));
         }
         for servo in servos {
             let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
             group = group
-                .add(bar(shaft, tip, SERVO[servo], 4.6))
-                .add(pivot(tip, 2.3))
-                .add(circle(page(shaft), 3.4 * PIXELS_PER_MM, DARK))
-                .add(circle(page(shaft), 1.2 * PIXELS_PER_MM, "white"));
+                .add(self.bar(shaft, tip, SERVO[servo], 4.6))
+                .add(self.pivot(tip, 2.3))
+                .add(circle(self.page(shaft), 3.4 * self.scale, DARK))
+                .add(circle(self.page(shaft), 1.2 * self.scale, "white"));
         }
         group.add(
-            circle(page(point), 3.4 * PIXELS_PER_MM, "#f0e442")
+            circle(self.page(point), 3.4 * self.scale, "#f0e442")
                 .set("stroke", DARK)
                 .set("stroke-width", 2.5),
         )
     }
 
     pub(super) fn foot(&self, servo: usize) -> Joint {
-        self.place(servo).foot()
+        self.legs()[servo].foot
     }
 
-    fn place(&self, servo: usize) -> LegPlace {
-        self.robot.leg(servo, self.angles()[servo])
-    }
-
-    fn leg(&self, mut group: Group, servo: usize) -> Group {
-        let place = self.place(servo);
-        let (pivots, joints) = (place.pivots(), place.joints());
-        let colour = SERVO[servo];
-        group = group.add(bar(pivots[0], pivots[1], "#c9c3b6", 5.0));
-        for (pivot, joint) in pivots.into_iter().zip(joints) {
-            group = group.add(bar(pivot, joint, colour, 3.2).set("stroke-opacity", 0.8));
-        }
-        group = group.add(bar(joints[0], joints[1], colour, 4.2));
-        for (at, joint) in pivots.into_iter().zip(joints) {
-            group = group.add(pivot(at, 1.7)).add(pivot(joint, 1.7));
-        }
-        let foot = page(place.foot());
-        let pad = (8.0 * PIXELS_PER_MM, 11.0 * PIXELS_PER_MM);
-        group.add(rectangle((foot.0 - pad.0 / 2.0, foot.1 - pad.1 / 2.0), pad, DARK).set("rx", 10))
+    /// The legs, none of which lags.
+    pub(super) fn legs(&self) -> [LegPlace; 4] {
+        let angles = self.angles();
+        std::array::from_fn(|i| self.robot.legs()[i].at(angles[i], angles[i]))
     }
 }
 
@@ -250,10 +250,7 @@ mod tests {
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right");
         let pose = pose.unwrap_or_else(|| robot.neutral());
         let solution = robot.lizard().solve(&pose).expect("the pose closes");
-        verdict(&View {
-            robot: &robot,
-            solution: &solution,
-        });
+        verdict(&View::new(&robot, &solution));
     }
 
     const ASKEW: [f64; 4] = [120.0, 50.0, 330.0, 200.0];
@@ -305,6 +302,25 @@ mod tests {
                 });
             }
         });
+    }
+
+    #[test]
+    fn a_large_robot_is_on_the_page() {
+        let robot =
+            Robot::parse(include_str!("../../../robots/large.toml")).expect("large.toml is right");
+        let solution = robot.lizard().solve(&robot.neutral()).expect("it closes");
+        let view = View::new(&robot, &solution);
+        let mut joints = view
+            .legs()
+            .iter()
+            .flat_map(|leg| leg.joints)
+            .collect::<Vec<_>>();
+        joints.extend([solution.head_point(), solution.tail_point()]);
+        for joint in joints {
+            let (x, y) = view.page(joint);
+            assert!((50.0..SIZE.0 - 50.0).contains(&x), "{x}");
+            assert!((50.0..SIZE.1 - 50.0).contains(&y), "{y}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lizard_parts::{Assembly, Bill, File, Unfit, coupon, guide, part_files};
+use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
 use crate::{Failure, RobotFile};
@@ -91,6 +92,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         bar.inc(1);
     }
     bar.finish_and_clear();
+    let mut weight = None;
     if !args.coupon {
         let pose = robot
             .lizard()
@@ -102,6 +104,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
             serde_json::to_string_pretty(&bill)? + "\n",
         ));
         files.extend(guide(&assembly, &bill, &pose));
+        weight = bill
+            .differs(&robot.ground().body)
+            .then(|| said(&bill, &robot));
     }
     write(&args.folder, &files)?;
     let mut out = io::stdout().lock();
@@ -117,8 +122,23 @@ pub fn run(args: Args) -> Result<(), Failure> {
             files.len(),
             args.folder.display()
         )?;
+        if let Some(weight) = weight {
+            write!(out, "\n{weight}")?;
+        }
     }
     Ok(out.flush()?)
+}
+
+/// What to put into a robot.toml whose weight is not that of the parts.
+fn said(bill: &Bill, robot: &Robot) -> String {
+    let Body { mass, centre } = robot.ground().body;
+    format!(
+        "The parts weigh {:.0} g, and their mass centre is {} the middle of the plate; robot.toml has {mass} g and \
+         {centre:?} mm. For predictions with these parts put into it:\n\n{}",
+        bill.grams,
+        bill.beside(),
+        bill.body_toml()
+    )
 }
 
 /// Writes all files.

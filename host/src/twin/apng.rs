@@ -20,7 +20,7 @@ mod drawn {
     use std::collections::HashMap;
 
     use lizard_kinematics::Vector;
-    use lizard_robot::Place;
+    use lizard_robot::{Place, Plate};
     use lizard_twin::{FRAME, Shape};
     use resvg::{tiny_skia, usvg};
     use svg::Document;
@@ -28,6 +28,7 @@ mod drawn {
 
     use super::super::replay::Replay;
     use crate::Failure;
+    use crate::draw::body::Sheet;
     use crate::draw::ink::{DARK, GRID, SERVO, circle, curve, line, rectangle};
 
     /// Pixels for a mm.
@@ -136,7 +137,8 @@ mod drawn {
                     slip if slip < 0.5 => CREEPS,
                     _ => SLIDES,
                 });
-                group = self.robot(group, shape, state.place, pads);
+                let plate = replay.robot.plate();
+                group = self.robot(group, &plate, shape, state.place, pads);
             }
             Document::new()
                 .set("viewBox", (0, 0, width, height))
@@ -146,45 +148,39 @@ mod drawn {
                 .to_string()
         }
 
-        fn robot(&self, mut group: Group, shape: &Shape, place: Place, pads: [&str; 4]) -> Group {
-            let at = |point: Vector| self.page(on_floor(place, point));
-            let bar = |a: Vector, b: Vector, colour: &str, mm: f64| {
-                line(at(a), at(b), colour, mm * SCALE)
+        fn robot(
+            &self,
+            mut group: Group,
+            plate: &Plate,
+            shape: &Shape,
+            place: Place,
+            pads: [&str; 4],
+        ) -> Group {
+            let sheet = Sheet {
+                at: |point: Vector| self.page(on_floor(place, point)),
+                scale: SCALE,
+                turn: place.heading.to_degrees(),
             };
-            for (i, leg) in shape.legs.iter().enumerate() {
-                group = group.add(bar(leg.pivots[0], leg.pivots[1], "#c9c3b6", 5.0));
-                for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
-                    group = group.add(bar(pivot, joint, SERVO[i], 3.2));
-                }
-                group = group
-                    .add(bar(leg.joints[0], leg.joints[1], SERVO[i], 4.2))
-                    .add(circle(at(leg.foot), 6.0 * SCALE, pads[i]).set("stroke", DARK));
-            }
-            let [a, b, c, d] = shape.shafts;
-            group = group
-                .add(bar(a, d, "#ece8df", 18.0))
-                .add(bar(b, c, "#ece8df", 18.0))
-                .add(bar((a + b) * 0.5, (c + d) * 0.5, "#ece8df", 22.0));
+            group = sheet.feet(group, &shape.legs, pads);
+            group = sheet.plate(group, plate);
+            group = sheet.cranks(group, shape.shafts, &shape.legs);
             for (front, rear) in [(0, 3), (1, 2)] {
-                group = group
-                    .add(bar(shape.arms[front], shape.arms[rear], STEEL, 3.0))
-                    .add(bar(
-                        shape.shafts[front],
-                        shape.arms[front],
-                        SERVO[front],
-                        3.0,
-                    ))
-                    .add(bar(shape.shafts[rear], shape.arms[rear], SERVO[rear], 3.0));
+                group = group.add(sheet.bar(shape.arms[front], shape.arms[rear], STEEL, 3.0));
+                for servo in [front, rear] {
+                    let (shaft, arm) = (shape.shafts[servo], shape.arms[servo]);
+                    group = group.add(sheet.bar(shaft, arm, SERVO[servo], 3.0));
+                }
             }
             for (i, colour) in SERVO.into_iter().enumerate() {
                 group = group
-                    .add(bar(shape.tips[i], shape.ends[i / 2], STEEL, 3.4))
-                    .add(bar(shape.shafts[i], shape.tips[i], colour, 4.6))
-                    .add(circle(at(shape.shafts[i]), 3.2 * SCALE, DARK))
-                    .add(circle(at(shape.tips[i]), 2.2 * SCALE, "white").set("stroke", DARK));
+                    .add(sheet.bar(shape.tips[i], shape.ends[i / 2], STEEL, 3.4))
+                    .add(sheet.bar(shape.shafts[i], shape.tips[i], colour, 4.6))
+                    .add(circle((sheet.at)(shape.shafts[i]), 3.2 * SCALE, DARK))
+                    .add(sheet.joint(shape.tips[i], 2.2));
             }
+            group = sheet.anchors(group, &shape.legs);
             for (end, mm) in shape.ends.into_iter().zip([5.0, 3.0]) {
-                group = group.add(circle(at(end), mm * SCALE, "#f0e442").set("stroke", DARK));
+                group = group.add(sheet.disc(end, mm, "#f0e442"));
             }
             group
         }
@@ -250,6 +246,8 @@ mod drawn {
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_palette(palette.concat());
         encoder.set_compression(png::Compression::High);
+        // Numbers of colours are no shades: what lies beside tells nothing.
+        encoder.set_filter(png::Filter::NoFilter);
         encoder.set_animated(pictures.len() as u32, 0)?;
         encoder.set_frame_delay((1000.0 * FRAME) as u16 * EVERY as u16, 1000)?;
         let mut writer = encoder.write_header()?;

@@ -1,6 +1,7 @@
 //! The replay as one page: what happened as numbers, and the script that draws them.
 
 use lizard_kinematics::Vector;
+use lizard_robot::Plate;
 use serde::Serialize;
 
 use super::replay::Replay;
@@ -17,12 +18,13 @@ struct Run {
     /// Seconds from power-on to the first frame.
     first: f64,
     shafts: Vec<i32>,
-    /// Both pivots of each leg.
+    /// Both pivots of each leg, the driven one first.
     pivots: Vec<i32>,
+    plate: Chassis,
     /// For each frame: forward, left; heading in 1/1000 rad.
     place: Vec<[i32; 3]>,
     /// Joints of each frame in the chassis frame, x then y: four crank tips, four arm
-    /// tips, head, tail; each leg's two joints, foot, both ends of its spring.
+    /// tips, head, tail; each leg's two joints, foot, both anchors of its strut.
     joints: Vec<Vec<i32>>,
     /// Servo angles less neutral, 1/100 deg.
     servos: Vec<[i32; 4]>,
@@ -37,6 +39,31 @@ struct Run {
     tubes: [f64; 2],
     stages: Vec<Stage>,
     springs: bool,
+}
+
+/// The plate with its arms and the servos in it, as [`lizard_robot::Plate`].
+#[derive(Serialize)]
+struct Chassis {
+    half: Vec<i32>,
+    corner: i32,
+    /// From, to; from, to.
+    arms: Vec<i32>,
+    arm: i32,
+    cases: Vec<i32>,
+    case: Vec<i32>,
+}
+
+impl Chassis {
+    fn of(plate: &Plate) -> Self {
+        Self {
+            half: tenths([plate.half]),
+            corner: tenth(plate.corner),
+            arms: tenths(plate.arms.into_iter().flatten().flatten()),
+            arm: tenth(plate.arm),
+            cases: tenths(plate.cases),
+            case: tenths([plate.case]),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -58,11 +85,14 @@ pub fn page(replay: &Replay, report: &Report) -> Result<String, Failure> {
     Ok(PAGE.replacen(HERE, &run, 1))
 }
 
+fn tenth(length: f64) -> i32 {
+    (length * 10.0).round() as i32
+}
+
 fn tenths(points: impl IntoIterator<Item = Vector>) -> Vec<i32> {
-    let whole = |value: f64| (value * 10.0).round() as i32;
     points
         .into_iter()
-        .flat_map(|point| [whole(point.x), whole(point.y)])
+        .flat_map(|point| [tenth(point.x), tenth(point.y)])
         .collect()
 }
 
@@ -79,7 +109,7 @@ fn run(replay: &Replay, report: &Report) -> Run {
         if let Some(shape) = shape {
             let legs = shape.legs.iter().flat_map(|leg| {
                 let [a, b] = leg.joints;
-                [a, b, leg.foot, leg.spring[0], leg.spring[1]]
+                [a, b, leg.foot, leg.strut[0], leg.strut[1]]
             });
             let body = shape.tips.into_iter().chain(shape.arms).chain(shape.ends);
             latest = tenths(body.chain(legs));
@@ -99,13 +129,14 @@ fn run(replay: &Replay, report: &Report) -> Run {
         pivots: first.map_or_else(Vec::new, |shape| {
             tenths(shape.legs.iter().flat_map(|leg| leg.pivots))
         }),
+        plate: Chassis::of(&replay.robot.plate()),
         place: states
             .iter()
             .map(|state| {
                 let place = state.place;
                 [
-                    (place.forward * 10.0).round() as i32,
-                    (place.left * 10.0).round() as i32,
+                    tenth(place.forward),
+                    tenth(place.left),
                     thousandths(place.heading),
                 ]
             })

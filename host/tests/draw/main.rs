@@ -6,7 +6,7 @@ mod drawing;
 mod files;
 mod wires;
 
-use lizard_host::draw::{horns, wiring};
+use lizard_host::draw::{horns, top_view, wiring};
 use lizard_robot::Robot;
 
 use drawing::Drawing;
@@ -52,7 +52,14 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
 #[test]
 fn the_drawings_in_docs_are_of_the_paper_robot_as_it_is_drawn_now() {
     let robot = Robot::parse(&paper()).expect("a robot");
-    for (name, svg) in [("wiring", wiring(&robot)), ("horns", horns(&robot))] {
+    let neutral = robot.lizard().solve(&robot.neutral()).expect("it closes");
+    let above = top_view(&robot, &neutral, true);
+    for (name, svg) in [
+        ("wiring", wiring(&robot)),
+        ("horns", horns(&robot)),
+        ("lizard", above.clone()),
+        ("charts/top-view", above),
+    ] {
         let kept = std::fs::read_to_string(root().join(format!("docs/{name}.svg")));
         assert!(
             kept.is_ok_and(|kept| kept == svg),

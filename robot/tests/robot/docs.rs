@@ -1,10 +1,12 @@
-//! docs/gaits.md shows what the commands print.
+//! docs/gaits.md shows what the commands print, docs/twin.md what springs cost.
 
-use lizard_robot::{Report, Sensitivity};
+use lizard_robot::{Ground, Report, Robot, Sensitivity, Spring};
 
-use crate::paper;
+use crate::{gait, paper};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gaits.md");
+const TWIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/twin.md");
+const BUILD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/build.md");
 const END: &str = "<!-- end -->";
 
 fn fenced(text: String) -> String {
@@ -32,14 +34,84 @@ fn the_page_on_gaits_shows_what_the_commands_print() {
         "lizard gaits --sensitivity",
         &fenced(Sensitivity::of(paper()).to_string()),
     );
+    check(PAGE, &page, &now);
+}
+
+/// Asserts that a page is as it should be, or makes it so.
+fn check(path: &str, page: &str, now: &str) {
+    let (_, name) = path.split_once("/../").expect("a page");
     if std::env::var_os("BLESS_GAITS").is_some() {
-        std::fs::write(PAGE, &now).expect(PAGE);
+        std::fs::write(path, now).expect(path);
     } else if let Some((was, is)) = page.lines().zip(now.lines()).find(|(was, is)| was != is) {
-        panic!("docs/gaits.md is out of date; run with BLESS_GAITS=1.\n  was {was}\n  is  {is}");
+        panic!("{name} is out of date; run with BLESS_GAITS=1.\n  was {was}\n  is  {is}");
     } else {
-        assert_eq!(
-            page, now,
-            "docs/gaits.md is out of date; run with BLESS_GAITS=1"
-        );
+        assert_eq!(page, now, "{name} is out of date; run with BLESS_GAITS=1");
     }
+}
+
+/// What a gait of the paper's robot comes to on springs of a rate; none is rigid.
+fn sprung(name: &str, rate: Option<f64>) -> lizard_robot::Travel {
+    let ground = Ground {
+        spring: rate.map(|rate| Spring { rate, preload: 0.0 }),
+        ..*paper().ground()
+    };
+    gait(paper(), name).walked(&ground).travel
+}
+
+/// Where a gait goes less far than this in a cycle it stops, mm.
+const STOPS: f64 = 1.0;
+
+#[test]
+fn the_page_on_the_twin_shows_what_springs_cost() {
+    let page = std::fs::read_to_string(TWIN).expect(TWIN);
+    let ground = paper().ground();
+    let (grip, leg) = (ground.grip(), ground.feet.reach);
+    let rates = [Some(2.0), Some(5.0), Some(10.0), Some(20.0), None];
+    let row = |name: &str, of: fn(lizard_robot::Travel) -> f64| -> String {
+        let ways = rates.map(|rate| format!(" {:.1} |", of(sprung(name, rate))));
+        ways.concat()
+    };
+    let trot = (5..100)
+        .map(|tenths| f64::from(tenths) / 10.0)
+        .find(|rate| sprung("trot", Some(*rate)).forward >= STOPS)
+        .expect("it walks on springs");
+    let text = format!(
+        "With the {} g that the parts weigh and a friction of {} that is {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm.\n\n\
+         | stiffness, N mm/deg | 2 | 5 | 10 | 20 | rigid |\n|---|---|---|---|---|---|\n\
+         | lag, deg | {:.1} | {:.1} | {:.1} | {:.1} | 0 |\n\
+         | `walk`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n\n\
+         `trot`, whose stroke is 15 deg, stops below {trot} N mm/deg.\n",
+        ground.body.mass,
+        ground.friction,
+        grip * leg,
+        grip * leg / 2.0,
+        grip * leg / 5.0,
+        grip * leg / 10.0,
+        grip * leg / 20.0,
+        row("walk", |way| way.forward),
+        row("left", |way| way.turn),
+    );
+    let now = filled(&page, "springs of robots/paper.toml", &text);
+    check(TWIN, &page, &now);
+    assert!(
+        page.contains(&format!("| mass | {} g, what", ground.body.mass)),
+        "{TWIN}"
+    );
+}
+
+#[test]
+fn the_page_on_building_shows_what_parts_are_where_they_are_left_out() {
+    let page = std::fs::read_to_string(BUILD).expect(BUILD);
+    let (_, block) = page
+        .split_once("```toml\n[parts]                  # mm")
+        .expect(BUILD);
+    let (block, _) = block.split_once("```").expect(BUILD);
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml");
+    let text = std::fs::read_to_string(file).expect(file);
+    let robot = Robot::parse(&format!("{text}\n[parts]\n{block}")).expect("the page's parts");
+    let mut parts = *robot.parts();
+    assert!(parts.foot.take().is_some());
+    assert_eq!(parts, *paper().parts());
+    assert_eq!(robot.ground(), paper().ground());
+    assert_eq!(robot.legs(), paper().legs());
 }

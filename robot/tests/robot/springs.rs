@@ -5,10 +5,17 @@ use lizard_robot::{Body, Ground, Spring, Sprung, Walker};
 
 use crate::{gait, paper, paper_with};
 
+/// The mass for which the other implementation was asked, g.
+const STUDIED: Body = Body {
+    mass: 280.0,
+    ..Body::DEFAULT
+};
+
 /// The paper's robot, 280 g, on a friction of 0.7 and springs of this rate.
 fn springs(rate: f64) -> Ground {
     Ground {
         spring: Some(Spring { rate, preload: 0.0 }),
+        body: STUDIED,
         ..*paper().ground()
     }
 }
@@ -76,7 +83,7 @@ fn a_strut_is_rigid_up_to_its_preload() {
     let strut = |preload: f64| {
         let ground = Ground {
             spring: Some(Spring { rate: 2.0, preload }),
-            ..*paper().ground()
+            ..springs(2.0)
         };
         gait(paper(), "walk").walked(&ground)
     };

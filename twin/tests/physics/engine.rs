@@ -3,7 +3,7 @@
 
 use std::f32::consts::TAU;
 
-use lizard_robot::{Body, CheckedGait, Feet, GRAVITY, Travel};
+use lizard_robot::{CheckedGait, Feet, GRAVITY, Travel};
 use rapier3d::prelude::*;
 
 /// Time of a step, s.
@@ -12,7 +12,7 @@ const STEP: f32 = 0.001;
 const SETTLE: f32 = 0.5;
 /// Radius of a foot, m.
 const BALL: f32 = 0.008;
-/// Mass of a foot, kg. Two ninths of 280 g are in the feet.
+/// Mass of a foot, kg.
 const FOOT: f32 = 0.015;
 /// How the feet give under the chassis, N/m and N s/m.
 const VERTICAL: (f32, f32) = (2000.0, 10.0);
@@ -35,6 +35,8 @@ impl Yaw {
 #[derive(Clone, Copy)]
 pub struct Setup {
     pub feet: Feet,
+    /// All of it, g.
+    pub mass: f64,
     pub friction: f64,
     pub yaw: Yaw,
     /// Over the gait's own pace.
@@ -66,7 +68,7 @@ impl Engine {
             .translation(Vector::new(0.0, 0.0, -0.1))
             .friction(friction);
         world.colliders.insert(floor);
-        let mass = Body::DEFAULT.mass as f32 / 1000.0 - 4.0 * FOOT;
+        let mass = setup.mass as f32 / 1000.0 - 4.0 * FOOT;
         let inertia = mass / 12.0 * 0.02;
         let chassis = RigidBodyBuilder::dynamic()
             .translation(Vector::new(0.0, 0.0, BALL))

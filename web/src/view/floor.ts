@@ -1,5 +1,5 @@
 // The floor that the lizard walks on: to pan and zoom, by pointer, wheel, fingers or keys.
-import type { Frame, Place } from '../robot';
+import type { Frame, Place, Plate } from '../robot';
 import { element, surface } from './canvas';
 import { drawLizard } from './lizard';
 import { palette } from './palette';
@@ -66,7 +66,7 @@ export class Floor {
     if (this.track.length > LONGEST_TRACK) this.track.splice(0, LONGEST_TRACK / 4);
   }
 
-  draw(frame: Frame | null): void {
+  draw(plate: Plate, frame: Frame | null): void {
     const area = surface(this.canvas, true);
     if (!area) return;
     const { pen, width, height } = area;
@@ -88,7 +88,7 @@ export class Floor {
       pen.save();
       pen.translate(x, y);
       pen.rotate((heading * Math.PI) / 180);
-      drawLizard(pen, frame.scene, frame.slides);
+      drawLizard(pen, plate, frame.scene, frame.slides);
       pen.restore();
     }
     pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);

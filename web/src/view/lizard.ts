@@ -1,11 +1,10 @@
 // The lizard from above, drawn in mm of its own frame: x to the right, y ahead.
-import type { Scene, Spot } from '../robot';
+import type { Plate, Scene, Spot } from '../robot';
 import { palette, servoColour } from './palette';
 
-/** An SG-90's body seen from above, and how far its shaft is from its end, mm. */
-const SERVO_WIDTH = 12.2;
-const SERVO_LENGTH = 22.8;
-const SERVO_SHAFT = 6;
+/** Radius of a foot, and width of the plate's edge, mm. */
+const FOOT = 6;
+const RIM = 0.6;
 /** A foot that moves farther than this over the floor in a frame slips, mm. */
 const SLIPS = 0.3;
 
@@ -80,44 +79,55 @@ function skin(pen: Pen, scene: Scene): void {
   for (const side of [-9, 9]) disc(pen, [hx + side, hy + 12], 2.3, palette().ink);
 }
 
-function chassis(pen: Pen, scene: Scene): void {
+const SERVOS = [0, 1, 2, 3];
+
+/** What lies beside the plate and under it: feet, the leaves that carry them, couplers. */
+function foot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
-  const half = Math.max(...scene.shafts.map(([x]) => Math.abs(x))) + 9;
-  const top = scene.shafts[0][1] + 8;
-  pen.fillStyle = colours.frame;
-  pen.strokeStyle = colours['frame-edge'];
-  pen.lineWidth = 0.8;
-  pen.beginPath();
-  pen.roundRect(-half, -top, 2 * half, 2 * top, 5);
-  pen.fill();
+  const { joints, foot } = scene.legs[servo];
+  bar(pen, joints[1], foot, colours.steel, 2.2);
+  // A foot that holds is filled, one that slips is a ring.
+  disc(pen, foot, FOOT, slide > SLIPS ? colours.card : colours.ink);
+  pen.strokeStyle = colours.ink;
+  pen.lineWidth = 2;
   pen.stroke();
-  scene.shafts.forEach(([x, y], servo) => {
-    const outward = Math.sign(y);
-    const near = y + outward * SERVO_SHAFT;
-    const far = y - outward * (SERVO_LENGTH - SERVO_SHAFT);
+  bar(pen, joints[0], joints[1], servoColour(servo), 4.2);
+}
+
+/** The plate with the arms that the legs are pivoted on, and the servos in it. */
+function chassis(pen: Pen, plate: Plate): void {
+  const colours = palette();
+  const [wide, long] = plate.half;
+  for (const [rim, colour] of [[RIM, colours['frame-edge']], [0, colours.frame]] as const) {
+    for (const [from, to] of plate.arms) bar(pen, from, to, colour, 2 * (plate.arm + rim));
+    pen.fillStyle = colour;
+    pen.beginPath();
+    pen.roundRect(-wide - rim, -long - rim, 2 * (wide + rim), 2 * (long + rim), plate.corner + rim);
+    pen.fill();
+  }
+  const [width, length] = plate.case;
+  plate.cases.forEach(([x, y], servo) => {
     pen.globalAlpha = 0.35;
     pen.fillStyle = servoColour(servo);
     pen.beginPath();
-    pen.roundRect(x - SERVO_WIDTH / 2, Math.min(near, far), SERVO_WIDTH, SERVO_LENGTH, 1.5);
+    pen.roundRect(x - width / 2, y - length / 2, width, length, 1.3);
     pen.fill();
     pen.globalAlpha = 1;
   });
 }
 
-function leg(pen: Pen, scene: Scene, servo: number, slide: number): void {
+/** What lies above the plate: crank, follower and strut. */
+function leg(pen: Pen, scene: Scene, servo: number): void {
   const colours = palette();
-  const { pivots, joints, foot, spring } = scene.legs[servo];
+  const { pivots, joints, strut, sprung } = scene.legs[servo];
   const colour = servoColour(servo);
-  bar(pen, pivots[0], pivots[1], colours['frame-edge'], 5);
+  bar(pen, pivots[0], strut[1], colour, 3.2);
   for (const n of [0, 1]) bar(pen, pivots[n], joints[n], colour, 3.2);
-  bar(pen, joints[0], joints[1], colour, 4.2);
-  if (spring) coil(pen, spring[0], spring[1]);
   for (const spot of [...pivots, ...joints]) disc(pen, spot, 1.6, colours.card, colours.ink);
-  // A foot that holds is filled, one that slips is a ring.
-  disc(pen, foot, 5, slide > SLIPS ? colours.card : colours.ink);
-  pen.strokeStyle = colours.ink;
-  pen.lineWidth = 2;
-  pen.stroke();
+  bar(pen, strut[0], strut[1], colours.steel, sprung ? 0.8 : 1.6);
+  if (sprung) coil(pen, strut[0], strut[1]);
+  disc(pen, strut[1], 1.2, colours.card, colours.ink);
+  bar(pen, scene.shafts[servo], strut[0], colour, 3);
 }
 
 function slider(pen: Pen, scene: Scene, side: 0 | 1): void {
@@ -148,13 +158,15 @@ function fiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
   disc(pen, point, 3.2, '#f0e442', '#222222');
 }
 
-/** Draws a pose; `slides` is how far each foot slid in this frame, mm. */
-export function drawLizard(pen: Pen, scene: Scene, slides: readonly number[]): void {
+/** Draws a pose, from below; `slides` is how far each foot slid in this frame, mm. */
+export function drawLizard(pen: Pen, plate: Plate, scene: Scene, slides: readonly number[]): void {
   skin(pen, scene);
-  for (const servo of [0, 1, 2, 3]) leg(pen, scene, servo, slides[servo] ?? 0);
-  chassis(pen, scene);
+  for (const servo of SERVOS) foot(pen, scene, servo, slides[servo] ?? 0);
+  chassis(pen, plate);
+  for (const servo of SERVOS) leg(pen, scene, servo);
   slider(pen, scene, 0);
   slider(pen, scene, 1);
   fiveBar(pen, scene, 0);
   fiveBar(pen, scene, 1);
+  for (const { strut } of scene.legs) disc(pen, strut[0], 1.2, palette().card, palette().ink);
 }

@@ -3,11 +3,15 @@
 use lizard_core::robot::Robot as _;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};
-use lizard_robot::{CheckedGait, Ground, Prediction, Robot, Sprung, Travel, healthy_rail_mv};
+use lizard_robot::{
+    CheckedGait, Ground, Plate, Prediction, Robot, Sprung, Travel, healthy_rail_mv,
+};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 
+use crate::edit::LEFT_OUT;
 use crate::floor::Floor;
+use crate::scene::Spot;
 
 /// A gait.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -86,6 +90,37 @@ impl From<(&'static str, ServoModel)> for ModelEntry {
     }
 }
 
+/// The chassis from above, as [`Plate`]: mm, chassis frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlateEntry {
+    /// Half its width and half its length, without the arms.
+    pub half: Spot,
+    /// Radius of its corners.
+    pub corner: f64,
+    /// The arms that the legs are pivoted on, from and to.
+    pub arms: Vec<[Spot; 2]>,
+    /// Half the width of an arm.
+    pub arm: f64,
+    /// The middles of the servos' cases.
+    pub cases: [Spot; 4],
+    /// Width and length of a case.
+    pub case: Spot,
+}
+
+impl From<Plate> for PlateEntry {
+    fn from(plate: Plate) -> Self {
+        let arms = plate.arms.as_flattened().iter();
+        Self {
+            half: plate.half.into(),
+            corner: plate.corner,
+            arms: arms.map(|arm| arm.map(Spot::from)).collect(),
+            arm: plate.arm,
+            cases: plate.cases.map(Spot::from),
+            case: plate.case.into(),
+        }
+    }
+}
+
 /// A robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
@@ -97,6 +132,8 @@ pub struct Description {
     pub gaits: Vec<GaitEntry>,
     /// Every length that may be changed.
     pub lengths: Vec<LinkEntry>,
+    /// Its chassis.
+    pub plate: PlateEntry,
     /// Every margin's limit, in the order of [`crate::Scene::margins`].
     pub margins: Vec<MarginEntry>,
     /// Travel that the sliders have, mm from nominal.
@@ -146,6 +183,7 @@ impl Description {
             servos: servos.collect(),
             gaits: gaits.collect(),
             lengths: lengths(robot),
+            plate: robot.plate().into(),
             margins: [
                 of(&Check::TYPE2, limits.type2),
                 of(&Check::TYPE1, limits.type1),
@@ -198,28 +236,31 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
         value,
     });
     let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
-    let legs = [
-        ("ground", "leg ground link", "coupler", leg.ground),
-        ("crank", "leg crank", "follower", leg.crank),
-        ("coupler", "leg coupler", "ground", leg.coupler),
-        ("follower", "leg follower", "crank", leg.follower),
-        (
-            "hip_forward",
-            "hip, fore and aft",
-            "hip_forward",
-            feet.hip_forward,
-        ),
-        ("hip_side", "hip, sideways", "hip_side", feet.hip_side),
-        ("mount", "outward sweep of the legs", "mount", feet.mount),
-    ];
-    let legs = legs.map(|(name, label, twin, value)| LinkEntry {
-        key: format!("leg.{name}"),
+    let entry = |key: &str, label, twin: &str, value| LinkEntry {
+        key: key.to_string(),
         label,
-        twin: format!("leg.{twin}"),
-        unit: if name == "mount" { "deg" } else { "mm" },
+        twin: twin.to_string(),
+        unit: if key == "leg.mount" { "deg" } else { "mm" },
         value,
-    });
-    links.chain(legs).collect()
+    };
+    let [ahead, aside] = LEFT_OUT;
+    let [front, hind] = feet.hip_side;
+    let legs = [
+        entry("leg.ground", "leg ground link", "leg.coupler", leg.ground),
+        entry("leg.crank", "leg crank", "leg.follower", leg.crank),
+        entry("leg.coupler", "leg coupler", "leg.ground", leg.coupler),
+        entry("leg.follower", "leg follower", "leg.crank", leg.follower),
+        entry(ahead, "hip, fore and aft", ahead, feet.hip_forward),
+    ];
+    // Hips that follow may be wider in front than behind; then no one number is both.
+    let aside = (front == hind).then(|| entry(aside, "hip, sideways", aside, front));
+    let mount = entry(
+        "leg.mount",
+        "outward sweep of the legs",
+        "leg.mount",
+        feet.mount,
+    );
+    links.chain(legs).chain(aside).chain([mount]).collect()
 }
 
 /// A prediction as the page reads it.

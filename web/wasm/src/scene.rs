@@ -1,8 +1,8 @@
 //! All that the page shows of one pose.
 
 use lizard_kinematics::{Check, End, Limits, Pose, Side, Solution, Vector};
-use lizard_robot::Robot;
-use lizard_twin::{LegShape, Shape, Twin};
+use lizard_robot::{LegPlace, Robot};
+use lizard_twin::{Shape, Twin};
 use serde::Serialize;
 
 use crate::map::{self, MapPoint};
@@ -25,15 +25,16 @@ impl From<Vector> for Spot {
 /// A leg.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LegScene {
-    /// Its pivots on the chassis.
+    /// Its pivots on the chassis, that of the driven crank first.
     pub pivots: [Spot; 2],
     /// The joints of the link that carries the foot.
     pub joints: [Spot; 2],
     /// The foot.
     pub foot: Spot,
-    /// Where its spring is hooked: to the servo's crank and to the leg's; none where the leg is
-    /// rigid.
-    pub spring: Option<[Spot; 2]>,
+    /// The anchors of the strut that pulls it: on the servo's link and on its crank.
+    pub strut: [Spot; 2],
+    /// Whether there is a spring in the strut; else it is rigid.
+    pub sprung: bool,
 }
 
 /// A slider between two arms.
@@ -96,7 +97,7 @@ impl Scene {
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
         let shape = Shape::of_solved(robot, &solution, twin.legs());
-        let springs = twin.ground().spring.is_some();
+        let sprung = twin.ground().spring.is_some();
         let named = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
@@ -109,7 +110,7 @@ impl Scene {
             sliders: Side::ALL
                 .map(|side| slider(robot, &shape, &solution, side))
                 .into(),
-            legs: shape.legs.map(|leg| LegScene::of(leg, springs)).into(),
+            legs: shape.legs.map(|leg| LegScene::of(leg, sprung)).into(),
             margins: solution.margins.iter().map(named).collect(),
             smallest: named(solution.margins.min()),
             refusal: refusal(robot.limits(), &solution),
@@ -126,12 +127,13 @@ fn refusal(limits: &Limits, solution: &Solution) -> Option<String> {
 }
 
 impl LegScene {
-    fn of(leg: LegShape, spring: bool) -> Self {
+    fn of(leg: LegPlace, sprung: bool) -> Self {
         Self {
             pivots: leg.pivots.map(Spot::from),
             joints: leg.joints.map(Spot::from),
             foot: leg.foot.into(),
-            spring: spring.then(|| leg.spring.map(Spot::from)),
+            strut: leg.strut.map(Spot::from),
+            sprung,
         }
     }
 }
@@ -186,7 +188,7 @@ mod tests {
         );
         assert_eq!(scene.refusal, None);
         assert_eq!(scene.margins.len(), 10);
-        assert!(scene.legs.iter().all(|leg| leg.spring.is_none()));
+        assert!(scene.legs.iter().all(|leg| !leg.sprung));
     }
 
     #[test]

@@ -70,9 +70,14 @@ pub const MISTAKES: &[Mistake] = &[
         "leg.follower is 44, but leg.crank is 45; a leg is a parallelogram, so its opposite links are equally long",
     ),
     (
-        "hip_side = 35.0",
-        "hip_sdie = 35.0",
+        "mount = 0.0 ",
+        "hip_sdie = 35.0\nmount = 0.0 ",
         r#"leg.hip_sdie is not a known key; did you mean "hip_side"?"#,
+    ),
+    (
+        "mount = 0.0 ",
+        "hip_side = -1.0\nmount = 0.0 ",
+        "leg.hip_side is -1; it must be within 0 to 500 mm",
     ),
     (
         "mount = 0.0 ",
@@ -90,23 +95,23 @@ pub const MISTAKES: &[Mistake] = &[
         "leg.preload is -1; it must be within 0 to 10000 N mm",
     ),
     (
-        "[ground]",
-        "[body]\nweight = 280\n[ground]",
+        "mass = 308.0 ",
+        "weight = 308 ",
         "body.weight is not a known key; allowed are mass, centre",
     ),
     (
-        "[ground]",
-        "[body]\nmass = 0.28\n[ground]",
-        "body.mass is 0.28; it must be within 10 to 10000 g",
+        "mass = 308.0 ",
+        "mass = 0.308 ",
+        "body.mass is 0.308; it must be within 10 to 10000 g",
     ),
     (
-        "[ground]",
-        "[body]\ncentre = [56.0, 0.0]\n[ground]",
+        "mass = 308.0 ",
+        "centre = [56.0, 0.0] ",
         "body.centre is so far from the middle that foot RH is in the air at neutral; all four must carry",
     ),
     (
-        "[ground]",
-        "[body]\ncentre = 5.0\n[ground]",
+        "mass = 308.0 ",
+        "centre = 5.0 ",
         "body.centre is 5.0; it must be an array of two numbers",
     ),
     (

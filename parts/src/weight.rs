@@ -1,0 +1,66 @@
+//! What the contact model is told of the bill: how much stands on the feet, and where.
+
+use lizard_robot::Body;
+
+use crate::bill::Bill;
+
+/// A mass centre nearer than this to the middle of the plate is in the middle, mm.
+const MIDDLE: f64 = 1.0;
+/// A robot.toml may be off by this share of the mass, or by so many mm, and still say
+/// what the bill says.
+const SHARE: f64 = 0.05;
+const OFF: f64 = 3.0;
+
+impl Bill {
+    /// `[body]` as robot.toml should have it: whole grams, and the mass centre to a tenth
+    /// of a mm where it is not in the middle.
+    #[must_use]
+    pub fn body(&self) -> Body {
+        let [ahead, left, _] = self.centre;
+        let centre = match ahead.abs() < MIDDLE && left.abs() < MIDDLE {
+            true => [0.0; 2],
+            false => [ahead, left].map(|part| (part * 10.0).round() / 10.0 + 0.0),
+        };
+        Body {
+            mass: self.grams.round(),
+            centre,
+        }
+    }
+
+    /// `[body]` as text for robot.toml.
+    #[must_use]
+    pub fn body_toml(&self) -> String {
+        let Body { mass, centre } = self.body();
+        match centre {
+            [0.0, 0.0] => format!("[body]\nmass = {mass:.1}\n"),
+            [ahead, left] => {
+                format!("[body]\nmass = {mass:.1}\ncentre = [{ahead:.1}, {left:.1}]\n")
+            }
+        }
+    }
+
+    /// Whether a robot.toml that has this `[body]` is off by more than 5 %, or by more
+    /// than 3 mm.
+    #[must_use]
+    pub fn differs(&self, body: &Body) -> bool {
+        let [ahead, left, _] = self.centre;
+        let off = (body.centre[0] - ahead).hypot(body.centre[1] - left);
+        (body.mass - self.grams).abs() > SHARE * self.grams || off > OFF
+    }
+
+    /// Where the mass centre is, in words that end before the name of what it is beside:
+    /// "0.1 mm behind and 0.1 mm to the right of".
+    #[must_use]
+    pub fn beside(&self) -> String {
+        let [ahead, left, _] = self.centre;
+        let way = |value: f64, [positive, negative]: [&str; 2]| {
+            let word = if value < 0.0 { negative } else { positive };
+            format!("{:.1} mm {word}", value.abs())
+        };
+        format!(
+            "{} and {} of",
+            way(ahead, ["ahead", "behind"]),
+            way(left, ["to the left", "to the right"])
+        )
+    }
+}
