@@ -33,10 +33,8 @@
 //! the reason is kept for the console. Time is a call: the 50 Hz tick is the
 //! only clock, so pace cannot depend on how busy the processor is.
 
-use lizard_avr::mul_unsigned;
-
 use crate::calibration::Calibration;
-use crate::gait::{Gait, GaitId};
+use crate::gait::GaitId;
 use crate::guard::Clearance;
 use crate::hazard::Hazard;
 use crate::point_to_point::PointToPoint;
@@ -44,14 +42,11 @@ use crate::pose::{Pose, Pulses};
 use crate::robot::Robot;
 use crate::units::Width;
 
-/// Full pace; also the most that a pace may be.
-const FULL: u16 = 1024;
+pub use state::Activity;
+use state::{State, Target};
 
-/// A motion gathers or loses all its pace in seven frames, 0.14 s. In an odd
-/// number of steps a gait goes a whole number of its frames meanwhile, so that
-/// at full pace the frames meet the corners between its moves: half a frame
-/// beside them, two legs would move at once there, and cost crawl 1.2 %.
-const PACE_STEP: u16 = FULL.div_ceil(7);
+mod pace;
+mod state;
 
 /// Servos wake one after the other, 0.1 s apart, to spare the supply.
 const WAKE_APART: u8 = 5;
@@ -61,55 +56,6 @@ const SLOW: u8 = 50;
 
 /// All four are awake, and motion may begin.
 const AWAKE: u8 = 4 * WAKE_APART;
-
-/// What the robot does, or is on its way to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Activity {
-    /// A gait (`stand` is one).
-    Gait(GaitId),
-    /// Going to a pose and staying there.
-    Pose,
-    /// Staying where it was stopped, by `stop` or by the guard.
-    Stop,
-    /// No pulses: the servos are limp.
-    Rest,
-}
-
-/// Where a motion leads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Target {
-    /// To a pose, to be held.
-    Pose(Pose),
-    /// To the first pose of a gait, and through its cycles.
-    Gait(GaitId),
-}
-
-/// What the servos follow at the moment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    /// Nothing: there are no pulses.
-    Resting,
-    /// The last pose.
-    Holding {
-        /// Whether it was asked for, or the robot was stopped in it.
-        asked: bool,
-    },
-    /// A point-to-point move.
-    Moving {
-        path: PointToPoint,
-        pace: u16,
-        /// The gait that begins at its end; without one, the pose is held.
-        gait: Option<GaitId>,
-    },
-    /// A gait.
-    Cycling {
-        id: GaitId,
-        gait: Gait,
-        /// 1/2^24 cycle.
-        phase: u32,
-        pace: u16,
-    },
-}
 
 /// The robot's motion.
 #[derive(Debug)]
@@ -394,7 +340,7 @@ impl<R: Robot> Motion<R> {
         let pose = match &mut self.state {
             State::Resting | State::Holding { .. } => return,
             State::Moving { path, pace, .. } => {
-                *pace = toward(*pace, if braking { 0 } else { FULL });
+                *pace = pace::toward(*pace, if braking { 0 } else { pace::FULL });
                 path.advance(*pace);
                 path.pose()
             }
@@ -406,7 +352,14 @@ impl<R: Robot> Motion<R> {
                 } else {
                     self.speed
                 };
-                *pace = toward(*pace, if braking { 0 } else { pace_of(percent) });
+                *pace = pace::toward(
+                    *pace,
+                    if braking {
+                        0
+                    } else {
+                        pace::of_percent(percent)
+                    },
+                );
                 *phase = gait.advance(*phase, *pace);
                 gait.pose(self.robot.waves(), *phase)
             }
@@ -450,36 +403,11 @@ impl<R: Robot> Motion<R> {
         };
         self.state = State::Moving {
             path: PointToPoint::new(&self.pose, &to, self.robot.slew()),
-            pace: FULL,
+            pace: pace::FULL,
             gait,
         };
         self.hazard = None;
     }
-}
-
-impl State {
-    /// A gait from phase 0, still without pace.
-    fn cycling<R: Robot>(robot: &R, id: GaitId) -> Self {
-        Self::Cycling {
-            id,
-            gait: robot.gait(id),
-            phase: 0,
-            pace: 0,
-        }
-    }
-}
-
-/// A pace one frame later, on its way to the one that is wanted.
-fn toward(pace: u16, wanted: u16) -> u16 {
-    wanted
-        .max(pace.saturating_sub(PACE_STEP))
-        .min(pace + PACE_STEP)
-}
-
-/// Percent as a pace: 2622/256 is 1024/100 to four digits. Off by less than one, so
-/// that the slowest pace is within one percent of itself.
-fn pace_of(percent: u8) -> u16 {
-    ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use lizard_kinematics::Check;
 use lizard_robot::{Report, Robot, Row, Sensitivity, servo};
 use serde::Serialize;
 
+use crate::json;
 use crate::pose_args::ANGLES;
 use crate::{Failure, RobotFile};
 
@@ -54,8 +55,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
         None if args.json => {
             for row in &Report::of(&robot).rows {
-                serde_json::to_writer(&mut out, &Record::new(row))?;
-                writeln!(out)?;
+                json::line(&mut out, &Record::new(row))?;
             }
         }
         None => write!(out, "{}", Report::of(&robot))?,

@@ -16,6 +16,7 @@ pub mod console;
 pub mod draw;
 mod failure;
 pub mod gaits;
+mod json;
 #[cfg(feature = "paper")]
 pub mod paper;
 #[cfg(feature = "parts")]

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::session::Said;
 use super::status::angles;
 use crate::Failure;
+use crate::json;
 
 /// What the first line's `format` says. The number rises when a key changes its
 /// meaning.
@@ -92,8 +93,7 @@ impl<W: Write> Recorder<W> {
     pub fn write(&mut self, now: Instant, event: Event) -> io::Result<()> {
         let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
-        serde_json::to_writer(&mut self.out, &Entry { ms, event })?;
-        self.out.write_all(b"\n")?;
+        json::line(&mut self.out, &Entry { ms, event })?;
         if is_pose { Ok(()) } else { self.out.flush() }
     }
 }

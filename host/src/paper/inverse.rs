@@ -6,6 +6,7 @@ use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, 
 use lizard_robot::Robot;
 use serde::Serialize;
 
+use crate::json;
 use crate::paper::tidy::tidy;
 use crate::paper::verdict;
 use crate::pose_args::length;
@@ -99,8 +100,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let report = report(&robot, head, tail);
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &report)?;
-        writeln!(out)?;
+        json::line(&mut out, &report)?;
     } else {
         out.write_all(text(&report).as_bytes())?;
     }

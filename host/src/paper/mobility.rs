@@ -16,6 +16,7 @@ use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
+use crate::json;
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Singular values below this share of the largest are zero: a pose typed with
@@ -108,8 +109,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let reports: Vec<Report> = all.iter().map(measure).collect();
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &reports)?;
-        writeln!(out)?;
+        json::line(&mut out, &reports)?;
         return Ok(());
     }
     writeln!(

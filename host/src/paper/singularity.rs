@@ -8,6 +8,7 @@ use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;
 
+use crate::json;
 use crate::paper::tidy::tidy;
 use crate::paper::verdict;
 use crate::pose_args::ANGLES;
@@ -149,8 +150,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
     let report = report(&robot, &solution);
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &report)?;
-        writeln!(out)?;
+        json::line(&mut out, &report)?;
     } else {
         out.write_all(text(&report).as_bytes())?;
     }
@@ -324,8 +324,10 @@ fn map(robot: &Robot, step: f64, json: bool, out: &mut impl Write) -> Result<(),
         })
         .collect();
     if json {
-        serde_json::to_writer(&mut *out, &cells.into_iter().flatten().collect::<Vec<_>>())?;
-        return Ok(writeln!(out)?);
+        return Ok(json::line(
+            out,
+            &cells.into_iter().flatten().collect::<Vec<_>>(),
+        )?);
     }
     writeln!(
         out,

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use lizard_kinematics::{Drive, Lizard, Motion, Pose, Solution, wrap};
 use serde::Serialize;
 
+use crate::json;
 use crate::paper::tidy::tidy;
 use crate::pose_args::{acceleration, rate};
 use crate::{Failure, PoseArgs, RobotFile};
@@ -109,8 +110,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let rows = rows(robot.lizard(), &solution, &drive);
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &rows)?;
-        writeln!(out)?;
+        json::line(&mut out, &rows)?;
         return Ok(());
     }
     writeln!(

@@ -16,6 +16,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{Firmware, Robot};
 use serde::Serialize;
 
+use crate::json;
 use crate::{Failure, RobotFile};
 
 pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
@@ -140,8 +141,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer(&mut out, &proof)?;
-        writeln!(out)?;
+        json::line(&mut out, &proof)?;
     } else {
         print(&proof, share, &mut out)?;
     }

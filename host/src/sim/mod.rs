@@ -25,6 +25,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
+use crate::json;
 use crate::{Failure, RobotFile};
 use analysis::Run;
 use dialogue::Printer;
@@ -165,8 +166,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     progress.finish_and_clear();
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer(&mut out, &report)?;
-        writeln!(out)?;
+        json::line(&mut out, &report)?;
     } else {
         report.print(&mut out)?;
     }

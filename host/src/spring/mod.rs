@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use lizard_robot::{Coil, Ground, Robot, Spring, Sprung};
 use serde::Serialize;
 
+use crate::json;
 use crate::{Failure, RobotFile};
 use geometry::{Geometry, Hung};
 
@@ -132,8 +133,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let answer = Answer::of(&robot, &hung);
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer(&mut out, &answer)?;
-        writeln!(out)?;
+        json::line(&mut out, &answer)?;
     } else {
         answer.print(&robot, &hung, &mut out)?;
     }

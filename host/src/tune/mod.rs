@@ -11,6 +11,7 @@ use std::io::{self, Write};
 use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot};
 
+use crate::json;
 use crate::{Failure, RobotFile};
 use goal::Goal;
 use judge::{Built, Judge, STAND};
@@ -82,8 +83,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let report = tune(&robot, &args)?;
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer(&mut out, &report)?;
-        writeln!(out)?;
+        json::line(&mut out, &report)?;
     } else {
         report.print(&mut out)?;
     }

@@ -7,6 +7,7 @@ use lizard_twin::Tally;
 use serde::Serialize;
 
 use super::replay::Replay;
+use crate::json;
 
 /// A row for each command.
 pub struct Report {
@@ -135,8 +136,7 @@ impl Report {
     /// Writing failed.
     pub fn json(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
-            serde_json::to_writer(&mut *out, row)?;
-            writeln!(out)?;
+            json::line(out, row)?;
         }
         Ok(())
     }

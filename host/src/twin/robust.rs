@@ -11,6 +11,7 @@ use super::replay::Replay;
 use super::report::known;
 use crate::Failure;
 use crate::chance::{Chance, SPREAD, quantiles};
+use crate::json;
 
 /// What a gait's ways come to.
 #[derive(Debug, Serialize)]
@@ -60,8 +61,7 @@ pub fn run(
     bar.finish_and_clear();
     if json {
         for spread in &spreads {
-            serde_json::to_writer(&mut *out, spread)?;
-            writeln!(out)?;
+            json::line(out, spread)?;
         }
     } else {
         print(&spreads, times, out)?;

@@ -8,15 +8,15 @@ mod singularity;
 mod stroke;
 mod workspace;
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use lizard_robot::Robot;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::paper::design;
-use crate::{Failure, PoseArgs, RobotFile, draw};
+use crate::{Failure, PoseArgs, RobotFile, draw, json};
 
 /// Grid of the performance charts, and rings of their circles.
 const STEP: f64 = 0.005;
@@ -89,7 +89,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         })
         .collect::<Result<_, Failure>>()?;
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&drawn)?);
+        json::line(&mut io::stdout().lock(), &drawn)?;
     } else {
         for file in drawn.iter().flat_map(|drawn| &drawn.files) {
             println!("{}", file.display());

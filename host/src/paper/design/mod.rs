@@ -11,6 +11,7 @@ use std::io::{self, BufWriter, Write};
 use lizard_robot::Robot;
 use serde::Serialize;
 
+use crate::json;
 use crate::pose_args::length;
 use crate::{Failure, RobotFile};
 
@@ -123,8 +124,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         let report = Report::new(proportions, l0);
         if args.json {
-            serde_json::to_writer_pretty(&mut out, &report)?;
-            writeln!(out)?;
+            json::line(&mut out, &report)?;
         } else {
             out.write_all(report.text(&robot).as_bytes())?;
         }
@@ -252,8 +252,7 @@ fn charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
     let points = chart(args.step, COARSE, &progress);
     progress.finish_and_clear();
     if args.json {
-        serde_json::to_writer(&mut *out, &points)?;
-        return Ok(writeln!(out)?);
+        return Ok(json::line(out, &points)?);
     }
     writeln!(
         out,
@@ -307,8 +306,7 @@ fn ranking(
     let shown = &designs[..designs.len().min(args.top)];
     let reference = design(given, &demands);
     if args.json {
-        serde_json::to_writer_pretty(&mut *out, &shown)?;
-        return Ok(writeln!(out)?);
+        return Ok(json::line(out, &shown)?);
     }
     writeln!(
         out,

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::Failure;
+use crate::json;
 use equation::{Equation, Record};
 use sample::Sample;
 
@@ -72,8 +73,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let entries = measure(args.samples);
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &entries)?;
-        writeln!(out)?;
+        json::line(&mut out, &entries)?;
     } else if args.markdown {
         out.write_all(markdown(&entries, args.samples).as_bytes())?;
     } else {

@@ -10,6 +10,7 @@ use lizard_kinematics::{Lanes, Lizard, Pose, Real, Solution};
 use pulp::{Arch, Simd, WithSimd};
 use serde::Serialize;
 
+use crate::json;
 use crate::{Failure, RobotFile};
 
 const SCRIPT: &str = include_str!("numpy_solve.py");
@@ -105,8 +106,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let mut out = io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &report)?;
-        writeln!(out)?;
+        json::line(&mut out, &report)?;
         return agree(&report);
     }
     writeln!(

@@ -1,18 +1,14 @@
 //! The simulated EEPROM against the data sheet, chapter 8.4 and 8.6.
 
 use lizard_host_tests::avr_gcc::{assembler, c};
-use simulated_uno::{
-    CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Pin, PowerCut, ResetCause, State, Uno,
-};
+use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Pin, Uno};
+
+use super::marks;
 
 /// Table 8-1: "Erase and Write in one operation (Atomic Operation)", 3.4 ms.
-const ATOMIC: u64 = 3400 * CYCLES_PER_US;
+pub const ATOMIC: u64 = 3400 * CYCLES_PER_US;
 /// Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
 const SINGLE: u64 = 1800 * CYCLES_PER_US;
-
-fn marks(uno: &Uno) -> Vec<u8> {
-    uno.marks().iter().map(|mark| mark.value).collect()
-}
 
 fn run(source: &str, cycles: u64) -> Uno {
     let mut uno = Uno::with_image(assembler(source), Fidelity::DataSheet);
@@ -22,7 +18,7 @@ fn run(source: &str, cycles: u64) -> Uno {
 
 /// `body` with `set(address, byte, mode)` and `get(address)` as the data sheet's
 /// examples have them, and `busy()`.
-fn program(body: &str) -> Image {
+pub fn program(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
@@ -378,147 +374,6 @@ fn a_reset_disarms_eempe() {
     uno.reset();
     uno.run_cycles(100);
     assert!(uno.eeprom_operations().is_empty());
-}
-
-/// Writes 0x35 over 0xa6 at address 0, then 0x5c at address 1.
-const TWO_BYTES: &str = "int main(void) {
-    if (get(0) != 0xa6) { GPIOR0 = get(0); for (;;) {} }
-    set(0, 0x35, 0); set(1, 0x5c, 0); while (busy()) {}
-    for (;;) {} }";
-
-fn two_bytes() -> Uno {
-    let mut uno = Uno::with_image(program(TWO_BYTES), Fidelity::DataSheet);
-    let mut contents = [0xff; EEPROM_SIZE];
-    contents[0] = 0xa6;
-    uno.set_eeprom(&contents);
-    uno
-}
-
-#[test]
-fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
-    for ones in [0, 0x01, 0x58, 0x0f, 0xff] {
-        let mut uno = two_bytes();
-        uno.cut_power(PowerCut::InErase(0), ones);
-        assert_eq!(*uno.run_ms(20), State::Off);
-        assert_eq!(uno.eeprom()[..2], [0xa6 | ones, 0xff]);
-        let operations = uno.eeprom_operations();
-        assert_eq!(operations.len(), 1);
-        assert!(operations[0].torn);
-        assert_eq!(operations[0].new, 0xa6 | ones);
-        let after = uno.cycle() - operations[0].cycle;
-        assert!(after.abs_diff(ATOMIC / 4) < 10, "{after}");
-    }
-}
-
-#[test]
-fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
-    for ones in [0, 0x80, 0x4a, 0xff] {
-        let mut uno = two_bytes();
-        uno.cut_power(PowerCut::InWrite(1), ones);
-        assert_eq!(*uno.run_ms(20), State::Off);
-        assert_eq!(uno.eeprom()[..2], [0x35, 0x5c | ones]);
-        let operations = uno.eeprom_operations();
-        assert_eq!([operations[0].torn, operations[1].torn], [false, true]);
-        let after = uno.cycle() - operations[1].cycle;
-        assert!(after.abs_diff(ATOMIC / 4 * 3) < 10, "{after}");
-    }
-}
-
-#[test]
-fn a_power_cut_at_a_cycle_takes_the_phase_of_that_moment() {
-    let mut whole = two_bytes();
-    whole.run_ms(20);
-    let start = whole.eeprom_operations()[1].cycle;
-    for (after, expected) in [
-        (100, 0xff),
-        (ATOMIC / 2 - 100, 0xff),
-        (ATOMIC / 2 + 100, 0x5e),
-        (ATOMIC - 100, 0x5e),
-        (ATOMIC + 100, 0x5c),
-    ] {
-        let mut uno = two_bytes();
-        uno.cut_power(PowerCut::AtCycle(start + after), 0x02);
-        assert_eq!(*uno.run_ms(20), State::Off);
-        assert!(uno.cycle() - (start + after) < 5);
-        assert_eq!(uno.eeprom()[..2], [0x35, expected], "{after}");
-    }
-}
-
-#[test]
-fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
-    let torn = |mode: u8, when: PowerCut, ones: u8| {
-        let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
-        let mut uno = Uno::with_image(program(&body), Fidelity::DataSheet);
-        uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
-        uno.cut_power(when, ones);
-        assert_eq!(*uno.run_ms(5), State::Off);
-        uno.eeprom()[0]
-    };
-    for when in [PowerCut::InErase(0), PowerCut::InWrite(0)] {
-        assert_eq!(torn(1, when, 0x11), 0xa6 | 0x11);
-        assert_eq!(torn(2, when, 0x82), 0xa6 & (0x35 | 0x82));
-        assert_eq!(torn(2, when, 0x00), 0xa6 & 0x35);
-    }
-}
-
-#[test]
-fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
-    let mut uno = two_bytes();
-    uno.cut_power(PowerCut::InWrite(0), 0x08);
-    uno.run_ms(20);
-    let at = uno.cycle();
-    assert_eq!(*uno.run_ms(20), State::Off, "nothing runs without power");
-    assert_eq!(uno.cycle(), at);
-    uno.power_cycle();
-    assert_eq!(*uno.run_ms(20), State::Alive);
-    assert_eq!(marks(&uno), [0x35 | 0x08]);
-    let causes: Vec<ResetCause> = uno.reset_events().iter().map(|r| r.cause).collect();
-    assert_eq!(causes, [ResetCause::PowerOn, ResetCause::PowerOn]);
-}
-
-#[test]
-fn a_power_cut_comes_once() {
-    let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
-    for when in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
-        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
-        uno.cut_power(when, 0xff);
-        assert_eq!(*uno.run_ms(5), State::Off);
-        uno.power_cycle();
-        assert_eq!(*uno.run_ms(5), State::Alive);
-        assert_eq!(uno.eeprom()[0], 0xfe);
-    }
-}
-
-#[test]
-fn a_reset_before_a_power_cut_does_not_prevent_it() {
-    for when in [PowerCut::AtCycle(40_000), PowerCut::InWrite(0)] {
-        let mut uno = two_bytes();
-        uno.cut_power(when, 0x02);
-        uno.run_ms(1);
-        uno.reset();
-        assert_eq!(*uno.run_ms(20), State::Off);
-        assert_eq!(uno.eeprom()[0], 0x37);
-        assert!(uno.cycle().abs_diff(40_900) < 1_000, "{}", uno.cycle());
-    }
-}
-
-#[test]
-fn a_power_cut_that_is_taken_back_does_not_come() {
-    let mut uno = two_bytes();
-    uno.cut_power(PowerCut::AtCycle(60_000), 0);
-    uno.cut_power(PowerCut::InErase(1), 0);
-    uno.keep_power();
-    assert_eq!(*uno.run_ms(20), State::Alive);
-    assert_eq!(uno.eeprom()[..2], [0x35, 0x5c]);
-}
-
-#[test]
-fn a_power_cycle_in_a_write_tears_it() {
-    let mut uno = two_bytes();
-    uno.set_torn_bits(0x40);
-    uno.run_ms(1);
-    uno.power_cycle();
-    assert_eq!(uno.eeprom()[0], 0xe6);
 }
 
 #[test]

@@ -1,20 +1,12 @@
 //! The simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
 use lizard_host_tests::avr_gcc::c;
-use simulated_uno::{
-    CYCLES_PER_MS, CYCLES_PER_US, Fidelity, Image, Pin, PowerCut, ResetCause, State, Uno,
-};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
+
+use super::{causes, marks};
 
 /// ADC clock of 125 kHz: prescaler 128.
 const CLOCK: u64 = 128;
-
-fn marks(uno: &Uno) -> Vec<u8> {
-    uno.marks().iter().map(|mark| mark.value).collect()
-}
-
-fn causes(uno: &Uno) -> Vec<ResetCause> {
-    uno.reset_events().iter().map(|reset| reset.cause).collect()
-}
 
 /// `convert()` runs one conversion and `show()` marks its result, low byte first.
 fn program(body: &str) -> Image {
@@ -30,7 +22,8 @@ fn program(body: &str) -> Image {
     ))
 }
 
-fn with(body: &str) -> Uno {
+/// The program, corrected towards the data sheet.
+pub fn with(body: &str) -> Uno {
     Uno::with_image(program(body), Fidelity::DataSheet)
 }
 
@@ -441,181 +434,6 @@ fn a_ramp_is_a_straight_line_that_the_adc_follows() {
     for code in 226..375 {
         assert!(results.contains(&code), "{code}");
     }
-}
-
-#[test]
-fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
-    // "When VCC decreases to a value below the trigger level (VBOT-), the Brown-out
-    // Reset is immediately activated. When VCC increases above the trigger level
-    // (VBOT+), the delay counter starts the MCU"; "VBOT+ = VBOT + VHYST/2" (11.5),
-    // with 2.7 V and 50 mV.
-    let body = "int main(void) { DDRB = 2; PORTB = 2; for (;;) GPIOR0 = MCUSR; }";
-    let mut uno = with(body);
-    uno.set_supply_mv(2676.0);
-    uno.run_ms(1);
-    assert!(!uno.held_in_reset() && uno.is_high(Pin::d(9)));
-    uno.set_supply_mv(2674.0);
-    uno.run_ms(1);
-    assert!(uno.held_in_reset() && !uno.is_high(Pin::d(9)));
-    uno.set_supply_mv(2724.0);
-    uno.take_marks();
-    assert_eq!(*uno.run_ms(1), State::Alive);
-    assert!(uno.held_in_reset() && uno.marks().is_empty());
-    assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes");
-    assert_eq!(uno.asleep_cycles(), 0, "but not asleep");
-    uno.set_supply_mv(2726.0);
-    uno.run_ms(1);
-    assert!(!uno.held_in_reset());
-    assert_eq!(marks(&uno)[0], 0x05);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::BrownOut]);
-}
-
-#[test]
-fn a_ramp_resets_at_the_cycle_at_which_it_crosses_the_level() {
-    // 5000 to 2000 and back, 1 mV in 1000 cycles.
-    let mut uno = with("int main(void) { for (;;) {} }");
-    uno.run_cycles(1000);
-    uno.ramp_supply_mv(2000.0, 3_000_000);
-    uno.run_cycles(2_325_000 - 100);
-    assert!(!uno.held_in_reset());
-    uno.run_cycles(200);
-    assert!(uno.held_in_reset());
-    uno.run_cycles(700_000);
-    uno.ramp_supply_mv(5000.0, 3_000_000);
-    let start = uno.cycle();
-    uno.run_cycles(3_000_000);
-    let back = uno.reset_events()[1];
-    assert_eq!(back.cause, ResetCause::BrownOut);
-    assert!((back.cycle - start).abs_diff(725_000) < 100, "{back:?}");
-}
-
-#[test]
-fn the_sram_survives_a_brown_out_and_not_a_loss_of_power() {
-    let body = "static volatile unsigned char kept __attribute__((section(\".noinit\")));
-        int main(void) { GPIOR0 = kept == 0x5a; GPIOR0 = MCUSR; kept = 0x5a; for (;;) {} }";
-    for (lowest, kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
-        let mut uno = with(body);
-        uno.run_ms(1);
-        uno.set_supply_mv(lowest);
-        uno.run_ms(1);
-        uno.set_supply_mv(5000.0);
-        uno.run_ms(1);
-        assert_eq!(marks(&uno)[2..], [kept, flags]);
-        uno.set_supply_mv(2000.0);
-        uno.run_ms(1);
-        uno.set_supply_mv(5000.0);
-        uno.run_ms(1);
-        assert_eq!(marks(&uno)[4..], [1, flags | 0x04], "and each time anew");
-    }
-}
-
-#[test]
-fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
-    let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
-    uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
-    uno.run_ms(11);
-    uno.set_supply_mv(2000.0);
-    uno.run_ms(1);
-    uno.ramp_supply_mv(5000.0, 10 * CYCLES_PER_MS);
-    uno.run_ms(11);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
-}
-
-#[test]
-fn without_the_fuse_the_chip_runs_down_to_power_on_reset() {
-    let mut uno = with("int main(void) { for (;;) GPIOR0 = 1; }");
-    uno.set_brown_out_mv(None);
-    uno.set_supply_mv(1310.0);
-    uno.run_ms(1);
-    assert!(!uno.held_in_reset());
-    uno.set_supply_mv(1290.0);
-    uno.run_ms(1);
-    assert!(uno.held_in_reset());
-    uno.set_supply_mv(1390.0);
-    uno.run_ms(1);
-    assert!(uno.held_in_reset());
-    uno.set_supply_mv(1410.0);
-    uno.run_ms(1);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
-    uno.set_brown_out_mv(Some(4300.0));
-    assert!(
-        uno.held_in_reset() || {
-            uno.run_cycles(10);
-            uno.held_in_reset()
-        }
-    );
-}
-
-#[test]
-fn an_eeprom_write_survives_a_brown_out_but_not_less_than_1_8_v() {
-    let body = "int main(void) {
-        if (MCUSR & 4) for (;;) {}
-        EEAR = 0; EEDR = 0x0f; EECR = 4; EECR |= 2;
-        for (;;) {} }";
-    for (lowest, expected) in [(1810.0, 0x0f), (1790.0, 0x4f)] {
-        let mut uno = with(body);
-        uno.set_torn_bits(0x40);
-        uno.run_ms(3);
-        uno.set_supply_mv(lowest);
-        uno.run_ms(1);
-        uno.set_supply_mv(5000.0);
-        uno.run_ms(2);
-        assert_eq!(uno.eeprom()[0], expected);
-    }
-}
-
-#[test]
-fn the_watchdog_stands_still_while_the_supply_holds_the_chip() {
-    let body = "#include <avr/wdt.h>
-        int main(void) { GPIOR0 = MCUSR; MCUSR = 0; wdt_enable(WDTO_15MS); for (;;) {} }";
-    let mut uno = with(body);
-    uno.run_ms(20);
-    uno.set_supply_mv(2000.0);
-    uno.run_ms(100);
-    uno.set_supply_mv(5000.0);
-    uno.run_ms(10);
-    assert_eq!(marks(&uno), [1, 8, 4]);
-    uno.run_ms(10);
-    assert_eq!(marks(&uno), [1, 8, 4, 8]);
-
-    // Nor when WDRF, left set, switches it on at each reset.
-    let mut uno = with(
-        "#include <avr/wdt.h>
-        int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",
-    );
-    uno.run_ms(20);
-    uno.set_supply_mv(2000.0);
-    uno.run_ms(100);
-    assert_eq!(uno.resets(), 1);
-}
-
-#[test]
-fn power_on_into_a_supply_that_is_too_low_waits_for_it() {
-    let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
-    uno.set_supply_mv(2000.0);
-    uno.power_cycle();
-    uno.take_marks();
-    uno.run_ms(1);
-    assert!(uno.held_in_reset() && uno.marks().is_empty());
-    uno.reset();
-    uno.run_ms(1);
-    assert!(uno.marks().is_empty(), "nor does the RESET pin start it");
-    uno.ramp_supply_mv(5000.0, CYCLES_PER_MS);
-    uno.run_ms(2);
-    assert_eq!(marks(&uno)[0], 1);
-    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
-}
-
-#[test]
-fn a_ramp_reaches_a_firmware_that_sleeps_for_ever() {
-    let mut uno =
-        with("int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
-    uno.ramp_supply_mv(2000.0, CYCLES_PER_MS);
-    assert_eq!(*uno.run_ms(2), State::Alive);
-    assert!(uno.held_in_reset());
-    let mut cut = with("int main(void) { SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
-    cut.cut_power(PowerCut::AtCycle(1000 * CYCLES_PER_US), 0);
-    assert_eq!(*cut.run_ms(2), State::Off);
 }
 
 #[test]

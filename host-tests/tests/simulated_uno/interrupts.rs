@@ -1,10 +1,9 @@
 //! Interrupts and Timer1 of the simulated UNO, against counted cycles.
 
 use lizard_host_tests::avr_gcc::{assembler, c};
-use simulated_uno::{Fidelity, Pin, Uno};
+use simulated_uno::{Fidelity, Uno};
 
-const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
-const LED: Pin = Pin::d(13);
+use super::{BOTH, LED};
 
 /// Timer1 in CTC mode with a compare interrupt; the handler toggles the LED by
 /// its first instruction.

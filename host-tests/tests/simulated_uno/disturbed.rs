@@ -2,10 +2,9 @@
 //! stands still, registers as something before the firmware may have left them.
 
 use lizard_host_tests::avr_gcc::{assembler, c};
-use simulated_uno::{Fidelity, Pin, Uno};
+use simulated_uno::{Fidelity, Uno};
 
-const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
-const LED: Pin = Pin::d(13);
+use super::{BOTH, LED};
 
 /// The LED is up for 100 cycles of instructions without interrupts, and down for
 /// 99 or so with them.

@@ -6,15 +6,7 @@ use simulated_uno::{
     Uno,
 };
 
-const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
-
-fn marks(uno: &Uno) -> Vec<u8> {
-    uno.marks().iter().map(|mark| mark.value).collect()
-}
-
-fn causes(uno: &Uno) -> Vec<ResetCause> {
-    uno.reset_events().iter().map(|reset| reset.cause).collect()
-}
+use super::{BOTH, causes, marks};
 
 /// Shows MCUSR at each start and leaves it.
 fn show_cause() -> Image {

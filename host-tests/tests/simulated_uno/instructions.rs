@@ -4,8 +4,7 @@
 use lizard_host_tests::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
-const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
-const LED: Pin = Pin::d(13);
+use super::{BOTH, LED};
 
 #[test]
 fn a_pulse_of_counted_instructions_has_its_counted_width() {

@@ -3,12 +3,10 @@
 use lizard_host_tests::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
+use super::marks;
+
 /// 2 048 cycles of the 128 kHz oscillator: the shortest time-out.
 const SHORTEST: u64 = 16 * CYCLES_PER_MS;
-
-fn marks(uno: &Uno) -> Vec<u8> {
-    uno.marks().iter().map(|mark| mark.value).collect()
-}
 
 /// Cycles of the watchdog's resets.
 fn bites(uno: &Uno) -> Vec<u64> {

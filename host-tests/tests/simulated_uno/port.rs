@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 use lizard_host_tests::avr_gcc;
 use simulated_uno::{Background, FREQUENCY, Fidelity, Pin, Port, Uno};
 
+use super::marks;
+
 /// Says `<r` at reset, then sends every byte back, plus one. D9 is high from
 /// reset on. GPIOR0 counts resets through a variable that reset does not clear.
 const ECHO: &str = r#"
@@ -51,10 +53,6 @@ fn read(port: &mut File, count: usize) -> String {
     let mut bytes = vec![0; count];
     port.read_exact(&mut bytes).expect("bytes come");
     String::from_utf8_lossy(&bytes).into_owned()
-}
-
-fn marks(uno: &Uno) -> Vec<u8> {
-    uno.marks().iter().map(|mark| mark.value).collect()
 }
 
 #[test]

@@ -1,0 +1,67 @@
+//! What the servos follow, and what comes after it.
+
+use crate::gait::{Gait, GaitId};
+use crate::point_to_point::PointToPoint;
+use crate::pose::Pose;
+use crate::robot::Robot;
+
+/// What the robot does, or is on its way to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// A gait (`stand` is one).
+    Gait(GaitId),
+    /// Going to a pose and staying there.
+    Pose,
+    /// Staying where it was stopped, by `stop` or by the guard.
+    Stop,
+    /// No pulses: the servos are limp.
+    Rest,
+}
+
+/// Where a motion leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// To a pose, to be held.
+    Pose(Pose),
+    /// To the first pose of a gait, and through its cycles.
+    Gait(GaitId),
+}
+
+/// What the servos follow at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Nothing: there are no pulses.
+    Resting,
+    /// The last pose.
+    Holding {
+        /// Whether it was asked for, or the robot was stopped in it.
+        asked: bool,
+    },
+    /// A point-to-point move.
+    Moving {
+        path: PointToPoint,
+        pace: u16,
+        /// The gait that begins at its end; without one, the pose is held.
+        gait: Option<GaitId>,
+    },
+    /// A gait.
+    Cycling {
+        id: GaitId,
+        gait: Gait,
+        /// 1/2^24 cycle.
+        phase: u32,
+        pace: u16,
+    },
+}
+
+impl State {
+    /// A gait from phase 0, still without pace.
+    pub fn cycling<R: Robot>(robot: &R, id: GaitId) -> Self {
+        Self::Cycling {
+            id,
+            gait: robot.gait(id),
+            phase: 0,
+            pace: 0,
+        }
+    }
+}

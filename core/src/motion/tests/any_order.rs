@@ -1,0 +1,68 @@
+//! Commands in any order, at any time, to any robot.
+
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// Something to ask of a robot.
+#[derive(Clone, Copy, Debug)]
+enum Ask {
+    Gait(&'static str),
+    Pose([i16; 4]),
+    Stop,
+    Rest,
+    Speed(u8),
+}
+
+/// Anything, and for how many frames the robot is left with it.
+fn asks() -> impl Strategy<Value = Vec<(Ask, u32)>> {
+    let ask = prop_oneof![
+        5 => prop::sample::select(GAITS.to_vec()).prop_map(Ask::Gait),
+        3 => prop::array::uniform4(-3000i16..3000).prop_map(Ask::Pose),
+        1 => prop::array::uniform4(-7000i16..7000).prop_map(Ask::Pose),
+        1 => Just(Ask::Stop),
+        1 => Just(Ask::Rest),
+        2 => (10u8..=100).prop_map(Ask::Speed),
+    ];
+    prop::collection::vec((ask, 0u32..90), 1..12)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn no_frame_is_unsafe_or_faster_than_a_move_or_the_gait_may_be(
+        robot in Sample::random(),
+        asks in asks(),
+    ) {
+        let mut motion = Motion::awake(robot);
+        for (ask, frames) in asks {
+            match ask {
+                Ask::Gait(name) => motion.start(name),
+                Ask::Pose(sweeps) => {
+                    let pose = Pose(sweeps.map(Sweep));
+                    let hazard = Clearance::of(&motion.robot, &pose).hazard(&motion.robot);
+                    prop_assert_eq!(motion.go_to(&pose).err(), hazard);
+                }
+                Ask::Stop => motion.stop(),
+                Ask::Rest => motion.rest(),
+                Ask::Speed(percent) => motion.set_speed(percent),
+            }
+            for _ in 0..frames {
+                let (before, cycling) = (*motion.pose(), motion.is_cycling());
+                let pulses = motion.tick();
+                let clearance = Clearance::of(&motion.robot, motion.pose());
+                prop_assert_eq!(clearance.hazard(&motion.robot), None);
+                for (got, held) in pulses.0.into_iter().zip(motion.held().0) {
+                    prop_assert!(got == Width(0) || got == held);
+                }
+                if !cycling {
+                    let way = before.farthest(motion.pose());
+                    prop_assert!(way <= motion.robot.slew.per_frame, "{}", way);
+                }
+            }
+        }
+    }
+}

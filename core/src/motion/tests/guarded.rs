@@ -1,0 +1,87 @@
+//! What the guard does in a motion.
+
+use super::*;
+
+/// A robot that the guard has just stopped.
+fn guarded() -> Motion<Sample> {
+    let mut motion = Motion::standing();
+    motion.start("stray");
+    for _ in 0..200 {
+        motion.tick();
+        if motion.hazard().is_some() {
+            return motion;
+        }
+    }
+    panic!("stray is safe");
+}
+
+#[test]
+fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held_with_the_reason() {
+    let mut motion = Motion::standing();
+    motion.start("stray");
+    let mut last = *motion.pose();
+    while motion.hazard().is_none() {
+        last = *motion.pose();
+        motion.tick();
+    }
+    let hazard = motion.hazard();
+    assert_eq!(motion.pose(), &last);
+    assert_eq!(motion.activity(), Activity::Stop);
+    assert_eq!(motion.phase(), 0);
+    for _ in 0..100 {
+        assert_eq!(motion.tick(), last.pulses(&motion.calibration));
+        assert_eq!(motion.hazard(), hazard);
+    }
+    // The reason is that of the frame that was not sent.
+    let id = motion.robot.id("stray");
+    let gait = motion.robot.gait(id);
+    let reasons: Vec<Hazard> = (0..CYCLE)
+        .step_by(1000)
+        .filter_map(|phase| {
+            let pose = gait.pose(motion.robot.waves(), phase);
+            Clearance::of(&motion.robot, &pose).hazard(&motion.robot)
+        })
+        .collect();
+    let same = |reason: &Hazard| match (reason, hazard) {
+        (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => *a == b,
+        (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => *a == b,
+        _ => false,
+    };
+    assert!(reasons.iter().any(same), "{hazard:?}");
+}
+
+#[test]
+fn the_reason_goes_when_the_next_motion_begins_and_not_before() {
+    let mut stays = guarded();
+    stays.stop();
+    stays.run(20);
+    assert!(stays.hazard().is_some(), "stop begins no motion");
+    let mut refused = guarded();
+    assert!(refused.go_to(&Pose([Sweep(13_000); 4])).is_err());
+    refused.run(20);
+    assert!(
+        refused.hazard().is_some(),
+        "nor does a pose that is refused"
+    );
+    let mut motion = guarded();
+    motion.start("sway");
+    assert!(motion.hazard().is_some());
+    motion.tick();
+    assert_eq!(motion.hazard(), None);
+    motion.run(LONG_ENOUGH);
+    assert_eq!(motion.gait(), Some("sway"));
+}
+
+#[test]
+fn a_pose_that_is_refused_changes_nothing_and_says_why() {
+    for name in GAITS {
+        for frames in [0, 3, 20, 70] {
+            let mut asked = Motion::in_gait(name, frames);
+            let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
+            let reason = Clearance::of(&asked.robot, &pose).hazard(&asked.robot);
+            assert_eq!(asked.go_to(&pose).err(), reason);
+            assert!(reason.is_some());
+            assert_same(asked, Motion::in_gait(name, frames));
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! A robot that rests, and servos that wake.
+
+use super::*;
+
+#[test]
+fn while_it_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
+    let mut motion = Motion::in_gait("sway", 90);
+    let pose = *motion.pose();
+    motion.rest();
+    for _ in 0..50 {
+        assert_eq!(motion.tick(), Pulses::default());
+        assert_eq!(motion.activity(), Activity::Rest);
+        assert_eq!(motion.pose(), &pose);
+        assert_eq!(motion.phase(), 0);
+    }
+}
+
+#[test]
+fn stop_and_rest_change_nothing_while_it_rests() {
+    for ask in [Motion::<Sample>::stop, Motion::<Sample>::rest] {
+        let mut motion = resting();
+        ask(&mut motion);
+        assert_eq!(motion.activity(), Activity::Rest);
+        assert_eq!(motion.tick(), Pulses::default());
+    }
+}
+
+#[test]
+fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_before_anything_moves() {
+    for pose in [false, true] {
+        let mut motion = resting();
+        let left = *motion.pose();
+        if pose {
+            motion.head_for_pose(THERE);
+            assert_eq!(motion.activity(), Activity::Pose);
+        } else {
+            motion.start("swing");
+            assert_eq!(motion.gait(), Some("swing"));
+        }
+        for _ in 0..WAKING {
+            motion.tick();
+            assert_eq!(motion.pose(), &left);
+        }
+        assert_eq!(motion.tick(), motion.held());
+        assert!(motion.is_moving());
+        motion.run(LONG_ENOUGH);
+        if pose {
+            assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
+        } else {
+            assert!(motion.is_cycling());
+        }
+    }
+}
+
+#[test]
+fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
+    let mut again = resting();
+    again.start("stand");
+    for mut motion in [Motion::new(Sample::odd()), again] {
+        let held = motion.held();
+        let mut since = [0; 4];
+        for frame in 1..=WAKING {
+            for (place, width) in motion.tick().0.into_iter().enumerate() {
+                if width != Width(0) && since[place] == 0 {
+                    since[place] = frame;
+                }
+                let expected = if since[place] > 0 {
+                    held.0[place]
+                } else {
+                    Width(0)
+                };
+                assert_eq!(width, expected);
+            }
+        }
+        assert_eq!(since, [5, 10, 15, 20]);
+    }
+}
+
+#[test]
+fn a_robot_that_is_told_to_rest_while_it_wakes_wakes_from_the_beginning_later() {
+    let mut motion = Motion::new(Sample::odd());
+    motion.run(12);
+    motion.rest();
+    assert_eq!(motion.tick(), Pulses::default());
+    motion.start("stand");
+    let awake = (0..WAKING).map(|_| motion.tick().0.map(|width| u8::from(width.0 > 0)));
+    let awake: Vec<u8> = awake.map(|servos| servos.iter().sum()).collect();
+    let expected: Vec<u8> = (1..=WAKING).map(|frame| (frame / 5) as u8).collect();
+    assert_eq!(awake, expected);
+}
+
+#[test]
+fn stop_while_it_wakes_lets_the_servos_wake_and_nothing_move() {
+    let mut motion = resting();
+    motion.start("sway");
+    motion.run(7);
+    motion.stop();
+    let pose = *motion.pose();
+    motion.run(LONG_ENOUGH);
+    assert_eq!(motion.activity(), Activity::Stop);
+    assert_eq!(motion.pose(), &pose);
+    assert_eq!(motion.tick(), motion.held());
+    assert!(motion.held().0.iter().all(|width| *width > Width(0)));
+}
+
+#[test]
+fn what_is_asked_for_while_it_wakes_waits_until_all_are_awake() {
+    let mut motion = Motion::new(Sample::odd());
+    motion.run(3);
+    motion.head_for_pose(THERE);
+    motion.run(WAKING - 3);
+    assert_eq!(motion.pose(), &Pose::NEUTRAL);
+    motion.run(LONG_ENOUGH);
+    assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
+}
+
+// Holding.
