@@ -309,9 +309,9 @@ test('weak springs take of the way what the contact model says', async () => {
   // The table of docs/twin.md: mm in a cycle of the paper's robot, and the lag in deg.
   const twin = await readFile(new URL('../../docs/twin.md', import.meta.url), 'utf8');
   const row = (name) => twin.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
-  const [rates, ways, lags] = ['stiffness', '`walk`', 'lag'].map(row);
+  const [rates, walked, lags] = ['stiffness', '`walk`', 'lag'].map(row);
   for (const [steps, stiffness] of [[7, 5], [11, 2]]) {
-    const [mm, lag] = [ways, lags].map((values) => values[rates.indexOf(stiffness)]);
+    const [mm, lag] = [walked, lags].map((values) => values[rates.indexOf(stiffness)]);
     assert.equal(await fromTheRight(opened, 'Leg springs', steps), `${stiffness}`);
     await advance(opened, 4000);
     const { predicted, measured } = await ways(opened, 'walk');
