@@ -102,4 +102,15 @@ mod tests {
         let (min, max) = wide.travel();
         assert!(-180.0 < min && min < -179.9 && 179.9 < max && max < 180.0);
     }
+
+    #[test]
+    fn a_sliders_arm_stands_on_the_hand_that_the_kinematics_gives_it() {
+        use lizard_kinematics::{Side, Vector};
+        let crank = Vector::new(1.0, 0.0);
+        for side in Side::ALL {
+            let [front, rear] = side.servos();
+            assert_eq!(side.front_arm(crank), Vector::new(0.0, HAND[front]));
+            assert_eq!(side.rear_arm(crank), Vector::new(0.0, HAND[rear]));
+        }
+    }
 }
