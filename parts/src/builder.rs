@@ -7,6 +7,7 @@ use crate::body::{Body, Kind, Mount, Prism};
 use crate::layout::Layout;
 use crate::shape::Shape;
 use crate::stack::{PLAY, Span, Stack, screw_length};
+use crate::struts;
 
 /// Which way a screw points.
 #[derive(Clone, Copy, PartialEq)]
@@ -56,6 +57,11 @@ impl<'a> Builder<'a> {
     /// Half a bar's width, mm.
     pub fn half(&self) -> f64 {
         self.parts.bar / 2.0
+    }
+
+    /// The name of a leg's strut.
+    pub fn strut(&self, leg: &str) -> String {
+        struts::name(self.parts.strut, leg)
     }
 
     /// A hole through which a screw turns.

@@ -34,6 +34,8 @@
 //!   rod with its sleeve, the strut with the leg's crank that its spring pulls at.
 //! - [`Assembly::prove`] proves how near any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only looks at some.
+//! - [`Assembly::instead`] has bodies that may be put in instead of others: of the two
+//!   kinds of strut the one that robot.toml does not choose.
 //! - [`Layout`] has pivots and anchors seen from above, for drawings.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -66,7 +68,9 @@ mod sliders;
 mod solid;
 mod stack;
 mod step;
+mod steps;
 mod stl;
+mod struts;
 mod svg;
 mod unfit;
 
@@ -91,6 +95,7 @@ pub use sliders::SliderLengths;
 pub use solid::{Edge, Face, Solid, Surface};
 pub use stack::{Span, Stack};
 pub use step::step;
+pub use steps::{Stage, Step, Where, steps};
 pub use stl::stl;
 pub use svg::sheet_svg;
 pub use unfit::Unfit;

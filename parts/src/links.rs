@@ -130,7 +130,7 @@ fn anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let at = builder.layout.legs[servo].anchor;
-    let strut = format!("strut {leg}");
+    let strut = builder.strut(leg);
     let ring = [stack.on_hook(parts) - 0.3, stack.link[0] - PLAY];
     builder.spacer(
         format!("strut spacer {name}"),

@@ -62,6 +62,8 @@ pub struct Stack {
     pub strut: Span,
     /// The recess in its top for the hooks.
     pub recess: Span,
+    /// A rigid strut: as high as a hook that lies on the other one.
+    pub rigid: Span,
     /// The servos' links.
     pub link: Span,
     /// The pocket in their tops for the horns.
@@ -128,6 +130,7 @@ impl Stack {
             anchor: [crank[1], strut[0] - PLAY],
             strut,
             recess,
+            rigid: [strut[0], recess[1].min(strut[1] + parts.spring.wire)],
             link,
             horn: [arm, link[1]],
             sunk: [link[1] - screw.head_height - PLAY, link[1]],

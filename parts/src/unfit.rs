@@ -26,7 +26,7 @@ pub enum Unfit {
     Nut,
     /// The leg's strut is shorter than its spring.
     #[error(
-        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other"
+        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; parts.strut = \"rigid\" needs no spring"
     )]
     Spring {
         /// LF, RF, RH, LH.
@@ -105,7 +105,8 @@ impl Assembly {
             let height = parts.height;
             return Err(Unfit::Low { height, least });
         }
-        for (leg, layout) in lizard_robot::servo::LEGS.iter().zip(&self.layout().legs) {
+        let legs = lizard_robot::servo::LEGS.iter().zip(&self.layout().legs);
+        for (leg, layout) in legs.filter(|_| parts.strut == lizard_robot::Strut::Spring) {
             let inside = layout.strut_length + parts.screw.diameter;
             if inside <= parts.spring.length {
                 return Err(Unfit::Spring {

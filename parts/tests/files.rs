@@ -69,6 +69,27 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
 }
 
 #[test]
+fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
+    for name in ["paper", "large", "unequal"] {
+        let assembly = assembly(name);
+        for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.instead()) {
+            let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
+            assert_eq!(holes(rigid), expected, "{name}: {}", rigid.name);
+            let slotted = rigid.name.trim_start_matches("rigid ");
+            let slotted = assembly.body(slotted).expect(slotted);
+            assert_eq!(slotted.mount, rigid.mount);
+            // What keeps clear of the one keeps clear of the other.
+            let (inner, outer) = (rigid.z(), slotted.z());
+            assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
+            for prism in &slotted.prisms {
+                let air = rigid.prisms[0].add[0].within(&prism.add[0], Default::default());
+                assert!(air > -1e-9, "{name}: {air}");
+            }
+        }
+    }
+}
+
+#[test]
 fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
     let assembly = assembly("unequal");
     let plate = assembly.body("plate").expect("a plate");

@@ -124,6 +124,18 @@ fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
 }
 
 #[test]
+fn rigid_struts_keep_what_those_with_springs_keep() {
+    let [sprung, rigid] = ["spring", "rigid"].map(|word| {
+        let assembly = assembly("paper", &format!("[parts]\nstrut = \"{word}\""));
+        let strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
+        let proof = assembly.prove_some(|a, b| strut(a) || strut(b), |_, _| ());
+        assert_eq!(proof.judge(), Ok(()), "{word}");
+        proof.least().expect("something is near").proved
+    });
+    assert!(rigid >= sprung, "{rigid} {sprung}");
+}
+
+#[test]
 fn the_robot_with_gaits_of_its_own_has_the_papers_parts() {
     let [own, paper] = ["own-gaits", "paper"].map(|name| assembly(name, ""));
     assert_eq!(own.bodies(), paper.bodies());
