@@ -126,6 +126,10 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
             format!("screw M{diameter} x {length}, button head (ISO 7380)"),
             SCREW_HEAD + SCREW_MM * length,
         ),
+        Kind::HexScrew(length) => (
+            format!("screw M{diameter} x {length}, hexagon head (ISO 4017)"),
+            SCREW_HEAD + SCREW_MM * length,
+        ),
         Kind::ServoScrew => (String::new(), SERVO_SCREW),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
         Kind::Standoff(length) => (

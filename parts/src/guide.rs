@@ -6,19 +6,25 @@ use std::fmt::Write;
 
 use lizard_kinematics::Solution;
 
-use crate::assembly::Assembly;
+use crate::assembly::{Assembly, names};
 use crate::bill::Bill;
 use crate::body::{Body, Kind};
 use crate::files::File;
 use crate::picture::{Drawn, View, picture, whole};
+use crate::reach::Aside;
 use crate::steps::steps;
+use crate::unfit::Unfit;
 
 /// How far new parts are lifted in the exploded pictures, mm.
 const LIFT: f64 = 45.0;
 
-/// The guide as Markdown and HTML, with its pictures, and the bill as JSON.
-#[must_use]
-pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Vec<File> {
+/// The guide as Markdown and HTML, with its pictures at a pose, as a rule neutral.
+///
+/// # Errors
+/// [`Unfit::Blocked`] for a screw that cannot be reached.
+pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
+    let steps = steps(assembly.robot().parts().strut);
+    let asides = assembly.asides(&steps)?;
     let mut files = Vec::new();
     let view = View::default();
     let robot = picture(assembly, &whole(assembly), pose, &view);
@@ -29,7 +35,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Vec<File> {
     );
     let _ = writeln!(text, "{bill}");
     let mut before: Vec<&Body> = Vec::new();
-    for (number, step) in steps(assembly.robot().parts().strut).iter().enumerate() {
+    for (number, step) in steps.iter().enumerate() {
         let number = number + 1;
         let new: Vec<&Body> = assembly
             .bodies()
@@ -64,6 +70,15 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Vec<File> {
         }
         let _ = writeln!(text, "## {number}. {}\n\n{}\n", step.title, step.words);
         let _ = writeln!(text, "Screws: {}.\n", screws(&new));
+        let here = asides.iter().filter(|aside| aside.step == number);
+        let turns: Vec<_> = here.map(|aside| turned(assembly, aside)).collect();
+        if !turns.is_empty() {
+            let _ = writeln!(
+                text,
+                "At neutral there is no way to some screws. Seen from above, turn {}.\n",
+                turns.join("; ")
+            );
+        }
         let _ = writeln!(
             text,
             "![{title}, apart](step-{number}-exploded.svg)\n![{title}, done](step-{number}-done.svg)\n",
@@ -73,7 +88,29 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Vec<File> {
     }
     files.push(File::text("guide/guide.html".to_owned(), html(&text)));
     files.push(File::text("guide/guide.md".to_owned(), text));
-    files
+    Ok(files)
+}
+
+/// What has to be turned out of the way.
+fn turned(assembly: &Assembly, aside: &Aside) -> String {
+    let neutral: [f64; 4] = assembly.robot().neutral().into();
+    let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
+    let turns: Vec<_> = turns
+        .filter(|(_, by)| by.abs() > 0.5)
+        .map(|(servo, by)| {
+            let way = if by > 0.0 {
+                "counter-clockwise"
+            } else {
+                "clockwise"
+            };
+            format!(
+                "what {} drives by {:.0} deg {way}",
+                names(servo).0,
+                by.abs()
+            )
+        })
+        .collect();
+    format!("{} for {}", turns.join(" and "), aside.screws.join(", "))
 }
 
 /// The screws and nuts of a step, by length.
@@ -82,6 +119,7 @@ fn screws(new: &[&Body]) -> String {
     for body in new {
         let what = match body.kind {
             Kind::Screw(length) => format!("M3 x {length:02}"),
+            Kind::HexScrew(length) => format!("M3 x {length:02} with hexagon heads"),
             Kind::Nut => "lock nuts".to_owned(),
             Kind::ServoScrew => "servo screws".to_owned(),
             _ => continue,

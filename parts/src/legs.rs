@@ -182,6 +182,7 @@ fn foot(builder: &mut Builder, servo: usize) {
             nut: stack.leaf[0],
             length: None,
             meets: &[],
+            hex: false,
         });
     }
 }
@@ -204,6 +205,7 @@ fn screws(builder: &mut Builder, servo: usize) {
             nut: stack.plate[0] - PLAY,
             length: None,
             meets: &[&plate],
+            hex: false,
         });
         builder.bolt(&Bolt {
             name: &format!("{name} joint {leg}"),
@@ -214,6 +216,7 @@ fn screws(builder: &mut Builder, servo: usize) {
             nut: stack.crank[1] + PLAY,
             length: None,
             meets: &[&carries],
+            hex: false,
         });
     }
     let (nut, length) = stack.anchor_nut(parts);
@@ -226,5 +229,6 @@ fn screws(builder: &mut Builder, servo: usize) {
         nut: nut - 0.0,
         length: Some(length),
         meets: &[&builder.strut(leg)],
+        hex: false,
     });
 }

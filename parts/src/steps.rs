@@ -100,19 +100,17 @@ fn chassis() -> Step {
 fn legs() -> Step {
     Step {
         title: "Legs, on the bench",
-        words: "For each leg: press a lock nut into the pocket under the crank's short arm. Screw the foot under the leg's coupler, heads \
-                sunk into the coupler, nuts under the leaf. Put a screw from below through each end of the coupler; crank and \
-                follower go over them, with nuts on top. Tighten joints until they have no play and still turn by their own weight. \
-                Mind left and right: cranks LF and RH are alike, and RF and LH."
+        words: "For each leg: press a lock nut into the pocket under the crank's short arm. Put a screw from below through each end \
+                of the leg's coupler; crank and follower go over them, with nuts on top. Tighten these joints until they have no play \
+                and still turn by their own weight: the foot covers a head later. Then swing crank and follower aside and \
+                screw the foot under the coupler, heads sunk into the coupler, nuts under the leaf. Mind left and right: cranks LF and RH are alike, and RF and LH."
             .to_owned(),
         stages: vec![
-            bench(|body| {
-                matches!(body.mount, Mount::Foot(_))
-            }),
             bench(|body| {
                 named(
                     body,
                     &[
+                        "leg coupler",
                         "crank",
                         "follower",
                         "screw crank joint",
@@ -123,6 +121,7 @@ fn legs() -> Step {
                     ],
                 )
             }),
+            bench(|body| matches!(body.mount, Mount::Foot(_))),
         ],
         lift: |body| match body.mount {
             Mount::Foot(_) => -0.5,
@@ -192,8 +191,9 @@ fn links(strut: Strut) -> Step {
     Step {
         title: "Links and horns",
         words: format!(
-            "Cut each horn to one arm and lay it into its link's pocket, fix it with two small screws from above. Put the screws of crank and arm \
-             through the link from below: later there is no way to them. Run `center` on the robot so that all \
+            "Cut each horn to one arm and lay it into its link's pocket, fix it with two small screws from above. Put the two screws with hexagon \
+             heads into the link from below, heads into their pockets: nothing has to hold them later, and once the link is on \
+             there is no way to them. Run `center` on the robot so that all \
              servos stand in their middle, then press each link on at its neutral angle (`lizard draw --horns` shows it) and \
              fix it with the horn's own screw. {anchor}"
         ),
@@ -217,8 +217,8 @@ fn links(strut: Strut) -> Step {
 fn sliders() -> Step {
     Step {
         title: "Sliders",
-        words: "Push each rod into its sleeve. The sleeve goes on the rear arm, the rod with a ring under it on the front arm; nuts on top. The \
-                rods are outside."
+        words: "Push each rod into its sleeve. The sleeve goes on the rear arm, the rod with a ring under it on the front arm; nuts on top. \
+                The rods are outside."
             .to_owned(),
         stages: vec![robot(|body| {
             matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_))
@@ -254,7 +254,7 @@ fn deck() -> Step {
     Step {
         title: "Battery, deck and board",
         words: "Strap the battery to the plate through its window. The deck goes on the standoffs, screws from above; the UNO on its \
-                bosses, USB to the tail, with screws that cut their own thread. Wire it as `lizard draw --wiring` shows, and \
+                bosses, USB to the tail, with three screws that cut their own thread: in the hole beside the pin AREF a head has no room. Wire it as `lizard draw --wiring` shows, and \
                 keep the wires clear of the links."
             .to_owned(),
         stages: vec![

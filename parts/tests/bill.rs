@@ -29,7 +29,7 @@ fn every_body_is_printed_or_bought() {
         assert_eq!(printed, count(|kind| *kind == Kind::Printed), "{name}");
         assert_eq!(
             bill.count("screw M3"),
-            count(|kind| matches!(kind, Kind::Screw(_)))
+            count(|kind| matches!(kind, Kind::Screw(_) | Kind::HexScrew(_)))
         );
         assert_eq!(bill.count("lock nut"), count(|kind| *kind == Kind::Nut));
         assert_eq!(bill.count("servo SG-90"), 4);

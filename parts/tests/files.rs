@@ -151,9 +151,15 @@ fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
         .iter()
         .map(|layer| (layer.name.as_str(), layer.loops.len()))
         .collect();
-    // Outline, crank, arm, anchor, hub and two small screws; the horn; the head.
+    // Outline, crank, arm, anchor, hub and two small screws; two hexagonal heads; the horn;
+    // the anchor's head.
     assert_eq!(
         layers,
-        [("CUT", 7), ("POCKET_2.20_TOP", 1), ("POCKET_1.90_TOP", 1)]
+        [
+            ("CUT", 7),
+            ("POCKET_2.00_BOTTOM", 2),
+            ("POCKET_2.20_TOP", 1),
+            ("POCKET_1.90_TOP", 1)
+        ]
     );
 }

@@ -199,7 +199,7 @@ fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
             .iter_mut()
             .find(|body| body.name == name)
             .expect(name);
-        let thin = |body: &Body, i: usize| body.prisms[i].add[0].radius;
+        let thin = |body: &Body, i: usize| body.prisms[i].add[0].width();
         let shank = usize::from(thin(screw, 1) < thin(screw, 0));
         let z = &mut screw.prisms[shank].z;
         if downwards {
@@ -213,9 +213,9 @@ fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
 #[test]
 fn a_screw_that_is_too_long_is_found() {
     for (name, by, downwards, other) in [
-        ("screw tip A1", 6.0, true, "strut LF"),
+        ("screw tip A1", 8.0, true, "strut LF"),
         ("screw foot LF 2", 3.0, false, "follower LF"),
-        ("screw crank pivot LF", 5.0, false, "screw arm A1"),
+        ("screw crank pivot LF", 6.5, false, "screw arm A1"),
         ("screw crank joint LF", 5.0, true, "foot LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {

@@ -104,7 +104,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             "bill.json".to_owned(),
             serde_json::to_string_pretty(&bill)? + "\n",
         ));
-        files.extend(guide(&assembly, &bill, &pose));
+        files.extend(guide(&assembly, &bill, &pose)?);
     }
     write(&args.folder, &files)?;
     let mut out = io::stdout().lock();
