@@ -188,8 +188,18 @@ fn a_bar_that_is_too_wide_is_found() {
     overlap(
         clash(&wide, |body| body.name.starts_with("link")),
         "link A",
-        "link A",
+        "",
     );
+}
+
+#[test]
+fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
+    let proof = assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
+    let Err(Clash::Overlap(found)) = proof.judge() else {
+        panic!("no overlap");
+    };
+    assert!(found.mm < -5.0, "{found}");
+    assert!(proof.regions < 10_000, "{}", proof.regions);
 }
 
 /// A screw of the paper's robot, longer by so much.
