@@ -5,7 +5,7 @@ use std::fmt;
 
 use lizard_kinematics::{Solution, Vector};
 use lizard_robot::{Coil, Spring, Strut};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::assembly::Assembly;
 use crate::body::{Body, Kind, Prism};
@@ -39,6 +39,7 @@ pub struct Item {
     /// What.
     pub what: String,
     /// Of one, g.
+    #[serde(serialize_with = "tenths")]
     pub grams: f64,
 }
 
@@ -52,29 +53,54 @@ pub struct Bill {
     /// To buy.
     pub bought: Vec<Item>,
     /// All of it at neutral, g, without wires.
+    #[serde(serialize_with = "tenths")]
     pub grams: f64,
     /// The mass centre: ahead of, left of and above the plate's middle, mm.
+    #[serde(serialize_with = "each_in_tenths")]
     pub centre: [f64; 3],
     /// What the leg feels of its spring; `None` where its strut is rigid.
     pub hold: Option<Hold>,
+}
+
+/// Writes what is estimated no finer than it is known.
+fn tenths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
+    out.serialize_f64((10.0 * value).round() / 10.0)
+}
+
+fn each_in_tenths<S: Serializer>(values: &[f64; 3], out: S) -> Result<S::Ok, S::Error> {
+    // And without a minus before 0.
+    let tenths = values.map(|value| (10.0 * value).round() / 10.0 + 0.0);
+    tenths.serialize(out)
+}
+
+/// The same for what is computed.
+fn thousandths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
+    out.serialize_f64((1000.0 * value).round() / 1000.0)
 }
 
 /// A leg's spring in its strut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Hold {
     /// Length inside its hooks in the strut, mm.
+    #[serde(serialize_with = "thousandths")]
     pub installed: f64,
     /// Its pull there, N.
+    #[serde(serialize_with = "thousandths")]
     pub force: f64,
     /// N/mm.
+    #[serde(serialize_with = "thousandths")]
     pub rate: f64,
     /// Up to this torque the leg follows its servo exactly, N mm.
+    #[serde(serialize_with = "thousandths")]
     pub preload: f64,
     /// Beyond it the leg lags by a degree for each, N mm/deg.
+    #[serde(serialize_with = "thousandths")]
     pub per_degree: f64,
     /// How far it may lag until the slot ends, deg.
+    #[serde(serialize_with = "thousandths")]
     pub way: f64,
     /// What dry friction of its pad asks of a leg, N mm.
+    #[serde(serialize_with = "thousandths")]
     pub friction: f64,
 }
 
