@@ -74,8 +74,8 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
     };
     // Each bill has the other's struts aside.
     let [slotted, bar] = ["strut", "rigid strut"].map(|what| (4, what.to_owned()));
-    assert_eq!(names(&sprung.instead), [bar.clone()]);
-    assert_eq!(names(&rigid.instead), [slotted.clone()]);
+    assert_eq!(names(&sprung.instead).first(), Some(&bar));
+    assert_eq!(names(&rigid.instead).first(), Some(&slotted));
     assert!(names(&sprung.printed).contains(&slotted) && names(&rigid.printed).contains(&bar));
     assert_eq!(rigid.hold, None);
     // What robot.toml calls a leg without a spring.
