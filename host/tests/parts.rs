@@ -34,6 +34,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "cut/link-A1-A3.dxf",
         "cut/coupler.svg",
         "stl/coupon.stl",
+        "stl/rigid-strut.stl",
         "bill.json",
         "guide/guide.html",
         "guide/guide.md",
@@ -43,6 +44,11 @@ fn a_folder_holds_everything_to_build_the_robot() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    assert!(guide.contains("## 4. Struts and springs"), "{guide}");
+    assert!(
+        guide.contains("Instead of the struts, 4 x rigid strut,"),
+        "{guide}"
+    );
     for line in guide.lines().filter(|line| line.starts_with("![")) {
         let (_, file) = line.trim_end_matches(')').rsplit_once('(').expect("a file");
         assert!(folder.join("guide").join(file).is_file(), "{file}");
@@ -65,6 +71,33 @@ fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
         "{light}"
     );
     assert_eq!(said(&robots("paper")).lines().count(), 1);
+}
+
+#[test]
+fn struts_may_be_rigid() {
+    let folder = fresh("parts-rigid");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rigid.toml");
+    let text = fs::read_to_string(robots("paper")).expect("paper");
+    fs::write(&file, text + "\n[parts]\nstrut = \"rigid\"\n").expect("a file");
+    let made = lizard(&folder, &["--robot", &file.display().to_string()]);
+    assert!(made.status.success(), "{made:?}");
+    for file in [
+        "stl/rigid-strut.stl",
+        "cut/rigid-strut.dxf",
+        "stl/strut.stl",
+    ] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    assert!(guide.contains("## 4. Struts\n"), "{guide}");
+    assert!(
+        guide.contains("Instead of the struts, 4 x strut,"),
+        "{guide}"
+    );
+    assert!(
+        !guide.contains("hook") && !guide.contains("tension"),
+        "{guide}"
+    );
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::joints::Joints;
 use crate::layout::Layout;
 use crate::place::Place;
 use crate::stack::Stack;
-use crate::{chassis, ends, legs, links, sliders};
+use crate::{chassis, ends, legs, links, sliders, struts};
 
 /// Every body of a robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,7 @@ pub struct Assembly {
     stack: Stack,
     layout: Layout,
     bodies: Vec<Body>,
+    instead: Vec<Body>,
 }
 
 impl Assembly {
@@ -30,8 +31,10 @@ impl Assembly {
         ends::add(&mut builder);
         sliders::add(&mut builder);
         legs::add(&mut builder);
+        struts::add(&mut builder);
         Self {
             robot: robot.clone(),
+            instead: struts::instead(&builder),
             stack: builder.stack,
             layout: builder.layout,
             bodies: builder.bodies,
@@ -60,6 +63,12 @@ impl Assembly {
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// Bodies that may be put in instead of some of them: the other kind of strut.
+    #[must_use]
+    pub fn instead(&self) -> &[Body] {
+        &self.instead
     }
 
     /// A body by its name.

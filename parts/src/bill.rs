@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use lizard_kinematics::{Solution, Vector};
-use lizard_robot::{Coil, Spring};
-use serde::Serialize;
+use lizard_robot::{Coil, Spring, Strut};
+use serde::{Serialize, Serializer};
 
 use crate::assembly::Assembly;
 use crate::body::{Body, Kind, Prism};
@@ -39,6 +39,7 @@ pub struct Item {
     /// What.
     pub what: String,
     /// Of one, g.
+    #[serde(serialize_with = "tenths")]
     pub grams: f64,
 }
 
@@ -47,56 +48,86 @@ pub struct Item {
 pub struct Bill {
     /// To print.
     pub printed: Vec<Item>,
+    /// To print instead of some of it: the other kind of strut.
+    pub instead: Vec<Item>,
     /// To buy.
     pub bought: Vec<Item>,
     /// All of it at neutral, g, without wires.
+    #[serde(serialize_with = "tenths")]
     pub grams: f64,
     /// The mass centre: ahead of, left of and above the plate's middle, mm.
+    #[serde(serialize_with = "each_in_tenths")]
     pub centre: [f64; 3],
-    /// What the leg feels of its spring.
-    pub hold: Hold,
+    /// What the leg feels of its spring; `None` where its strut is rigid.
+    pub hold: Option<Hold>,
+}
+
+/// Writes what is estimated no finer than it is known.
+fn tenths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
+    out.serialize_f64((10.0 * value).round() / 10.0)
+}
+
+fn each_in_tenths<S: Serializer>(values: &[f64; 3], out: S) -> Result<S::Ok, S::Error> {
+    // And without a minus before 0.
+    let tenths = values.map(|value| (10.0 * value).round() / 10.0 + 0.0);
+    tenths.serialize(out)
+}
+
+/// The same for what is computed.
+fn thousandths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
+    out.serialize_f64((1000.0 * value).round() / 1000.0)
 }
 
 /// A leg's spring in its strut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Hold {
     /// Length inside its hooks in the strut, mm.
+    #[serde(serialize_with = "thousandths")]
     pub installed: f64,
     /// Its pull there, N.
+    #[serde(serialize_with = "thousandths")]
     pub force: f64,
     /// N/mm.
+    #[serde(serialize_with = "thousandths")]
     pub rate: f64,
     /// Up to this torque the leg follows its servo exactly, N mm.
+    #[serde(serialize_with = "thousandths")]
     pub preload: f64,
     /// Beyond it the leg lags by a degree for each, N mm/deg.
+    #[serde(serialize_with = "thousandths")]
     pub per_degree: f64,
     /// How far it may lag until the slot ends, deg.
+    #[serde(serialize_with = "thousandths")]
     pub way: f64,
     /// What dry friction of its pad asks of a leg, N mm.
+    #[serde(serialize_with = "thousandths")]
     pub friction: f64,
 }
 
 impl Hold {
-    /// Of the robot's first leg; all are alike.
+    /// Of the robot's first leg; all are alike. `None` where it has no spring.
     #[must_use]
-    pub fn of(assembly: &Assembly) -> Self {
+    pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let parts = robot.parts();
+        if parts.strut == Strut::Rigid {
+            return None;
+        }
         let radius = parts.anchor[0];
         let coil: Coil = parts.spring;
         // Both hooks lie around the far sides of their screws.
         let installed = assembly.layout().legs[0].strut_length + parts.screw.diameter;
         let force = coil.force(installed);
         let ground = robot.ground();
-        Self {
+        Some(Self {
             installed,
             force,
             rate: coil.rate(),
             preload: force * radius,
             per_degree: (coil.rate() * radius * radius).to_radians(),
-            way: (crate::legs::SLOT / radius).to_degrees(),
+            way: (crate::struts::SLOT / radius).to_degrees(),
             friction: ground.grip() * ground.feet.reach,
-        }
+        })
     }
 
     /// As robot.toml has it under [leg].
@@ -110,7 +141,7 @@ impl Hold {
 }
 
 /// A name for what is not printed, and its mass in g.
-fn bought(body: &Body, assembly: &Assembly, hold: &Hold) -> (String, f64) {
+fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
     match body.kind {
@@ -119,6 +150,10 @@ fn bought(body: &Body, assembly: &Assembly, hold: &Hold) -> (String, f64) {
         Kind::Horn => (String::new(), HORN),
         Kind::Screw(length) => (
             format!("screw M{diameter} x {length}, button head (ISO 7380)"),
+            SCREW_HEAD + SCREW_MM * length,
+        ),
+        Kind::HexScrew(length) => (
+            format!("screw M{diameter} x {length}, hexagon head (ISO 4017)"),
             SCREW_HEAD + SCREW_MM * length,
         ),
         Kind::ServoScrew => (String::new(), SERVO_SCREW),
@@ -134,10 +169,12 @@ fn bought(body: &Body, assembly: &Assembly, hold: &Hold) -> (String, f64) {
                 length,
             } = parts.spring;
             let volume = coil_volume(&parts.spring);
+            let pull = hold.map_or(String::new(), |hold| {
+                format!(", {:.1} N at {:.1} mm", hold.force, hold.installed)
+            });
             (
                 format!(
-                    "tension spring, wire {wire} mm, coil {outer} mm, {length} mm inside its hooks, {:.1} N at {:.1} mm",
-                    hold.force, hold.installed
+                    "tension spring, wire {wire} mm, coil {outer} mm, {length} mm inside its hooks{pull}"
                 ),
                 STEEL * volume,
             )
@@ -171,7 +208,7 @@ impl Bill {
             let mass = match body.kind {
                 Kind::Printed => PRINTED * volume,
                 _ => {
-                    let (what, mass) = bought(body, assembly, &hold);
+                    let (what, mass) = bought(body, assembly, hold.as_ref());
                     if !what.is_empty() {
                         let known = list.entry(what).or_insert((0, mass));
                         known.0 += 1;
@@ -187,11 +224,16 @@ impl Bill {
                 *sum += mass * part;
             }
         }
-        let printed = parts.iter().map(|part| Item {
-            count: part.count(),
-            what: part.name.clone(),
-            grams: PRINTED * part.volume(),
-        });
+        let printed = |instead: bool| -> Vec<Item> {
+            let parts = parts.iter();
+            let some = parts.filter(|part| part.instead_of.is_some() == instead);
+            some.map(|part| Item {
+                count: part.count(),
+                what: part.name.clone(),
+                grams: PRINTED * part.volume(),
+            })
+            .collect()
+        };
         let bought = list
             .into_iter()
             .map(|(what, (count, grams))| Item { count, what, grams });
@@ -205,7 +247,8 @@ impl Bill {
             (1, "low-voltage alarm for the battery"),
         ];
         Self {
-            printed: printed.collect(),
+            printed: printed(false),
+            instead: printed(true),
             bought: bought
                 .chain(more.map(|(count, what)| Item {
                     count,
@@ -252,6 +295,18 @@ impl fmt::Display for Bill {
         for Item { count, what, grams } in &self.printed {
             writeln!(f, "| {count} | {what} | {grams:.1} |")?;
         }
+        let (other, strut) = match self.hold {
+            Some(_) => ("without springs", Strut::Rigid),
+            None => ("with springs", Strut::Spring),
+        };
+        for Item { count, what, grams } in &self.instead {
+            writeln!(
+                f,
+                "\nInstead of the struts, {count} x {what}, {grams:.1} g each, which make legs {other}; with \
+                 `strut = \"{}\"` under `[parts]` in robot.toml this guide is about them.",
+                strut.word()
+            )?;
+        }
         writeln!(f, "\nTo buy:\n")?;
         writeln!(f, "| pieces | what |\n|---|---|")?;
         for Item { count, what, .. } in &self.bought {
@@ -265,7 +320,31 @@ impl fmt::Display for Bill {
             self.beside(),
             self.centre[2]
         )?;
-        let Hold {
+        if let Some(hold) = &self.hold {
+            write!(f, "{hold}")?;
+        } else {
+            writeln!(f, "{RIGID}")?;
+        }
+        writeln!(f, "\nIn robot.toml:\n\n```toml")?;
+        match &self.hold {
+            Some(hold) => {
+                let Spring { rate, preload } = hold.spring();
+                writeln!(f, "[leg]\nspring = {rate:.2}\npreload = {preload:.1}\n")?;
+            }
+            None => writeln!(f, "[leg]\n# spring and preload are left out\n")?,
+        }
+        writeln!(f, "{}```", self.body_toml())
+    }
+}
+
+/// What rigid struts come to.
+const RIGID: &str = "The struts are rigid: a foot follows its servo without any lag, and a foot that is held stalls its \
+                     servo, which gets hot and may burn out. Watch the robot while it walks, and switch the servos' supply off \
+                     when a foot is caught.";
+
+impl fmt::Display for Hold {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self {
             installed,
             force,
             rate,
@@ -273,13 +352,13 @@ impl fmt::Display for Bill {
             per_degree,
             way,
             friction,
-        } = self.hold;
+        } = self;
         writeln!(
             f,
             "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm). \
              Up to {preload:.0} N mm at the leg the foot follows its servo without any lag; the pad's friction asks \
              for about {friction:.0} N mm. Beyond, it lags a degree for each {per_degree:.1} N mm, at most {way:.0} deg. {}",
-            if preload < 0.7 * STALL {
+            if *preload < 0.7 * STALL {
                 format!(
                     "An SG-90 stalls at {STALL:.0} N mm, so a foot that is held spares its servo."
                 )
@@ -295,10 +374,6 @@ impl fmt::Display for Bill {
                 "That is less than the friction: the legs will lag. Take a stronger spring."
             )?;
         }
-        writeln!(
-            f,
-            "\nIn robot.toml:\n\n```toml\n[leg]\nspring = {per_degree:.2}\npreload = {preload:.1}\n\n{}```",
-            self.body_toml()
-        )
+        Ok(())
     }
 }

@@ -28,6 +28,8 @@ pub enum Kind {
     Horn,
     /// A screw that is a joint or holds parts together, by its length below the head, mm.
     Screw(f64),
+    /// A screw with a hexagonal head, which the part that it is put into holds.
+    HexScrew(f64),
     /// A self-tapping screw from a servo's bag.
     ServoScrew,
     /// A lock nut.

@@ -6,7 +6,8 @@ use lizard_robot::{Parts, Robot};
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::layout::Layout;
 use crate::shape::Shape;
-use crate::stack::{PLAY, Span, Stack, screw_length};
+use crate::stack::{HEX, PLAY, Span, Stack, screw_length};
+use crate::struts;
 
 /// Which way a screw points.
 #[derive(Clone, Copy, PartialEq)]
@@ -39,6 +40,8 @@ pub struct Bolt<'a> {
     pub length: Option<f64>,
     /// What it passes through.
     pub meets: &'a [&'a str],
+    /// Whether its head is a hexagon, sunk into what it is put into.
+    pub hex: bool,
 }
 
 impl<'a> Builder<'a> {
@@ -56,6 +59,11 @@ impl<'a> Builder<'a> {
     /// Half a bar's width, mm.
     pub fn half(&self) -> f64 {
         self.parts.bar / 2.0
+    }
+
+    /// The name of a leg's strut.
+    pub fn strut(&self, leg: &str) -> String {
+        struts::name(self.parts.strut, leg)
     }
 
     /// A hole through which a screw turns.
@@ -144,26 +152,25 @@ impl<'a> Builder<'a> {
             Points::Up => 1.0,
             Points::Down => -1.0,
         };
-        let prism = |radius: f64, from: f64, to: f64| Prism {
-            add: vec![Shape::disc(bolt.at, radius)],
+        let prism = |shape: Shape, from: f64, to: f64| Prism {
+            add: vec![shape],
             cut: Vec::new(),
             z: ordered(from, to),
         };
+        let shank = Shape::disc(bolt.at, screw.diameter / 2.0);
+        let (head, high, kind) = if bolt.hex {
+            let hexagon = Shape::hexagon(bolt.at, screw.nut);
+            (hexagon, HEX, Kind::HexScrew(length))
+        } else {
+            let disc = Shape::disc(bolt.at, screw.head / 2.0);
+            (disc, screw.head_height, Kind::Screw(length))
+        };
         let mut prisms = vec![
-            prism(screw.diameter / 2.0, bolt.head, bolt.head + way * length),
-            prism(
-                screw.head / 2.0,
-                bolt.head - way * screw.head_height,
-                bolt.head,
-            ),
+            prism(shank, bolt.head, bolt.head + way * length),
+            prism(head, bolt.head - way * high, bolt.head),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
-        self.body(
-            format!("screw {}", bolt.name),
-            Kind::Screw(length),
-            bolt.mount,
-            prisms,
-        );
+        self.body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
         self.meet(bolt.meets);
     }
 
@@ -184,6 +191,23 @@ impl<'a> Builder<'a> {
             nut: z[1] + PLAY,
             length: None,
             meets,
+            hex: false,
+        });
+    }
+
+    /// A joint on a servo's link, whose underside holds the screw's head: no key gets
+    /// there once the link is on its servo.
+    pub fn held_joint(&mut self, name: &str, mount: Mount, at: Vector, top: f64, meets: &[&str]) {
+        self.bolt(&Bolt {
+            name,
+            mount,
+            at,
+            head: self.stack.held,
+            points: Points::Up,
+            nut: top + PLAY,
+            length: None,
+            meets,
+            hex: true,
         });
     }
 }

@@ -8,7 +8,7 @@ use crate::builder::{Bolt, Builder, Points};
 use crate::shape::Shape;
 
 /// Where the standoffs are, mm: to the right, forward.
-pub const STANDOFFS: [f64; 2] = [8.0, 38.0];
+pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 /// Radius of a standoff, mm: 5.5 mm over flats.
 const STANDOFF: f64 = 3.2;
 /// Radius of a servo's spline, mm.
@@ -27,6 +27,8 @@ const UNO_HOLES: [(f64, f64); 4] = [
     (-8.89, 31.75),
 ];
 const UNO_BOARD: f64 = 1.6;
+/// The hole beside the pin AREF, whose header leaves no room for a screw's head.
+const UNO_TIGHT: usize = 1;
 
 fn at(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
@@ -233,6 +235,7 @@ fn deck(builder: &mut Builder) {
                     nut: 0.0,
                     length: None,
                     meets: &[],
+                    hex: false,
                 },
                 parts.plate + 4.0,
             );
@@ -255,7 +258,7 @@ fn board(builder: &mut Builder) {
             at(x - 4.0, y - 4.0),
             0.0,
         )],
-        cut: Vec::new(),
+        cut: UNO_HOLES.map(|(x, y)| builder.sink(at(x, y))).to_vec(),
         z: [low + UNO_BOARD, low + z],
     };
     builder.body(
@@ -265,6 +268,9 @@ fn board(builder: &mut Builder) {
         vec![board, parts],
     );
     for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
+        if number == UNO_TIGHT {
+            continue;
+        }
         builder.screw(
             &Bolt {
                 name: &format!("board {}", number + 1),
@@ -275,6 +281,7 @@ fn board(builder: &mut Builder) {
                 nut: 0.0,
                 length: None,
                 meets: &[],
+                hex: false,
             },
             10.0,
         );

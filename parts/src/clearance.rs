@@ -48,23 +48,6 @@ struct Pair<'a> {
     shapes: [&'a [Shape]; 2],
 }
 
-/// The middle and the reach of a shape: nothing of it is further away.
-fn round(shape: &Shape) -> (lizard_kinematics::Vector, f64) {
-    let n = shape.points.len() as f64;
-    let sum = shape
-        .points
-        .iter()
-        .fold(lizard_kinematics::Vector::default(), |sum, point| {
-            sum + *point
-        });
-    let middle = sum * (1.0 / n);
-    let reach = shape
-        .points
-        .iter()
-        .fold(0.0_f64, |most, point| most.max((*point - middle).length()));
-    (middle, reach + shape.radius)
-}
-
 impl Assembly {
     /// The nearest pairs at some poses, the nearest first, each pair of bodies once;
     /// those that are `within` mm.
@@ -102,10 +85,12 @@ impl Assembly {
             for pair in &pairs {
                 let [i, j] = pair.bodies;
                 for a in pair.shapes[0] {
-                    let (middle, reach) = round(a);
+                    let middle = a.middle();
+                    let reach = a.farthest(middle);
                     let middle = places[i].map(middle);
                     for b in pair.shapes[1] {
-                        let (other, more) = round(b);
+                        let other = b.middle();
+                        let more = b.farthest(other);
                         let apart = (places[j].map(other) - middle).length() - reach - more;
                         let known = least.get(&pair.bodies).map_or(within, |known| known.1);
                         if apart >= known {

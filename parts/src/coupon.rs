@@ -100,6 +100,7 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         bodies: vec![name.to_owned()],
         prisms,
         turned: false,
+        instead_of: None,
     };
     [part("coupon", prisms), part("coupon rod", vec![gauge])]
 }

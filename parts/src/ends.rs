@@ -16,11 +16,11 @@ pub fn add(builder: &mut Builder) {
         bar(builder, right, upper);
         let tip = |servo: usize| Vector::new(builder.layout.crank[servo], 0.0);
         let tips = [tip(left), tip(right)];
-        builder.joint(
+        builder.held_joint(
             &format!("tip {}", names(left).0),
             Mount::Link(left),
             tips[0],
-            [stack.link[0], lower[1]],
+            lower[1],
             &[&coupler(left)],
         );
         builder.spacer(
@@ -30,11 +30,11 @@ pub fn add(builder: &mut Builder) {
             [stack.link[1], upper[0]],
             &[&coupler(right)],
         );
-        builder.joint(
+        builder.held_joint(
             &format!("tip {}", names(right).0),
             Mount::Link(right),
             tips[1],
-            [stack.link[0], upper[1]],
+            upper[1],
             &[&coupler(right)],
         );
         let apex = Vector::new(coupler_length(builder.robot, left), 0.0);

@@ -1,9 +1,4 @@
-//! The legs: crank, follower, coupler with the foot, strut and spring.
-//!
-//! A strut with a stop: a hole at the servo's end, a slot at the leg's end, a spring
-//! between both screws. The spring pulls the leg's screw against the slot's inner end,
-//! so the leg follows its servo exactly until the foot is held with more than the
-//! spring's pull; then the screw runs along the slot.
+//! The legs: crank, follower, coupler with the foot, and the screws that join them.
 
 use lizard_kinematics::Vector;
 
@@ -13,8 +8,6 @@ use crate::builder::{Bolt, Builder, Points};
 use crate::shape::Shape;
 use crate::stack::PLAY;
 
-/// Free way of the leg's screw in the strut's slot, mm.
-pub const SLOT: f64 = 5.0;
 /// Radius of a foot's post, mm.
 const POST: f64 = 5.0;
 /// From the follower's joint to the two screws of the foot's leaf, mm.
@@ -26,8 +19,6 @@ pub fn add(builder: &mut Builder) {
         follower(builder, servo);
         coupler(builder, servo);
         foot(builder, servo);
-        strut(builder, servo);
-        spring(builder, servo);
         screws(builder, servo);
     }
 }
@@ -191,78 +182,9 @@ fn foot(builder: &mut Builder, servo: usize) {
             nut: stack.leaf[0],
             length: None,
             meets: &[],
+            hex: false,
         });
     }
-}
-
-fn strut(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
-    let (stack, parts) = (builder.stack, builder.parts);
-    let length = builder.layout.legs[servo].strut_length;
-    let at = |x: f64| Vector::new(x, 0.0);
-    let window = parts.spring.outer / 2.0 + 1.5 * parts.fit;
-    // The recess lets hook, ring and head turn.
-    let recess = (parts.screw.head / 2.0).max(window) + parts.fit;
-    let outer = vec![Shape::bar(at(0.0), at(length + SLOT), recess + parts.wall)];
-    let hole = parts.screw.diameter / 2.0 + parts.fit / 2.0;
-    let bearing = vec![
-        Shape::disc(at(0.0), hole),
-        Shape::bar(at(length), at(length + SLOT), hole),
-        // Leaves enough around both screws for them to pull at.
-        Shape::bar(
-            at(hole + parts.wall + window),
-            at(length - hole - parts.wall - window),
-            window,
-        ),
-    ];
-    let prisms = vec![
-        Prism {
-            add: outer.clone(),
-            cut: bearing,
-            z: stack.strut,
-        },
-        Prism {
-            add: outer,
-            cut: vec![Shape::bar(at(0.0), at(length + SLOT), recess)],
-            z: stack.recess,
-        },
-    ];
-    builder.body(
-        format!("strut {leg}"),
-        Kind::Printed,
-        Mount::Strut(servo),
-        prisms,
-    );
-    builder.meeting(&format!("crank {leg}"));
-}
-
-fn spring(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
-    let (stack, parts) = (builder.stack, builder.parts);
-    let length = builder.layout.legs[servo].strut_length;
-    let radius = parts.spring.outer / 2.0;
-    // The hooks lie flat around the screws, in line with the coil's middle.
-    let middle = stack.strut[1] + parts.spring.wire / 2.0;
-    let hook = parts.screw.diameter / 2.0 + parts.spring.outer;
-    let coil = Prism {
-        add: vec![Shape::hull(
-            &[
-                Vector::new(hook, -radius),
-                Vector::new(length - hook, -radius),
-                Vector::new(length - hook, radius),
-                Vector::new(hook, radius),
-            ],
-            0.0,
-        )],
-        cut: Vec::new(),
-        z: [middle - radius, middle + radius],
-    };
-    builder.body(
-        format!("spring {leg}"),
-        Kind::Spring,
-        Mount::Strut(servo),
-        vec![coil],
-    );
 }
 
 fn screws(builder: &mut Builder, servo: usize) {
@@ -283,6 +205,7 @@ fn screws(builder: &mut Builder, servo: usize) {
             nut: stack.plate[0] - PLAY,
             length: None,
             meets: &[&plate],
+            hex: false,
         });
         builder.bolt(&Bolt {
             name: &format!("{name} joint {leg}"),
@@ -293,6 +216,7 @@ fn screws(builder: &mut Builder, servo: usize) {
             nut: stack.crank[1] + PLAY,
             length: None,
             meets: &[&carries],
+            hex: false,
         });
     }
     let (nut, length) = stack.anchor_nut(parts);
@@ -304,6 +228,7 @@ fn screws(builder: &mut Builder, servo: usize) {
         points: Points::Down,
         nut: nut - 0.0,
         length: Some(length),
-        meets: &[&format!("strut {leg}")],
+        meets: &[&builder.strut(leg)],
+        hex: false,
     });
 }

@@ -34,6 +34,8 @@
 //!   rod with its sleeve, the strut with the leg's crank that its spring pulls at.
 //! - [`Assembly::prove`] proves how near any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only looks at some.
+//! - [`Assembly::instead`] has bodies that may be put in instead of others: of the two
+//!   kinds of strut the one that robot.toml does not choose.
 //! - [`Layout`] has pivots and anchors seen from above. Those of the legs are
 //!   [`lizard_robot::LegPlan`], which the drawings use as well.
 #![forbid(unsafe_code)]
@@ -61,13 +63,16 @@ mod part;
 mod picture;
 mod place;
 mod proof;
+mod reach;
 mod shape;
 mod sheet;
 mod sliders;
 mod solid;
 mod stack;
 mod step;
+mod steps;
 mod stl;
+mod struts;
 mod svg;
 mod unfit;
 mod weight;
@@ -87,12 +92,14 @@ pub use part::Part;
 pub use picture::{Drawn, View, picture, whole};
 pub use place::Place;
 pub use proof::{Clash, ENOUGH, LEAST, Near, Proof};
+pub use reach::{Act, Aside, Blocked, KEY, SOCKET};
 pub use shape::Shape;
 pub use sheet::{Layer, Sheet, extent, sheets};
 pub use sliders::SliderLengths;
 pub use solid::{Edge, Face, Solid, Surface};
 pub use stack::{Span, Stack};
 pub use step::step;
+pub use steps::{Stage, Step, Where, steps};
 pub use stl::stl;
 pub use svg::sheet_svg;
 pub use unfit::Unfit;

@@ -11,7 +11,7 @@ use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
 use crate::chassis::SPLINE;
 use crate::shape::Shape;
-use crate::stack::PLAY;
+use crate::stack::{PLAY, Span};
 
 /// Where the horn's small screws are, as shares of its arm.
 const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
@@ -95,27 +95,34 @@ fn link(builder: &mut Builder, servo: usize) {
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
     let holes = [builder.hole(tip), builder.hole(side)];
-    let with = |more: &[Shape]| [&holes[..], more].concat();
-    let layer = |cut: Vec<Shape>, from: f64, to: f64| Prism {
-        add: add.clone(),
-        cut,
-        z: [from, to],
-    };
     let pilots =
         HORN_SCREWS.map(|share| Shape::disc(Vector::new(share * parts.horn.arm, 0.0), PILOT));
-    let floor = [&[horn_hub, builder.hole(anchor)][..], &pilots].concat();
     let pocket = arm(&parts.horn, POCKET * parts.fit);
-    let below = [&pocket[..], &[builder.hole(anchor)]].concat();
-    let above = [&pocket[..], &[builder.sink(anchor)]].concat();
-    let prisms = vec![
-        layer(with(&floor), stack.link[0], stack.horn[0]),
-        layer(with(&below), stack.horn[0], stack.sunk[0]),
-        layer(with(&above), stack.sunk[0], stack.link[1]),
+    let anchor_hole = builder.hole(anchor);
+    let [low, high] = stack.link;
+    // What is cut away, and at which heights.
+    let cuts = [
+        (&holes[..], [low, high]),
+        (&[tip, side].map(|at| builder.pocket(at)), [low, stack.held]),
+        (&[horn_hub], [low, stack.horn[0]]),
+        (&pilots, [low, stack.horn[0]]),
+        (&pocket, stack.horn),
+        (&[anchor_hole], [low, high]),
+        (&[builder.sink(anchor)], stack.sunk),
     ];
-    let prisms = prisms
-        .into_iter()
-        .filter(|prism| prism.z[1] > prism.z[0] + 1e-9)
-        .collect();
+    let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|a, b| *a - *b < 1e-9);
+    let layer = |z: &[f64]| {
+        let through = |of: Span| of[0] < z[1] - 1e-9 && z[0] < of[1] - 1e-9;
+        let cut = cuts.iter().filter(|(_, of)| through(*of));
+        Prism {
+            add: add.clone(),
+            cut: cut.flat_map(|(shapes, _)| shapes.to_vec()).collect(),
+            z: [z[0], z[1]],
+        }
+    };
+    let prisms = heights.windows(2).map(layer).collect();
     builder.body(
         format!("link {name}"),
         Kind::Printed,
@@ -130,7 +137,7 @@ fn anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let at = builder.layout.legs[servo].anchor;
-    let strut = format!("strut {leg}");
+    let strut = builder.strut(leg);
     let ring = [stack.on_hook(parts) - 0.3, stack.link[0] - PLAY];
     builder.spacer(
         format!("strut spacer {name}"),
@@ -148,5 +155,6 @@ fn anchor(builder: &mut Builder, servo: usize) {
         nut: stack.strut[0] - PLAY,
         length: None,
         meets: &[&strut],
+        hex: false,
     });
 }

@@ -22,6 +22,8 @@ pub struct Part {
     pub prisms: Vec<Prism>,
     /// Whether it lies on its back to be printed.
     pub turned: bool,
+    /// What it may be put in instead of; `None` of a part that the robot has.
+    pub instead_of: Option<String>,
 }
 
 impl Part {
@@ -53,35 +55,49 @@ pub(crate) fn volume(prisms: &[Prism]) -> f64 {
 }
 
 impl Assembly {
-    /// Every printed part, each kind once.
+    /// Every printed part, each kind once; those that may be put in instead of others
+    /// come last.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
-        let mut parts: Vec<Part> = Vec::new();
-        for body in self.bodies() {
-            if body.kind != Kind::Printed {
-                continue;
-            }
-            let (prisms, turned) = lying(body);
-            match parts.iter_mut().find(|part| alike(&part.prisms, &prisms)) {
-                Some(part) => part.bodies.push(body.name.clone()),
-                None => parts.push(Part {
-                    name: String::new(),
-                    bodies: vec![body.name.clone()],
-                    prisms,
-                    turned,
-                }),
-            }
-        }
-        for part in &mut parts {
-            part.name = match part.prisms.last() {
-                Some(top) if part.bodies[0].contains(SPACER) => {
-                    format!("{SPACER} {:.1}", top.z[1])
-                }
-                _ => together(&part.bodies),
-            };
-        }
+        let mut parts = kinds(self.bodies());
+        let is_strut = |part: &&Part| {
+            let first = self.body(&part.bodies[0]);
+            first.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
+        };
+        let strut = parts.iter().find(is_strut).map(|part| part.name.clone());
+        parts.extend(kinds(self.instead()).into_iter().map(|part| Part {
+            instead_of: strut.clone(),
+            ..part
+        }));
         parts
     }
+}
+
+/// The printed parts that some bodies are made as.
+fn kinds(bodies: &[Body]) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    for body in bodies.iter().filter(|body| body.kind == Kind::Printed) {
+        let (prisms, turned) = lying(body);
+        match parts.iter_mut().find(|part| alike(&part.prisms, &prisms)) {
+            Some(part) => part.bodies.push(body.name.clone()),
+            None => parts.push(Part {
+                name: String::new(),
+                bodies: vec![body.name.clone()],
+                prisms,
+                turned,
+                instead_of: None,
+            }),
+        }
+    }
+    for part in &mut parts {
+        part.name = match part.prisms.last() {
+            Some(top) if part.bodies[0].contains(SPACER) => {
+                format!("{SPACER} {:.1}", top.z[1])
+            }
+            _ => together(&part.bodies),
+        };
+    }
+    parts
 }
 
 /// A body's layers as they are printed, and whether they lie on their back. Its first

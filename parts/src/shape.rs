@@ -93,6 +93,27 @@ impl Shape {
         }
     }
 
+    /// The mean of its points.
+    #[must_use]
+    pub fn middle(&self) -> Vector {
+        let sum = self.points.iter().fold(Vector::default(), |a, b| a + *b);
+        sum * (1.0 / self.points.len() as f64)
+    }
+
+    /// How far anything of it is from one point, mm, at the most.
+    #[must_use]
+    pub fn farthest(&self, from: Vector) -> f64 {
+        let away = self.points.iter().map(|&point| (point - from).length());
+        away.fold(0.0, f64::max) + self.radius
+    }
+
+    /// The greatest distance of two of its points, mm.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        let most = self.points.iter().map(|&point| self.farthest(point));
+        most.fold(0.0, f64::max) + self.radius
+    }
+
     /// The same shape elsewhere.
     #[must_use]
     pub fn placed(&self, place: &Place) -> Self {

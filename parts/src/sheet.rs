@@ -105,7 +105,8 @@ fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec
                 let depth = high - prisms[index].z[0];
                 add(format!("POCKET_{depth:.2}_TOP"), hole);
             } else {
-                let depth = prisms[index].z[1] - low;
+                let from_below = outlines.iter().take_while(|other| open(other)).count();
+                let depth = prisms[from_below.max(index + 1) - 1].z[1] - low;
                 add(format!("POCKET_{depth:.2}_BOTTOM"), hole);
             }
         }

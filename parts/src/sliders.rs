@@ -131,11 +131,11 @@ fn pins(builder: &mut Builder, side: Side) {
         |servo: usize| Vector::new(0.0, builder.layout.hand[servo] * builder.layout.arm[servo]);
     let (front_arm, rear_arm) = (arm(front), arm(rear));
     let (rod, sleeve) = (format!("rod {side}"), format!("sleeve {side}"));
-    builder.joint(
+    builder.held_joint(
         &format!("arm {}", names(rear).0),
         Mount::Link(rear),
         rear_arm,
-        [stack.link[0], stack.lower[1]],
+        stack.lower[1],
         &[&sleeve],
     );
     builder.spacer(
@@ -145,11 +145,11 @@ fn pins(builder: &mut Builder, side: Side) {
         [stack.link[1], stack.rod[0]],
         &[&rod],
     );
-    builder.joint(
+    builder.held_joint(
         &format!("arm {}", names(front).0),
         Mount::Link(front),
         front_arm,
-        [stack.link[0], stack.rod[1]],
+        stack.rod[1],
         &[&rod],
     );
 }

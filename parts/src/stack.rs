@@ -21,6 +21,8 @@ const STANDOFFS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.
 
 /// What a head or a nut keeps from a part that turns under it, mm.
 pub const PLAY: f64 = 0.2;
+/// Height of a hexagonal head, mm (ISO 4017).
+pub const HEX: f64 = 2.0;
 /// What lies under a servo's flange, mm: it lifts the horn above the strut.
 const SEAT: f64 = 2.6;
 /// Height of a leg's bearing on the plate, mm. 0.2 mm of play in it lets the foot, six
@@ -62,8 +64,12 @@ pub struct Stack {
     pub strut: Span,
     /// The recess in its top for the hooks.
     pub recess: Span,
+    /// A rigid strut: as high as a hook that lies on the other one.
+    pub rigid: Span,
     /// The servos' links.
     pub link: Span,
+    /// Where the heads bear that their undersides hold.
+    pub held: f64,
     /// The pocket in their tops for the horns.
     pub horn: Span,
     /// The recess in their tops for the heads of the anchors' screws.
@@ -106,7 +112,7 @@ impl Stack {
         let bore_low = lower[0] + SLEEVE;
         let bore = [bore_low, bore_low + t + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0]) + link[0];
+        let slider = screw_length(rod[1] + PLAY + screw.nut_height - link[0] - HEX) + link[0] + HEX;
         let deck = STANDOFFS
             .into_iter()
             .find(|length| *length >= slider + gap)
@@ -128,6 +134,8 @@ impl Stack {
             anchor: [crank[1], strut[0] - PLAY],
             strut,
             recess,
+            held: link[0] + HEX,
+            rigid: [strut[0], recess[1].min(strut[1] + parts.spring.wire)],
             link,
             horn: [arm, link[1]],
             sunk: [link[1] - screw.head_height - PLAY, link[1]],

@@ -1,7 +1,13 @@
 //! Why a robot cannot be built.
 
+use lizard_kinematics::Vector;
+
 use crate::assembly::Assembly;
+use crate::body::{Body, Kind, Prism};
 use crate::proof::Clash;
+use crate::reach::Blocked;
+use crate::shape::Shape;
+use crate::steps::steps;
 
 /// What does not fit, in the sentence that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,7 +32,7 @@ pub enum Unfit {
     Nut,
     /// The leg's strut is shorter than its spring.
     #[error(
-        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other"
+        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; parts.strut = \"rigid\" needs no spring"
     )]
     Spring {
         /// LF, RF, RH, LH.
@@ -58,6 +64,23 @@ pub enum Unfit {
         /// mm
         longest: f64,
     },
+    /// Two parts that move together would be in one place.
+    #[error(
+        "{first} and {second}, which move together, overlap by {mm:.2} mm; other links, or other measures under [parts] in robot.toml, may keep them apart"
+    )]
+    Inside {
+        /// One body.
+        first: String,
+        /// The other.
+        second: String,
+        /// mm
+        mm: f64,
+    },
+    /// A screw that cannot be reached.
+    #[error(
+        "{0}, at every pose; other links, or other measures under [parts] in robot.toml, may make room"
+    )]
+    Blocked(#[from] Blocked),
     /// The layers of a part do not make a body.
     #[error(
         "the layers of {0} do not make one body; a measure under [parts] in robot.toml is too small or too large for it"
@@ -76,13 +99,16 @@ const OFF_FLOOR: f64 = 8.0;
 const SLEEVE: f64 = 25.0;
 
 impl Assembly {
-    /// Whether the robot can be built: measures go together, and no two parts meet at
-    /// any pose that the guard accepts, which is proved and takes seconds.
+    /// Whether the robot can be built: measures go together, every screw can be reached,
+    /// and no two parts meet at any pose that the guard accepts, which is proved and takes
+    /// seconds.
     ///
     /// # Errors
-    /// The first measure that does not fit, else the two parts that overlap most.
+    /// The first measure that does not fit, else a screw, else the two parts that overlap
+    /// most.
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
+        self.asides(&steps(self.robot().parts().strut))?;
         Ok(self.prove(|_, _| ()).judge()?)
     }
 
@@ -105,7 +131,8 @@ impl Assembly {
             let height = parts.height;
             return Err(Unfit::Low { height, least });
         }
-        for (leg, layout) in lizard_robot::servo::LEGS.iter().zip(&self.layout().legs) {
+        let legs = lizard_robot::servo::LEGS.iter().zip(&self.layout().legs);
+        for (leg, layout) in legs.filter(|_| parts.strut == lizard_robot::Strut::Spring) {
             let inside = layout.strut_length + parts.screw.diameter;
             if inside <= parts.spring.length {
                 return Err(Unfit::Spring {
@@ -127,7 +154,7 @@ impl Assembly {
             }
         }
         for body in self.bodies() {
-            if let crate::Kind::Screw(length) = body.kind
+            if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind
                 && !crate::stack::is_sold(length)
             {
                 return Err(Unfit::Screw(body.name.clone(), length));
@@ -136,6 +163,67 @@ impl Assembly {
                 return Err(Unfit::Surface(body.name.clone()));
             }
         }
+        self.none_is_in_another()
+    }
+
+    /// Whether of the bodies that move together none is in another one's place.
+    fn none_is_in_another(&self) -> Result<(), Unfit> {
+        /// What is pressed in may touch, mm.
+        const TOUCH: f64 = 0.02;
+        let bodies = self.bodies();
+        for (i, a) in bodies.iter().enumerate() {
+            for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
+                let air = air(self.outside_threads(a), self.outside_threads(b));
+                if air < -TOUCH {
+                    return Err(Unfit::Inside {
+                        first: a.name.clone(),
+                        second: b.name.clone(),
+                        mm: -air,
+                    });
+                }
+            }
+        }
         Ok(())
     }
+
+    /// The layers of a body, but of a screw without a nut only its head: what it is
+    /// turned into has its thread.
+    fn outside_threads<'a>(&self, body: &'a Body) -> &'a [Prism] {
+        let nut = body.name.replacen("screw", "nut", 1);
+        match (body.kind, &body.prisms[..]) {
+            (Kind::Screw(_), [low, high]) if self.body(&nut).is_none() => {
+                let head_above = high.add[0].width() > low.add[0].width();
+                &body.prisms[usize::from(head_above)..][..1]
+            }
+            (_, all) => all,
+        }
+    }
+}
+
+/// How far some layers are from others at the heights that they share, or in their
+/// holes, mm; below 0 they overlap.
+fn air(a: &[Prism], b: &[Prism]) -> f64 {
+    let still = Vector::default();
+    let mut least = f64::INFINITY;
+    for p in a {
+        for q in b {
+            if p.z[0] > q.z[1] - 1e-6 || q.z[0] > p.z[1] - 1e-6 {
+                continue;
+            }
+            for first in &p.add {
+                for second in &q.add {
+                    let beside = first.distance(second);
+                    let within = |shape: &Shape, holes: &[Shape]| {
+                        let air = holes.iter().map(|hole| shape.within(hole, still));
+                        air.fold(f64::NEG_INFINITY, f64::max)
+                    };
+                    let air = beside
+                        .max(within(first, &q.cut))
+                        .max(within(second, &p.cut));
+                    least = least.min(air);
+                }
+            }
+        }
+    }
+    least
 }

@@ -1,11 +1,16 @@
 //! The bill counts what the assembly has, and the spring is the strut's.
 
-use lizard_parts::{Assembly, Bill, Kind, STALL};
+use lizard_parts::{Assembly, Bill, Item, Kind, STALL};
 use lizard_robot::Robot;
 
 fn bill(name: &str) -> (Assembly, Bill) {
+    with(name, "")
+}
+
+fn with(name: &str, more: &str) -> (Assembly, Bill) {
     let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let robot = Robot::load(path).expect(name);
+    let text = std::fs::read_to_string(&path).expect(&path);
+    let robot = Robot::parse(&format!("{text}\n{more}")).expect(name);
     let assembly = Assembly::new(&robot);
     let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
     let bill = Bill::of(&assembly, &assembly.parts(), &pose);
@@ -24,7 +29,7 @@ fn every_body_is_printed_or_bought() {
         assert_eq!(printed, count(|kind| *kind == Kind::Printed), "{name}");
         assert_eq!(
             bill.count("screw M3"),
-            count(|kind| matches!(kind, Kind::Screw(_)))
+            count(|kind| matches!(kind, Kind::Screw(_) | Kind::HexScrew(_)))
         );
         assert_eq!(bill.count("lock nut"), count(|kind| *kind == Kind::Nut));
         assert_eq!(bill.count("servo SG-90"), 4);
@@ -102,10 +107,40 @@ fn a_mass_centre_is_told_in_words_and_as_robot_toml_has_it() {
 #[test]
 fn a_leg_is_held_against_friction_and_spares_a_stalled_servo() {
     let (assembly, bill) = bill("paper");
-    let hold = bill.hold;
+    let hold = bill.hold.expect("springs");
     let strut = 28.5f64.hypot(10.0);
     assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
     assert!((hold.installed - strut - 3.0).abs() < 1e-9);
     assert!((hold.preload - 22.0 * hold.force).abs() < 1e-9);
     assert!(hold.friction * 2.0 < hold.preload && hold.preload < 0.7 * STALL);
+}
+
+#[test]
+fn rigid_struts_are_printed_instead_and_need_no_springs() {
+    let (_, sprung) = bill("paper");
+    let (assembly, rigid) = with("paper", "[parts]\nstrut = \"rigid\"");
+    assert_eq!(sprung.count("tension spring"), 4);
+    assert_eq!(rigid.count("tension spring"), 0);
+    // The same screws and nuts.
+    for what in ["screw M3", "lock nut"] {
+        assert_eq!(rigid.count(what), sprung.count(what));
+    }
+    let names = |items: &[Item]| -> Vec<_> {
+        let items = items.iter();
+        items.map(|item| (item.count, item.what.clone())).collect()
+    };
+    // Each bill has the other's struts aside.
+    let [slotted, bar] = ["strut", "rigid strut"].map(|what| (4, what.to_owned()));
+    assert_eq!(names(&sprung.instead).first(), Some(&bar));
+    assert_eq!(names(&rigid.instead).first(), Some(&slotted));
+    assert!(names(&sprung.printed).contains(&slotted) && names(&rigid.printed).contains(&bar));
+    assert_eq!(rigid.hold, None);
+    // What robot.toml calls a leg without a spring.
+    assert_eq!(assembly.robot().ground().spring, None);
+    let said = rigid.to_string();
+    assert!(
+        said.contains("a foot that is held stalls its servo"),
+        "{said}"
+    );
+    assert!(!said.contains("preload ="), "{said}");
 }

@@ -69,6 +69,27 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
 }
 
 #[test]
+fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
+    for name in ["paper", "large", "unequal"] {
+        let assembly = assembly(name);
+        for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.instead()) {
+            let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
+            assert_eq!(holes(rigid), expected, "{name}: {}", rigid.name);
+            let slotted = rigid.name.trim_start_matches("rigid ");
+            let slotted = assembly.body(slotted).expect(slotted);
+            assert_eq!(slotted.mount, rigid.mount);
+            // What keeps clear of the one keeps clear of the other.
+            let (inner, outer) = (rigid.z(), slotted.z());
+            assert!(outer[0] <= inner[0] && inner[1] <= outer[1], "{name}");
+            for prism in &slotted.prisms {
+                let air = rigid.prisms[0].add[0].within(&prism.add[0], Default::default());
+                assert!(air > -1e-9, "{name}: {air}");
+            }
+        }
+    }
+}
+
+#[test]
 fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
     let assembly = assembly("unequal");
     let plate = assembly.body("plate").expect("a plate");
@@ -149,9 +170,15 @@ fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
         .iter()
         .map(|layer| (layer.name.as_str(), layer.loops.len()))
         .collect();
-    // Outline, crank, arm, anchor, hub and two small screws; the horn; the head.
+    // Outline, crank, arm, anchor, hub and two small screws; two hexagonal heads; the horn;
+    // the anchor's head.
     assert_eq!(
         layers,
-        [("CUT", 7), ("POCKET_2.20_TOP", 1), ("POCKET_1.90_TOP", 1)]
+        [
+            ("CUT", 7),
+            ("POCKET_2.00_BOTTOM", 2),
+            ("POCKET_2.20_TOP", 1),
+            ("POCKET_1.90_TOP", 1)
+        ]
     );
 }

@@ -124,6 +124,18 @@ fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
 }
 
 #[test]
+fn rigid_struts_keep_what_those_with_springs_keep() {
+    let [sprung, rigid] = ["spring", "rigid"].map(|word| {
+        let assembly = assembly("paper", &format!("[parts]\nstrut = \"{word}\""));
+        let strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
+        let proof = assembly.prove_some(|a, b| strut(a) || strut(b), |_, _| ());
+        assert_eq!(proof.judge(), Ok(()), "{word}");
+        proof.least().expect("something is near").proved
+    });
+    assert!(rigid >= sprung, "{rigid} {sprung}");
+}
+
+#[test]
 fn the_robot_with_gaits_of_its_own_has_the_papers_parts() {
     let [own, paper] = ["own-gaits", "paper"].map(|name| assembly(name, ""));
     assert_eq!(own.bodies(), paper.bodies());
@@ -176,8 +188,18 @@ fn a_bar_that_is_too_wide_is_found() {
     overlap(
         clash(&wide, |body| body.name.starts_with("link")),
         "link A",
-        "link A",
+        "",
     );
+}
+
+#[test]
+fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
+    let proof = assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
+    let Err(Clash::Overlap(found)) = proof.judge() else {
+        panic!("no overlap");
+    };
+    assert!(found.mm < -5.0, "{found}");
+    assert!(proof.regions < 10_000, "{}", proof.regions);
 }
 
 /// A screw of the paper's robot, longer by so much.
@@ -187,7 +209,7 @@ fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
             .iter_mut()
             .find(|body| body.name == name)
             .expect(name);
-        let thin = |body: &Body, i: usize| body.prisms[i].add[0].radius;
+        let thin = |body: &Body, i: usize| body.prisms[i].add[0].width();
         let shank = usize::from(thin(screw, 1) < thin(screw, 0));
         let z = &mut screw.prisms[shank].z;
         if downwards {
@@ -201,9 +223,9 @@ fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
 #[test]
 fn a_screw_that_is_too_long_is_found() {
     for (name, by, downwards, other) in [
-        ("screw tip A1", 6.0, true, "strut LF"),
+        ("screw tip A1", 8.0, true, "strut LF"),
         ("screw foot LF 2", 3.0, false, "follower LF"),
-        ("screw crank pivot LF", 5.0, false, "screw arm A1"),
+        ("screw crank pivot LF", 6.5, false, "screw arm A1"),
         ("screw crank joint LF", 5.0, true, "foot LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {

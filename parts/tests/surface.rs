@@ -8,7 +8,7 @@ fn every_printed_part_is_closed_and_has_its_volume() {
     for name in ["paper", "large", "unequal"] {
         let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let assembly = Assembly::new(&Robot::load(path).expect(name));
-        for body in assembly.bodies() {
+        for body in assembly.bodies().iter().chain(assembly.instead()) {
             if body.kind != Kind::Printed {
                 continue;
             }

@@ -63,7 +63,7 @@ pub use gait::Stride;
 pub use ground::{DEFAULT_FRICTION, Ground, Prediction, Travel};
 pub use harmonic::Harmonic;
 pub use legs::{LegPlace, LegPlan};
-pub use parts::{Horn, Parts, Screw, ServoBody};
+pub use parts::{Horn, Parts, Screw, ServoBody, Strut};
 pub use path::Path;
 pub use path_leg::PathLeg;
 pub use place::Place;

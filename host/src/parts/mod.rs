@@ -46,6 +46,8 @@ pub struct Args {
 struct Listed {
     part: String,
     count: usize,
+    /// The part that it may be put in instead of, if the robot has it not.
+    instead_of: Option<String>,
     /// The bodies that are made so, by their names in the assembly.
     bodies: Vec<String>,
     /// Of one, mm^3.
@@ -84,6 +86,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         list.push(Listed {
             part: part.name.clone(),
             count: part.count(),
+            instead_of: part.instead_of.clone(),
             bodies: part.bodies.clone(),
             volume: part.volume(),
             files: made.iter().map(|file| file.path.clone()).collect(),
@@ -103,7 +106,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             "bill.json".to_owned(),
             serde_json::to_string_pretty(&bill)? + "\n",
         ));
-        files.extend(guide(&assembly, &bill, &pose));
+        files.extend(guide(&assembly, &bill, &pose)?);
         weight = bill
             .differs(&robot.ground().body)
             .then(|| said(&bill, &robot));
@@ -114,7 +117,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         serde_json::to_writer_pretty(&mut out, &list)?;
         writeln!(out)?;
     } else {
-        let pieces: usize = list.iter().map(|part| part.count).sum();
+        let needed = list.iter().filter(|part| part.instead_of.is_none());
+        let pieces: usize = needed.map(|part| part.count).sum();
         writeln!(
             out,
             "{} parts, {pieces} pieces, {} files in {}",

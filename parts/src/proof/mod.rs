@@ -13,6 +13,7 @@
 //! takes seconds. `solids.rs` says what has to keep clear of what, `sweep.rs` leaves out
 //! what is never near, `guard.rs` says what the guard certainly refuses.
 
+mod first;
 mod guard;
 mod interval;
 mod search;
@@ -150,7 +151,9 @@ impl Proof {
 
 impl Assembly {
     /// How near any two parts come at any pose that the guard accepts; whether that is
-    /// near enough to fit, [`Proof::judge`] says. `progress` is called with what is
+    /// near enough to fit, [`Proof::judge`] says. If parts are seen to meet already at one
+    /// of some poses, it is of the worst of them alone; else it ends at the first that do
+    /// not fit. `progress` is called with what is
     /// done and what there is to do.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
         self.prove_some(|_, _| true, progress)
@@ -163,7 +166,13 @@ impl Assembly {
         mut progress: impl FnMut(usize, usize),
     ) -> Proof {
         let guard = Guard::new(self.robot());
-        let tasks = Task::all(self, &guard, ENOUGH, which);
+        let mut tasks = Task::all(self, &guard, ENOUGH, which);
+        let mut most = search::MANY;
+        let worst = first::worst(self, &tasks);
+        let seen = worst.is_some();
+        if let Some(worst) = worst {
+            tasks = worst;
+        }
         let mut proof = Proof {
             apart: Vec::new(),
             meeting: Vec::new(),
@@ -182,9 +191,18 @@ impl Assembly {
                 &mut proof.apart
             };
             if !task.solids.is_empty() {
-                let found = search::least(self, &guard, &task);
+                let found = search::least(self, &guard, &task, most);
                 proof.regions += found.regions;
-                list.push(self.near(found));
+                let near = self.near(found);
+                let least = if task.meet { -TOUCH } else { LEAST };
+                let clash = near.clash(least);
+                list.push(near);
+                // One is enough, and where parts hardly fit each takes long.
+                match clash {
+                    Some(Clash::Unsure(_)) => most = search::MANY / 10,
+                    Some(_) if !seen => break,
+                    _ => {}
+                }
             }
         }
         progress(count, count);

@@ -28,7 +28,7 @@ const SHARE_MEETING: f64 = 0.5;
 /// Regions narrower than this are not halved, deg.
 const NARROW: f64 = 0.002;
 /// So many regions are looked at, at most.
-const MANY: u64 = 100_000;
+pub const MANY: u64 = 100_000;
 /// And so many once an overlap is known: how deep it is at most changes no verdict.
 const FEW: u64 = 1_000;
 
@@ -86,15 +86,16 @@ impl<const N: usize> Ord for Part<N> {
     }
 }
 
-/// The least distance of a task's solids over all poses that the guard accepts.
-pub fn least(assembly: &Assembly, guard: &Guard, task: &Task) -> Found {
+/// The least distance of a task's solids over all poses that the guard accepts, from
+/// so many regions at `most`.
+pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, most: u64) -> Found {
     let servos = task.servos();
     match servos[..] {
-        [] => Search::new(assembly, guard, task, []).run(),
-        [a] => Search::new(assembly, guard, task, [a]).run(),
-        [a, b] => Search::new(assembly, guard, task, [a, b]).run(),
-        [a, b, c] => Search::new(assembly, guard, task, [a, b, c]).run(),
-        _ => Search::new(assembly, guard, task, [0, 1, 2, 3]).run(),
+        [] => Search::new(assembly, guard, task, []).run(most),
+        [a] => Search::new(assembly, guard, task, [a]).run(most),
+        [a, b] => Search::new(assembly, guard, task, [a, b]).run(most),
+        [a, b, c] => Search::new(assembly, guard, task, [a, b, c]).run(most),
+        _ => Search::new(assembly, guard, task, [0, 1, 2, 3]).run(most),
     }
 }
 
@@ -132,7 +133,7 @@ impl<'a, const N: usize> Search<'a, N> {
         self.seen.as_ref().map_or(ENOUGH, |seen| seen.1.min(ENOUGH))
     }
 
-    fn run(mut self) -> Found {
+    fn run(mut self, most: u64) -> Found {
         let whole = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all: Vec<u32> = (0..self.task.solids.len() as u32).collect();
         let share = if self.task.meet { SHARE_MEETING } else { SHARE };
@@ -143,7 +144,7 @@ impl<'a, const N: usize> Search<'a, N> {
             if part.low >= high - NEAR - share * high.abs() {
                 return self.found(part.low.min(high), None);
             }
-            let most = if high < 0.0 { FEW } else { MANY };
+            let most = if high < 0.0 { FEW } else { most };
             if part.region.half.iter().all(|half| *half < NARROW) || self.regions >= most {
                 return self.found(part.low, Some(&part));
             }

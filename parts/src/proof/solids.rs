@@ -113,8 +113,11 @@ fn solids(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Solid> {
                         gap,
                         first: first.clone(),
                         second: second.clone(),
-                        discs: [first, second].map(disc),
-                        lever: farthest(second, Vector::default()),
+                        discs: [first, second].map(|shape| {
+                            let middle = shape.middle();
+                            (middle, shape.farthest(middle))
+                        }),
+                        lever: second.farthest(Vector::default()) - second.radius,
                         around_first: holes(q, first),
                         around_second: holes(p, second),
                     });
@@ -127,32 +130,8 @@ fn solids(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Solid> {
 
 /// The holes of a layer that are large enough for a shape.
 fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
-    let large = |hole: &&Shape| across(hole) >= across(shape);
+    let large = |hole: &&Shape| hole.width() >= shape.width();
     prism.cut.iter().filter(large).cloned().collect()
-}
-
-/// A disc that holds a shape.
-fn disc(shape: &Shape) -> (Vector, f64) {
-    let sum = shape.points.iter().fold(Vector::default(), |a, b| a + *b);
-    let middle = sum * (1.0 / shape.points.len() as f64);
-    (middle, farthest(shape, middle) + shape.radius)
-}
-
-/// How far a shape's points are from one point, mm.
-fn farthest(shape: &Shape, from: Vector) -> f64 {
-    let away = shape.points.iter().map(|&point| (point - from).length());
-    away.fold(0.0, f64::max)
-}
-
-/// The greatest distance of two points of a shape, mm.
-fn across(shape: &Shape) -> f64 {
-    let mut most = 0.0_f64;
-    for a in &shape.points {
-        for b in &shape.points {
-            most = most.max((*a - *b).length());
-        }
-    }
-    most + 2.0 * shape.radius
 }
 
 impl Solid {

@@ -1,0 +1,90 @@
+//! What is seen at a few poses, before anything is proved.
+//!
+//! A robot far from fitting has hundreds of parts that meet, and to bound each of them
+//! takes minutes. But one pose at which two parts meet is enough to refuse it. So parts
+//! are looked at where they are likely to meet first: at neutral, on a coarse grid, and
+//! at the edge of what the guard accepts, in every direction from neutral. If some meet,
+//! only the worst are bounded.
+
+use lizard_kinematics::{Pose, Solution};
+use lizard_robot::Robot;
+
+use super::solids::Task;
+use super::{LEAST, TOUCH};
+use crate::assembly::Assembly;
+
+/// Angles of each servo on the grid.
+const STEPS: u32 = 6;
+/// Halvings on the way from neutral to the edge.
+const HALVINGS: usize = 12;
+/// So many of those that meet are bounded.
+const WORST: usize = 3;
+
+/// Of some tasks those whose parts meet most, if any are seen to meet.
+pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
+    let robot = assembly.robot();
+    let mut poses: Vec<Solution> = solve(robot, robot.neutral()).into_iter().collect();
+    poses.extend((0..81).filter_map(|direction| edge(robot, direction)));
+    poses.extend(assembly.poses(STEPS));
+    let least = |task: &Task| {
+        let at = poses.iter().map(|pose| seen(assembly, task, pose));
+        at.fold(f64::INFINITY, f64::min)
+    };
+    let all = tasks.iter().map(|task| (least(task), task));
+    let mut found: Vec<_> = all.filter(|(mm, task)| *mm < allowed(task)).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let found: Vec<_> = found
+        .into_iter()
+        .take(WORST)
+        .map(|(_, task)| task.clone())
+        .collect();
+    (!found.is_empty()).then_some(found)
+}
+
+/// Nearer than this they must not come, mm.
+fn allowed(task: &Task) -> f64 {
+    if task.meet { -TOUCH } else { LEAST }
+}
+
+/// How near a task's parts are at a pose, mm, if nearer than they may be.
+fn seen(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
+    let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
+    let place = b.seen_from(&a);
+    let near = task
+        .solids
+        .iter()
+        .filter(|solid| !solid.far(&place, [0.0; 2], allowed(task)));
+    near.map(|solid| solid.apart(&place))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The last pose that the guard accepts on the way from neutral in one of 81
+/// directions: each servo towards one end of its travel, the other, or neither.
+fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
+    let from: [f64; 4] = robot.neutral().into();
+    let ends = [0, 1, 2, 3].map(|servo| {
+        let (low, high) = robot.servos()[servo].travel();
+        [low, 0.0, high][(direction / 3_u32.pow(servo as u32) % 3) as usize]
+    });
+    let at = |share: f64| {
+        solve(
+            robot,
+            [0, 1, 2, 3].map(|i| from[i] + share * ends[i]).into(),
+        )
+    };
+    let (mut within, mut beyond) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let share = (within + beyond) / 2.0;
+        *(if at(share).is_some() {
+            &mut within
+        } else {
+            &mut beyond
+        }) = share;
+    }
+    at(within)
+}
+
+fn solve(robot: &Robot, pose: Pose) -> Option<Solution> {
+    let solution = robot.lizard().solve(&pose).ok()?;
+    robot.limits().allow(&solution).then_some(solution)
+}

@@ -1,0 +1,133 @@
+//! What a servo's link drives its leg by: a strut with a spring, or a rigid one.
+//!
+//! A strut with a stop: a hole at the servo's end, a slot at the leg's end, a spring
+//! between both screws. The spring pulls the leg's screw against the slot's inner end,
+//! so the leg follows its servo exactly until the foot is held with more than the
+//! spring's pull; then the screw runs along the slot.
+//!
+//! A rigid strut is a bar with two holes in the same places, for the same screws. It
+//! lies within the space of the one with a spring, so either can be put in where the
+//! other was, and it keeps from everything at least what the other keeps.
+
+use lizard_kinematics::Vector;
+use lizard_robot::Strut;
+
+use crate::assembly::names;
+use crate::body::{Body, Kind, Mount, Prism};
+use crate::builder::Builder;
+use crate::shape::Shape;
+
+/// Free way of the leg's screw in the strut's slot, mm.
+pub const SLOT: f64 = 5.0;
+
+pub fn add(builder: &mut Builder) {
+    for servo in 0..4 {
+        let strut = body(builder, servo, builder.parts.strut);
+        builder.bodies.push(strut);
+        if builder.parts.strut == Strut::Spring {
+            spring(builder, servo);
+        }
+    }
+}
+
+/// The struts that the robot has not, but could have.
+pub fn instead(builder: &Builder) -> Vec<Body> {
+    let other = match builder.parts.strut {
+        Strut::Spring => Strut::Rigid,
+        Strut::Rigid => Strut::Spring,
+    };
+    (0..4).map(|servo| body(builder, servo, other)).collect()
+}
+
+/// The name of a leg's strut.
+pub fn name(strut: Strut, leg: &str) -> String {
+    match strut {
+        Strut::Spring => format!("strut {leg}"),
+        Strut::Rigid => format!("rigid strut {leg}"),
+    }
+}
+
+fn body(builder: &Builder, servo: usize, strut: Strut) -> Body {
+    let (_, leg) = names(servo);
+    Body {
+        name: name(strut, leg),
+        kind: Kind::Printed,
+        mount: Mount::Strut(servo),
+        prisms: match strut {
+            Strut::Spring => slotted(builder, servo),
+            Strut::Rigid => vec![rigid(builder, servo)],
+        },
+        meets: vec![format!("crank {leg}")],
+    }
+}
+
+fn at(x: f64) -> Vector {
+    Vector::new(x, 0.0)
+}
+
+/// Half the width of the spring's window, and of the recess, which lets hook, ring and
+/// head turn, mm.
+fn halves(builder: &Builder) -> [f64; 2] {
+    let parts = builder.parts;
+    let window = parts.spring.outer / 2.0 + 1.5 * parts.fit;
+    [window, (parts.screw.head / 2.0).max(window) + parts.fit]
+}
+
+fn slotted(builder: &Builder, servo: usize) -> Vec<Prism> {
+    let (stack, wall) = (builder.stack, builder.parts.wall);
+    let length = builder.layout.legs[servo].strut_length;
+    let [window, recess] = halves(builder);
+    let outer = vec![Shape::bar(at(0.0), at(length + SLOT), recess + wall)];
+    let hole = builder.hole(at(0.0));
+    let around = hole.radius + wall + window;
+    let slot = Shape::bar(at(length), at(length + SLOT), hole.radius);
+    vec![
+        Prism {
+            add: outer.clone(),
+            cut: vec![
+                hole,
+                slot,
+                // Leaves enough around both screws for them to pull at.
+                Shape::bar(at(around), at(length - around), window),
+            ],
+            z: stack.strut,
+        },
+        Prism {
+            add: outer,
+            cut: vec![Shape::bar(at(0.0), at(length + SLOT), recess)],
+            z: stack.recess,
+        },
+    ]
+}
+
+fn rigid(builder: &Builder, servo: usize) -> Prism {
+    let [from, to] = [at(0.0), at(builder.layout.legs[servo].strut_length)];
+    let [_, recess] = halves(builder);
+    Prism {
+        add: vec![Shape::bar(from, to, recess + builder.parts.wall)],
+        cut: [from, to].map(|at| builder.hole(at)).to_vec(),
+        z: builder.stack.rigid,
+    }
+}
+
+fn spring(builder: &mut Builder, servo: usize) {
+    let (_, leg) = names(servo);
+    let (stack, parts) = (builder.stack, builder.parts);
+    let length = builder.layout.legs[servo].strut_length;
+    let radius = parts.spring.outer / 2.0;
+    // The hooks lie flat around the screws, in line with the coil's middle.
+    let middle = stack.strut[1] + parts.spring.wire / 2.0;
+    let hook = parts.screw.diameter / 2.0 + parts.spring.outer;
+    let size = Vector::new(length - 2.0 * hook, parts.spring.outer);
+    let coil = Prism {
+        add: vec![Shape::rectangle(at(length / 2.0), size, 0.0)],
+        cut: Vec::new(),
+        z: [middle - radius, middle + radius],
+    };
+    builder.body(
+        format!("spring {leg}"),
+        Kind::Spring,
+        Mount::Strut(servo),
+        vec![coil],
+    );
+}

@@ -1,0 +1,202 @@
+//! Every screw can be put in and turned in the order of the guide; in a wrong order
+//! it cannot.
+
+use lizard_kinematics::{Solution, Vector};
+use lizard_parts::{Act, Assembly, Body, Kind, Outline, Stage, Step, Unfit, Where, steps};
+use lizard_robot::Robot;
+
+const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
+
+fn assembly(name: &str, more: &str) -> Assembly {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect(&path);
+    Assembly::new(&Robot::parse(&format!("{text}\n{more}")).expect(more))
+}
+
+fn order(assembly: &Assembly) -> Vec<Step> {
+    steps(assembly.robot().parts().strut)
+}
+
+fn neutral(assembly: &Assembly) -> Solution {
+    let robot = assembly.robot();
+    robot.lizard().solve(&robot.neutral()).expect("neutral")
+}
+
+#[test]
+fn every_screw_of_every_robot_can_be_reached() {
+    for name in NAMES {
+        for strut in ["spring", "rigid"] {
+            let assembly = assembly(name, &format!("[parts]\nstrut = \"{strut}\""));
+            let asides = assembly.asides(&order(&assembly));
+            let asides = asides.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
+            // At neutral the follower covers a screw of its foot: the leg, which lies on
+            // the bench, is swung aside.
+            for aside in asides {
+                assert_eq!(aside.step, 2, "{name}: {aside:?}");
+                for screw in aside.screws {
+                    assert!(screw.starts_with("screw foot"), "{name}: {screw}");
+                }
+            }
+        }
+    }
+}
+
+/// What is blocked in the paper's robot if its steps are changed: the screw, and what
+/// is in its way.
+fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, Act, String)> {
+    let assembly = assembly("paper", "");
+    let mut steps = order(&assembly);
+    change(&mut steps);
+    let blocked = assembly.blocked(&steps, &neutral(&assembly));
+    let all = blocked.into_iter().map(|of| (of.screw, of.act, of.by));
+    all.filter(|(screw, ..)| !screw.starts_with("screw foot"))
+        .collect()
+}
+
+#[track_caller]
+fn finds(blocked: &[(String, Act, String)], screw: &str, act: Act, by: &str) {
+    let known = |of: &(String, Act, String)| of.0 == screw && of.1 == act && of.2 == by;
+    assert!(blocked.iter().any(known), "{blocked:?}");
+}
+
+#[test]
+fn a_wrong_order_is_found() {
+    assert_eq!(blocked(|_| ()), []);
+    // The foot, before the leg's joints are tight: it covers a head.
+    let early_foot = blocked(|steps| steps[1].stages.swap(0, 1));
+    finds(&early_foot, "screw crank joint LF", Act::Turn, "foot LF");
+    // A link's screws from below, when the link is on its servo.
+    let late_screws = blocked(|steps| {
+        steps[4].stages[0].adds =
+            |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
+        steps[4].stages.push(Stage {
+            at: Where::Robot,
+            adds: |body: &Body| matches!(body.kind, Kind::HexScrew(_)),
+        });
+    });
+    let pushed = late_screws.iter().filter(|(_, act, _)| *act == Act::Push);
+    assert!(pushed.count() > 0, "{late_screws:?}");
+}
+
+#[test]
+fn a_strut_under_a_head_is_found() {
+    // Heads that a key has to hold from below, where only pockets hold them.
+    let unequal = assembly("unequal", "").altered(|bodies| {
+        for body in bodies {
+            if let Kind::HexScrew(length) = body.kind {
+                body.kind = Kind::Screw(length);
+            }
+        }
+    });
+    let refused = unequal
+        .asides(&order(&unequal))
+        .expect_err("no key gets there");
+    assert_eq!(
+        (refused.screw.as_str(), refused.act),
+        ("screw tip A2", Act::Turn)
+    );
+    assert_eq!(refused.by, "strut RF");
+}
+
+#[test]
+fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
+    let covered = assembly("paper", "").altered(|bodies| {
+        // A board as large as the plate, on the legs.
+        let plate = bodies.iter().find(|body| body.name == "plate").cloned();
+        let mut lid = plate.expect("a plate");
+        lid.name = "deck lid".to_owned();
+        for prism in &mut lid.prisms {
+            prism.cut.clear();
+            prism.z = prism.z.map(|z| z + 50.0);
+        }
+        bodies.push(lid);
+    });
+    let refused = covered.asides(&order(&covered)).expect_err("a lid");
+    assert_eq!(refused.by, "deck lid");
+    let sentence = Unfit::from(refused).to_string();
+    assert!(
+        sentence.contains("at step 8 of the guide: deck lid is in the way, at every pose"),
+        "{sentence}"
+    );
+}
+
+#[test]
+fn parts_that_move_together_are_not_in_one_place() {
+    for name in NAMES {
+        assert_eq!(assembly(name, "").measures_fit(), Ok(()), "{name}");
+    }
+    // A standoff's screw whose head is in the boss of the board's screw.
+    let near = assembly("paper", "").altered(|bodies| {
+        for body in bodies {
+            if body.name == "screw standoff 1 above" {
+                for prism in &mut body.prisms {
+                    prism.add[0].points[0].y -= 1.0;
+                }
+            }
+        }
+    });
+    let refused = near.measures_fit().expect_err("they overlap");
+    assert!(
+        refused
+            .to_string()
+            .contains("deck and screw standoff 1 above, which move together, overlap by 0.5"),
+        "{refused}"
+    );
+}
+
+/// A second opinion on what is free: the layers' outlines, asked point by point.
+#[test]
+fn above_a_head_that_can_be_reached_there_is_no_material() {
+    for name in ["paper", "unequal"] {
+        let assembly = assembly(name, "");
+        let pose = neutral(&assembly);
+        let steps = order(&assembly);
+        let blocked = assembly.blocked(&steps, &pose);
+        let step_of = |body: &Body| steps.iter().position(|step| step.adds(body));
+        let outlines: Vec<(&Body, Vec<Outline>)> = assembly
+            .bodies()
+            .iter()
+            .map(|body| (body, body.prisms.iter().map(Outline::of).collect()))
+            .collect();
+        let mut asked = 0;
+        for screw in assembly.bodies() {
+            let here = step_of(screw);
+            // Those that come from above, on the robot.
+            let [low, high] = &screw.prisms[..] else {
+                continue;
+            };
+            let from_above = high.add[0].width() > low.add[0].width();
+            if !matches!(screw.kind, Kind::Screw(_)) || !from_above || here == Some(1) {
+                continue;
+            }
+            assert!(!blocked.iter().any(|of| of.screw == screw.name));
+            let at = assembly.place(screw.mount, &pose).map(high.add[0].middle());
+            for turn in 0..12 {
+                let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;
+                for up in 1..60 {
+                    let z = high.z[1] + 0.5 * f64::from(up);
+                    for (body, layers) in &outlines {
+                        if step_of(body) > here
+                            || body.name.starts_with("board")
+                            || body.name == screw.name
+                        {
+                            continue;
+                        }
+                        let point = assembly.place(body.mount, &pose).unmap(rim);
+                        for (prism, outline) in body.prisms.iter().zip(layers) {
+                            let there = prism.z[0] < z && z < prism.z[1];
+                            asked += usize::from(there);
+                            assert!(
+                                !there || !outline.holds(point),
+                                "{name}: {} in {}",
+                                screw.name,
+                                body.name
+                            );
+                        }
+                    }
+                }
+            }
+        }
+        assert!(asked > 1000, "{name}: {asked}");
+    }
+}
