@@ -1,12 +1,11 @@
 //! docs/gaits.md shows what the commands print, docs/twin.md what springs cost.
 
-use lizard_robot::{Ground, Report, Robot, Sensitivity, Spring};
+use lizard_robot::{Ground, Report, Sensitivity, Spring};
 
 use crate::{gait, paper};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gaits.md");
 const TWIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/twin.md");
-const BUILD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/build.md");
 const END: &str = "<!-- end -->";
 
 fn fenced(text: String) -> String {
@@ -97,21 +96,4 @@ fn the_page_on_the_twin_shows_what_springs_cost() {
         page.contains(&format!("| mass | {} g, what", ground.body.mass)),
         "{TWIN}"
     );
-}
-
-#[test]
-fn the_page_on_building_shows_what_parts_are_where_they_are_left_out() {
-    let page = std::fs::read_to_string(BUILD).expect(BUILD);
-    let (_, block) = page
-        .split_once("```toml\n[parts]                  # mm")
-        .expect(BUILD);
-    let (block, _) = block.split_once("```").expect(BUILD);
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml");
-    let text = std::fs::read_to_string(file).expect(file);
-    let robot = Robot::parse(&format!("{text}\n[parts]\n{block}")).expect("the page's parts");
-    let mut parts = *robot.parts();
-    assert!(parts.foot.take().is_some());
-    assert_eq!(parts, *paper().parts());
-    assert_eq!(robot.ground(), paper().ground());
-    assert_eq!(robot.legs(), paper().legs());
 }
