@@ -104,12 +104,13 @@ impl Assembly {
     /// seconds.
     ///
     /// # Errors
-    /// The first measure that does not fit, else a screw, else the two parts that overlap
-    /// most.
+    /// The first measure that does not fit, else the two parts that overlap most, else a
+    /// screw.
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
+        self.prove(|_, _| ()).judge()?;
         self.asides(&steps(self.robot().parts().strut))?;
-        Ok(self.prove(|_, _| ()).judge()?)
+        Ok(())
     }
 
     /// Whether measures go together.
