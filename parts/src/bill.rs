@@ -78,6 +78,12 @@ fn thousandths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
     out.serialize_f64((1000.0 * value).round() / 1000.0)
 }
 
+fn each_in_thousandths<S: Serializer>(values: &[f64; 2], out: S) -> Result<S::Ok, S::Error> {
+    values
+        .map(|value| (1000.0 * value).round() / 1000.0)
+        .serialize(out)
+}
+
 /// A leg's spring in its strut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Hold {
@@ -90,7 +96,11 @@ pub struct Hold {
     /// N/mm.
     #[serde(serialize_with = "thousandths")]
     pub rate: f64,
-    /// Up to this torque the leg follows its servo exactly, N mm.
+    /// Lever of the strut about the leg's pivot, mm: the least and the greatest that any
+    /// leg has in any gait. The pull acts square to the anchor's arm at one pose only.
+    #[serde(serialize_with = "each_in_thousandths")]
+    pub lever: [f64; 2],
+    /// Up to this torque the leg follows its servo exactly wherever gaits lead, N mm.
     #[serde(serialize_with = "thousandths")]
     pub preload: f64,
     /// Beyond it the leg lags by a degree for each, N mm/deg.
@@ -105,7 +115,7 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Of the robot's first leg; all are alike. `None` where it has no spring.
+    /// Of the robot's legs, whose springs are alike. `None` where they have none.
     #[must_use]
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
@@ -113,7 +123,7 @@ impl Hold {
         if parts.strut == Strut::Rigid {
             return None;
         }
-        let radius = parts.anchor[0];
+        let lever = levers(assembly);
         let coil: Coil = parts.spring;
         // Both hooks lie around the far sides of their screws.
         let installed = assembly.layout().legs[0].strut_length + parts.screw.diameter;
@@ -123,9 +133,10 @@ impl Hold {
             installed,
             force,
             rate: coil.rate(),
-            preload: force * radius,
-            per_degree: (coil.rate() * radius * radius).to_radians(),
-            way: (crate::struts::SLOT / radius).to_degrees(),
+            lever,
+            preload: force * lever[0],
+            per_degree: (coil.rate() * lever[0] * lever[0]).to_radians(),
+            way: (crate::struts::SLOT / lever[1]).to_degrees(),
             friction: ground.grip() * ground.feet.reach,
         })
     }
@@ -138,6 +149,22 @@ impl Hold {
             preload: self.preload,
         }
     }
+}
+
+/// The least and the greatest lever of a strut about its leg's pivot, mm, over all gaits.
+fn levers(assembly: &Assembly) -> [f64; 2] {
+    let robot = assembly.robot();
+    let mut range = [f64::INFINITY, 0.0_f64];
+    for gait in robot.gaits() {
+        for angles in gait.frames().map(|(_, phase)| gait.table_angles(phase)) {
+            for (plan, angle) in robot.legs().iter().zip(angles) {
+                let [from, to] = plan.at(angle, angle).strut;
+                let lever = (from - plan.shaft).cross(to - from).abs() / plan.strut_length;
+                range = [range[0].min(lever), range[1].max(lever)];
+            }
+        }
+    }
+    range
 }
 
 /// A name for what is not printed, and its mass in g.
@@ -348,19 +375,25 @@ impl fmt::Display for Hold {
             installed,
             force,
             rate,
+            lever,
             preload,
             per_degree,
             way,
             friction,
         } = self;
+        let most = force * lever[1];
         writeln!(
             f,
-            "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm). \
-             Up to {preload:.0} N mm at the leg the foot follows its servo without any lag; the pad's friction asks \
-             for about {friction:.0} N mm. Beyond, it lags a degree for each {per_degree:.1} N mm, at most {way:.0} deg. {}",
-            if *preload < 0.7 * STALL {
+            "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm), at a lever of \
+             {:.1} to {:.1} mm in gaits. Up to {preload:.0} N mm at the leg the foot follows its servo without any lag; the \
+             pad's friction asks for about {friction:.0} N mm. Beyond, it lags a degree for each {per_degree:.1} N mm and \
+             more, at least {way:.0} deg until the slot ends. {}",
+            lever[0],
+            lever[1],
+            if most < 0.7 * STALL {
                 format!(
-                    "An SG-90 stalls at {STALL:.0} N mm, so a foot that is held spares its servo."
+                    "An SG-90 stalls at {STALL:.0} N mm, so a foot that is held spares its servo: a front foot on its way \
+                     forward, a hind foot on its way back. The other way a strut is a rigid bar."
                 )
             } else {
                 format!(

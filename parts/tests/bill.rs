@@ -111,8 +111,34 @@ fn a_leg_is_held_against_friction_and_spares_a_stalled_servo() {
     let strut = 28.5f64.hypot(10.0);
     assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
     assert!((hold.installed - strut - 3.0).abs() < 1e-9);
-    assert!((hold.preload - 22.0 * hold.force).abs() < 1e-9);
-    assert!(hold.friction * 2.0 < hold.preload && hold.preload < 0.7 * STALL);
+    // At neutral the strut stands at 60.8 deg to the anchor's arm; walk swings a leg by
+    // 20 deg to either side, look one a little more.
+    let between = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
+    let lever = |swing: f64| 22.0 * (between + swing).to_radians().sin();
+    let [least, most] = hold.lever;
+    assert!(lever(-24.0) < least && least < lever(-20.0) + 0.01);
+    assert!(lever(20.0) - 0.01 < most && most < 22.0);
+    assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
+    assert!(hold.friction * 2.0 < hold.preload && hold.force * hold.lever[1] < 0.7 * STALL);
+}
+
+#[test]
+fn a_held_foot_stretches_its_spring_one_way_only() {
+    for name in ["paper", "large", "unequal"] {
+        let (assembly, _) = bill(name);
+        let robot = assembly.robot();
+        for (servo, plan) in robot.legs().iter().enumerate() {
+            let neutral = robot.servos()[servo].neutral;
+            let front = servo < 2;
+            let forward = lizard_robot::servo::FORWARD[servo];
+            let longer = |by: f64| {
+                let [from, to] = plan.at(neutral + forward * by, neutral).strut;
+                (to - from).length() - plan.strut_length
+            };
+            assert_eq!(longer(5.0) > 0.5, front, "{name} {servo}");
+            assert_eq!(longer(-5.0) > 0.5, !front, "{name} {servo}");
+        }
+    }
 }
 
 #[test]
