@@ -57,7 +57,7 @@ bench: ## measured budgets, beside the Arduino Servo library's; speed beside num
 	$(call prepared,.bench)
 fit: ## proof that no two parts meet at any pose that the guard accepts
 	$(call prepared,.fit)
-prove: ## the guard against floating point at every pose there is; about a minute
+prove: ## the guard against floating point at every pose there is; a minute or two
 	$(call prepared,.prove)
 physics: ## the contact model against the rigid-body engine rapier
 	$(call prepared,.physics)
