@@ -100,9 +100,14 @@ impl fmt::Display for Near {
             ..
         } = self;
         match self.doubt {
+            Some([a, b, c, d]) if *proved < 0.0 => write!(
+                f,
+                "{first} and {second} may overlap by {:.2} mm near pose {a:.2} {b:.2} {c:.2} {d:.2}",
+                -proved
+            ),
             Some([a, b, c, d]) => write!(
                 f,
-                "{first} and {second} are not proved to be apart by more than {proved:.2} mm near pose {a:.2} {b:.2} {c:.2} {d:.2}"
+                "{first} and {second} may come as near as {proved:.2} mm near pose {a:.2} {b:.2} {c:.2} {d:.2}"
             ),
             None => write!(f, "{first} and {second} are {proved:.2} mm apart or more"),
         }
