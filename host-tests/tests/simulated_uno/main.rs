@@ -7,7 +7,6 @@ mod disturbed;
 mod eeprom;
 mod instructions;
 mod interrupts;
-mod port;
 mod power_cut;
 mod resets;
 mod serial;

@@ -1,4 +1,7 @@
 //! The simulated UNO behind a serial port, as another program meets it.
+//!
+//! A program of its own: a compiler that another test starts holds a copy of every open
+//! port for a moment, and a port that is not quite closed is not opened anew.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
@@ -7,8 +10,6 @@ use std::time::{Duration, Instant};
 
 use lizard_host_tests::avr_gcc;
 use simulated_uno::{Background, FREQUENCY, Fidelity, Pin, Port, Uno};
-
-use super::marks;
 
 /// Says `<r` at reset, then sends every byte back, plus one. D9 is high from
 /// reset on. GPIOR0 counts resets through a variable that reset does not clear.
@@ -53,6 +54,10 @@ fn read(port: &mut File, count: usize) -> String {
     let mut bytes = vec![0; count];
     port.read_exact(&mut bytes).expect("bytes come");
     String::from_utf8_lossy(&bytes).into_owned()
+}
+
+fn marks(uno: &Uno) -> Vec<u8> {
+    uno.marks().iter().map(|mark| mark.value).collect()
 }
 
 #[test]
