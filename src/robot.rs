@@ -12,7 +12,7 @@ use lizard_core::curve::Table;
 use lizard_core::five_bar::FiveBar;
 use lizard_core::gait::{Channel, Gait, Wave};
 use lizard_core::limits::Limits;
-use lizard_core::part::{End, Side};
+use lizard_core::part::{End, Servo, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
@@ -64,8 +64,8 @@ impl Robot for Lizard {
     }
 
     #[inline(never)]
-    fn neutral_of(&self, place: usize) -> Angle {
-        NEUTRALS.at(place).load()
+    fn neutral_of(&self, servo: Servo) -> Angle {
+        NEUTRALS.at(servo.index()).load()
     }
 
     // Out of line: constants of this size cost less as a table.
@@ -75,8 +75,8 @@ impl Robot for Lizard {
     }
 
     #[inline(never)]
-    fn servo(&self, place: usize) -> Calibration {
-        SERVOS.at(place).load()
+    fn servo(&self, servo: Servo) -> Calibration {
+        SERVOS.at(servo.index()).load()
     }
 
     #[inline(always)]
@@ -95,8 +95,8 @@ impl Robot for Lizard {
     }
 
     #[inline(never)]
-    fn reach(&self, place: usize) -> Reach {
-        REACHES.at(place).load()
+    fn reach(&self, servo: Servo) -> Reach {
+        REACHES.at(servo.index()).load()
     }
 
     #[inline(always)]

@@ -7,7 +7,8 @@
 use lizard_avr::mul_unsigned;
 
 use crate::calibration::Calibration;
-use crate::units::{Sweep, Width};
+use crate::root::quotient;
+use crate::units::{ONE_Q14, Sweep, Width};
 
 /// The numbers of one servo that a person may set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,6 +32,13 @@ pub struct Reach {
     pub min: Sweep,
     /// The farthest counter-clockwise.
     pub max: Sweep,
+}
+
+impl Reach {
+    /// Whether a servo's travel reaches all of it.
+    pub fn is_within(&self, servo: &Calibration) -> bool {
+        servo.min <= self.min && self.max <= servo.max
+    }
 }
 
 impl Adjustment {
@@ -91,30 +99,25 @@ impl Adjustment {
     }
 }
 
-/// The farthest sweep from 0 towards `end` at which a servo's pulses are still
-/// within two, as they are at 0.
+/// The end of a travel towards `end`: that sweep, or the last one before it whose
+/// pulse is within two, which those at the neutral angle are.
 #[inline(never)]
 fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
-    let reaches = |sweep: i16| {
-        let pulse = servo.pulse(Sweep(sweep));
-        shortest <= pulse && pulse <= longest
+    let neutral = servo.neutral.0;
+    // A pulse is the neutral one and n times the gain, to the nearest cycle; so many
+    // times the gain is still within.
+    let most = if (servo.gain < 0) == (end.0 < 0) {
+        mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
+    } else {
+        mul_unsigned(neutral - shortest, ONE_Q14 as u16) + HALF_Q14
     };
-    let (mut within, mut beyond) = (0i16, end.0);
-    if reaches(beyond) {
-        return end;
-    }
-    // Bisection; the shift rounds down, so the middle may be the end itself, when
-    // they are neighbours.
-    while beyond.abs_diff(within) > 1 {
-        let middle = within + ((beyond - within) >> 1);
-        if reaches(middle) {
-            within = middle;
-        } else {
-            beyond = middle;
-        }
-    }
-    Sweep(within)
+    let steps = quotient(most, servo.gain.unsigned_abs());
+    let within = end.0.unsigned_abs().min(steps) as i16;
+    Sweep(if end.0 < 0 { -within } else { within })
 }
+
+/// Half of 1.0 in Q14.
+const HALF_Q14: u32 = (ONE_Q14 / 2) as u32;
 
 #[cfg(test)]
 mod tests {

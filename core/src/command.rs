@@ -7,26 +7,27 @@
 use lizard_avr::flash;
 
 use crate::gait::{GaitId, Name};
+use crate::order::{Order, Setting};
 use crate::part::Servo;
 use crate::robot::Robot;
+use crate::settings::Boot;
 use crate::text::Text;
-use crate::units::{Angle, TURN_CENTIDEG};
+use crate::units::{Angle, Sweep, TURN_CENTIDEG};
 use crate::word::Word;
 
 /// A command, with its arguments checked as far as syntax and range go.
-// Not an enum: taking values of several sizes to pieces costs half a kilobyte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Command {
-    /// The word of the console; none for the name of a gait.
-    pub word: Option<Word>,
-    /// The gait that is named, also after `boot`; none for `boot rest`.
-    pub gait: Option<GaitId>,
-    /// The place of the servo that is to be set.
-    pub servo: u8,
-    /// The numbers that follow: a percentage, frames or milliseconds as they are;
-    /// `dir` as 1 for `+` and 0 for `-`; `scale` in hundredths of a microsecond per
-    /// degree; anything else as an [`Angle`].
-    pub numbers: [u16; 4],
+pub enum Command {
+    /// The gaits and the words of the other commands.
+    Help,
+    /// The state of the robot.
+    Status,
+    /// All settings.
+    Cal,
+    /// The pose every so many frames; 0: no more.
+    Watch(u16),
+    /// Something to do.
+    Order(Order),
 }
 
 /// Why a line is no command.
@@ -121,58 +122,81 @@ const fn form(word: Word) -> Option<usize> {
 ///
 /// # Errors
 /// What keeps the line from being a command.
+#[inline(never)]
 pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
-    let mut command = Command::NONE;
-    command.read(line, robot)?;
-    Ok(command)
+    let mut words = Words(line);
+    let Some(word) = Word::find(words.next()) else {
+        return Ok(Command::Order(Order::Gait(gait(line, robot)?)));
+    };
+    let Arguments { servo, numbers } = match form(word) {
+        Some(place) => Arguments::read(word, words, &FORMS.at(place).load())?,
+        None if word != Word::Boot && !words.is_done() => return Err(Misread::Surplus),
+        None => Arguments::NONE,
+    };
+    let [number, second, ..] = numbers;
+    let set = |setting| Order::Set(servo, setting);
+    Ok(Command::Order(match word {
+        Word::Help | Word::QuestionMark => return Ok(Command::Help),
+        Word::Status => return Ok(Command::Status),
+        Word::Cal => return Ok(Command::Cal),
+        Word::Watch => return Ok(Command::Watch(number)),
+        Word::Stop => Order::Stop,
+        Word::Rest => Order::Rest,
+        Word::Pose => Order::Pose(numbers.map(Angle)),
+        Word::Center => Order::Center,
+        Word::Speed => Order::Speed(number as u8),
+        Word::Trim => set(Setting::Trim(Sweep(number as i16))),
+        Word::Limit => set(Setting::Limit(Angle(number), Angle(second))),
+        Word::Dir => set(Setting::Direct(number != 0)),
+        Word::Scale => set(Setting::Scale(number)),
+        Word::Save => Order::Save,
+        Word::Load => Order::Load,
+        Word::Factory => Order::Factory,
+        Word::Boot => Order::Boot(boot(words.0.trim_ascii(), robot)?),
+        Word::Deadman => Order::Deadman(number),
+    }))
 }
 
-impl Command {
-    /// To be read into.
-    pub const NONE: Self = Self {
-        word: None,
-        gait: None,
-        servo: 0,
+/// What follows the word `boot`.
+fn boot<R: Robot>(rest: &[u8], robot: &R) -> Result<Boot, Misread> {
+    if Word::find(rest) == Some(Word::Rest) {
+        return Ok(Boot::Rest);
+    }
+    match gait(rest, robot) {
+        Ok(gait) => Ok(Boot::Gait(gait)),
+        Err(_) => Err(Misread::Wants(Text::BootWants)),
+    }
+}
+
+/// What follows a word.
+struct Arguments {
+    /// The servo that is to be set.
+    servo: Servo,
+    /// A percentage, frames or milliseconds as they are; `+` as 1 and `-` as 0;
+    /// hundredths as such; degrees as an [`Angle`].
+    numbers: [u16; 4],
+}
+
+impl Arguments {
+    /// None at all.
+    const NONE: Self = Self {
+        servo: Servo::A1,
         numbers: [0; 4],
     };
 
-    /// The same as [`parse`], into [`Command::NONE`].
-    ///
-    /// # Errors
-    /// Those of [`parse`].
-    pub fn read<R: Robot>(&mut self, line: &[u8], robot: &R) -> Result<(), Misread> {
-        let mut words = Words(line);
-        self.word = Word::find(words.next());
-        match self.word {
-            None => self.gait = Some(gait(line, robot)?),
-            Some(Word::Boot) => {
-                let rest = words.0.trim_ascii();
-                if Word::find(rest) != Some(Word::Rest) {
-                    let gait = gait(rest, robot);
-                    self.gait = Some(gait.map_err(|_| Misread::Wants(Text::BootWants))?);
-                }
-            }
-            Some(word) => match form(word) {
-                Some(place) => self.read_arguments(words, &FORMS.at(place).load())?,
-                None if !words.is_done() => return Err(Misread::Surplus),
-                None => {}
-            },
-        }
-        Ok(())
-    }
-
-    /// Reads what follows the word.
+    /// Reads what follows `word`.
     #[inline(never)]
-    fn read_arguments(&mut self, mut words: Words, form: &Form) -> Result<(), Misread> {
+    fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
         let wants = Err(Misread::Wants(form.wants));
+        let mut arguments = Self::NONE;
         if form.servo {
-            self.servo = match words.next() {
-                [digit @ b'1'..=b'4'] => digit - b'1',
+            arguments.servo = match words.next() {
+                [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
                 _ => return wants,
             };
         }
         let mut beyond = None;
-        for (place, number) in (0..form.count).zip(&mut self.numbers) {
+        for (place, number) in (0..form.count).zip(&mut arguments.numbers) {
             let Some((size, negative)) = number_of(words.next(), form.kind) else {
                 return wants;
             };
@@ -190,11 +214,11 @@ impl Command {
         }
         match beyond {
             _ if !words.is_done() => wants,
-            Some(place) if self.word == Some(Word::Pose) => {
+            Some(place) if word == Word::Pose => {
                 Err(Misread::PoseRange(Servo::at(usize::from(place))))
             }
             Some(_) => Err(Misread::Range(form.range)),
-            None => Ok(()),
+            None => Ok(arguments),
         }
     }
 }

@@ -3,6 +3,7 @@
 use lizard_avr::flash;
 use ufmt::uWrite;
 
+use crate::part::Servo;
 use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::text::Text;
@@ -31,11 +32,11 @@ where
     R: Robot,
     W: uWrite + ?Sized,
 {
-    for (place, sweep) in pose.0.iter().enumerate() {
-        if place > 0 {
+    for servo in Servo::ALL {
+        if servo != Servo::A1 {
             out.write_char(',')?;
         }
-        let angle = robot.neutral_of(place).swept(*sweep);
+        let angle = robot.neutral_of(servo).swept(*servo.of(&pose.0));
         number(out, angle.centideg().into(), 2)?;
     }
     Ok(())
@@ -179,7 +180,7 @@ mod tests {
         let mut text = String::new();
         let centideg = [0, 4_141, 31_860, 35_999];
         let robot = Sample::odd();
-        let pose = Pose::at(&centideg.map(|angle| Angle::from_centideg(angle).0), &robot);
+        let pose = Pose::at(&centideg.map(Angle::from_centideg), &robot.neutral());
         let Ok(()) = angles(&mut text, &pose, &robot);
         assert_eq!(text, "0.00,41.41,318.60,359.99");
     }

@@ -18,10 +18,13 @@ pub enum Fault {
     Link,
     /// The program hung and was begun again.
     Watchdog,
-    /// An edge of a pulse came late; its pulse was dropped.
+    /// An edge of a pulse came late: a rising edge was not made, so its pulse is
+    /// missing; a falling edge made its pulse longer.
     Late,
     /// The stack has grown into the data.
     Stack,
+    /// The supply broke down several times in a row.
+    BrownOut,
 }
 
 impl Fault {
@@ -39,6 +42,20 @@ impl Fault {
             Self::Watchdog => Text::FaultWatchdog,
             Self::Late => Text::FaultLate,
             Self::Stack => Text::FaultStack,
+            Self::BrownOut => Text::FaultBrownOut,
+        }
+    }
+
+    /// What is said of it.
+    pub const fn sentence(self) -> Text {
+        match self {
+            Self::Guard => Text::WhyGuard,
+            Self::Supply => Text::WhySupply,
+            Self::Link => Text::WhyLink,
+            Self::Watchdog => Text::WhyWatchdog,
+            Self::Late => Text::WhyLate,
+            Self::Stack => Text::WhyStack,
+            Self::BrownOut => Text::WhyBrownOut,
         }
     }
 }
@@ -94,13 +111,14 @@ mod tests {
 
     use super::*;
 
-    const ALL: [Fault; 6] = [
+    const ALL: [Fault; 7] = [
         Fault::Guard,
         Fault::Supply,
         Fault::Link,
         Fault::Watchdog,
         Fault::Late,
         Fault::Stack,
+        Fault::BrownOut,
     ];
 
     /// How long the LED is lit and dark, in turn, for some frames.

@@ -15,13 +15,20 @@ pub enum Ended {
     Line,
     /// A line that was longer than [`LONGEST`]; all of it is dropped.
     TooLong,
+    /// A line with a byte in it that came garbled: its other bytes may make a command,
+    /// but not the one that was sent.
+    Garbled,
 }
+
+/// What a board passes on for a byte that came garbled. No text holds this byte.
+pub const GARBLED: u8 = 0xff;
 
 /// The line that is being received.
 #[derive(Debug, Default)]
 pub struct Line {
     bytes: Vec<u8, LONGEST>,
     overlong: bool,
+    garbled: bool,
     ended: bool,
 }
 
@@ -31,6 +38,7 @@ impl Line {
         Self {
             bytes: Vec::new(),
             overlong: false,
+            garbled: false,
             ended: false,
         }
     }
@@ -47,6 +55,10 @@ impl Line {
                 self.bytes.pop();
                 None
             }
+            GARBLED => {
+                self.garbled = true;
+                None
+            }
             _ => {
                 self.overlong |= self.bytes.push(byte.to_ascii_lowercase()).is_err();
                 None
@@ -61,7 +73,9 @@ impl Line {
 
     fn end(&mut self) -> Option<Ended> {
         self.ended = true;
-        if self.overlong {
+        if self.garbled {
+            Some(Ended::Garbled)
+        } else if self.overlong {
             Some(Ended::TooLong)
         } else if self.text().is_empty() {
             None
@@ -80,14 +94,15 @@ mod tests {
 
     use super::*;
 
-    /// Every line that bytes end: its text, or nothing for one that was too long.
+    /// Every line that bytes end: its text, or nothing for one that was too long or
+    /// came garbled.
     fn ended(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut ended = Vec::new();
         for byte in bytes {
             match line.push(*byte) {
                 None => {}
-                Some(Ended::TooLong) => ended.push(None),
+                Some(Ended::TooLong | Ended::Garbled) => ended.push(None),
                 Some(Ended::Line) => {
                     ended.push(Some(line.text().iter().copied().map(char::from).collect()));
                 }
@@ -101,10 +116,12 @@ mod tests {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
             let mut kept = String::new();
+            // Or garbled.
             let mut too_long = false;
             for byte in line {
                 match byte {
                     0x08 | 0x7f => drop(kept.pop()),
+                    0xff => too_long = true,
                     _ if kept.chars().count() == 63 => too_long = true,
                     _ => kept.push(char::from(*byte)),
                 }
@@ -155,6 +172,21 @@ mod tests {
             ended(b"  Arc \t LEFT\t \n"),
             [Some("arc \t left".to_string())]
         );
+    }
+
+    #[test]
+    fn a_line_with_a_garbled_byte_is_none_wherever_it_is_and_whatever_is_taken_back() {
+        for place in 0..8 {
+            let mut bytes = b"speed 90".to_vec();
+            bytes[place] = GARBLED;
+            for back in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
+                let mut line = Line::new();
+                let sent = [&bytes, back.as_bytes(), b"\rstop\r"].concat();
+                let ends: Vec<Ended> = sent.iter().filter_map(|byte| line.push(*byte)).collect();
+                assert_eq!(ends, [Ended::Garbled, Ended::Line]);
+                assert_eq!(line.text(), b"stop");
+            }
+        }
     }
 
     proptest! {

@@ -52,6 +52,9 @@ impl Memory for Bytes {
 /// Bytes of what a record says.
 pub const CONTENT: usize = 42;
 
+// The CRC's two bytes are told apart by whether their step is even.
+const _: () = assert!(CONTENT.is_multiple_of(2));
+
 /// What a record says.
 pub type Content = [u8; CONTENT];
 

@@ -37,8 +37,10 @@ use crate::calibration::Calibration;
 use crate::gait::GaitId;
 use crate::guard::Clearance;
 use crate::hazard::Hazard;
+use crate::part::Servo;
 use crate::point_to_point::PointToPoint;
 use crate::pose::{Pose, Pulses};
+use crate::restart::Stance;
 use crate::robot::Robot;
 use crate::units::Width;
 
@@ -54,8 +56,8 @@ const WAKE_APART: u8 = 5;
 /// The most that a weak supply allows, percent of the gaits' own pace.
 const SLOW: u8 = 50;
 
-/// All four are awake, and motion may begin.
-const AWAKE: u8 = 4 * WAKE_APART;
+/// Frames from the first pulse until all four are awake and motion may begin.
+pub const AWAKE: u8 = 4 * WAKE_APART;
 
 /// The robot's motion.
 #[derive(Debug)]
@@ -75,6 +77,8 @@ pub struct Motion<R> {
     settling: bool,
     /// Frames since pulses began, up to [`AWAKE`].
     awake: u8,
+    /// Whether servos that sleep are where a program before this one held them.
+    resumed: bool,
     pose: Pose,
     hazard: Option<Hazard>,
     frames: u32,
@@ -85,8 +89,8 @@ impl<R: Robot> Motion<R> {
     pub fn new(robot: R) -> Self {
         let mut motion = Self::unbegun(robot);
         motion.begin();
-        for place in 0..4 {
-            motion.calibrate(place, motion.robot.servo(place));
+        for servo in Servo::ALL {
+            motion.calibrate(servo, motion.robot.servo(servo));
         }
         motion
     }
@@ -104,6 +108,7 @@ impl<R: Robot> Motion<R> {
             sent: Pulses([Width(0); 4]),
             settling: false,
             awake: 0,
+            resumed: false,
             pose: Pose::NEUTRAL,
             hazard: None,
             frames: 0,
@@ -125,12 +130,14 @@ impl<R: Robot> Motion<R> {
         &self.calibration
     }
 
-    /// Takes another calibration of a servo, by its place; [`Motion::settle`] has to
-    /// follow.
-    pub fn calibrate(&mut self, place: usize, calibration: Calibration) {
-        if let Some(servo) = self.calibration.get_mut(place) {
-            *servo = calibration;
-        }
+    /// Takes another calibration of a servo; [`Motion::settle`] has to follow.
+    pub fn calibrate(&mut self, servo: Servo, calibration: Calibration) {
+        *servo.of_mut(&mut self.calibration) = calibration;
+    }
+
+    /// Takes another calibration of all servos; [`Motion::settle`] has to follow.
+    pub fn calibrate_all(&mut self, calibration: &[Calibration; 4]) {
+        self.calibration = *calibration;
     }
 
     /// Lets the pulses go over to the new calibration, at the slew limit. Nothing
@@ -139,14 +146,15 @@ impl<R: Robot> Motion<R> {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
         }
-        // Before the first pulse there is nothing to go over from.
-        self.settling = self.awake > 0;
+        // Before the first pulse there is nothing to go over from, unless a program
+        // before this one left it.
+        self.settling = self.resumed || self.awake > 0;
     }
 
-    /// True where a servo, by its place, would have to leave the travel of another
-    /// calibration, where the robot is or where it goes.
-    pub fn goes_beyond(&self, place: usize, calibration: &Calibration) -> bool {
-        let beyond = |pose: &Pose| !pose.0.get(place).is_some_and(|at| calibration.reaches(*at));
+    /// True where a servo would have to leave the travel of another calibration, where
+    /// the robot is or where it goes.
+    pub fn goes_beyond(&self, servo: Servo, calibration: &Calibration) -> bool {
+        let beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
         let moves_beyond = match &self.state {
             State::Moving { path, .. } => beyond(path.target()),
             _ => false,
@@ -158,22 +166,66 @@ impl<R: Robot> Motion<R> {
         beyond(&self.pose) || moves_beyond || next_beyond
     }
 
-    /// Takes a pose for the one that the servos have at power-on, and says whether it
-    /// may: within the travel and safe. The servos wake in it, and then the robot
-    /// stands; or, where they have never slept, it is held.
+    /// Stands: the servos wake one after the other in the pose that the robot rested
+    /// in, if it is safe and within the travel; else in the neutral one.
     #[inline(never)]
-    pub fn begin_at(&mut self, pose: &Pose, asleep: bool) -> bool {
-        if pose.beyond(&self.calibration).is_some() || self.hazard_of(pose).is_some() {
+    pub fn wake(&mut self, rested: Option<&Pose>) {
+        self.begin();
+        if let Some(pose) = rested
+            && self.may_hold(pose)
+        {
+            self.pose = *pose;
+            self.state = State::Holding { asked: false };
+            self.next = Some(Target::Gait(GaitId::STAND));
+        }
+    }
+
+    /// Takes over a robot without pulses: it stays so, and wakes in that pose.
+    #[inline(never)]
+    pub fn resume_rest(&mut self, stance: Option<&Stance>) {
+        self.freeze(State::Resting);
+        if let Some(stance) = stance
+            && self.may_hold(&stance.pose)
+        {
+            self.pose = stance.pose;
+        }
+    }
+
+    /// Takes over servos that were held until a reset, with the pulses that they had;
+    /// says whether it may: within the travel and safe. All that had pulses get them
+    /// at once. If the robot is to `stand`, the servos wake one after the other, to
+    /// spare the supply, and then it stands.
+    #[inline(never)]
+    pub fn resume(&mut self, stance: &Stance, stand: bool) -> bool {
+        if !self.may_hold(&stance.pose) {
             return false;
         }
-        self.pose = *pose;
-        self.state = State::Holding { asked: false };
-        if asleep {
+        self.pose = stance.pose;
+        self.sent = stance.sent;
+        self.resumed = true;
+        self.freeze(State::Holding { asked: false });
+        if stand {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
-            self.awake = AWAKE;
+            self.awake = stance.awake.min(AWAKE);
         }
+        self.settle();
         true
+    }
+
+    /// What the servos do, for the program after a reset.
+    pub fn stance(&self, brown_outs: u8) -> Stance {
+        Stance {
+            resting: self.is_resting(),
+            awake: self.awake,
+            brown_outs,
+            pose: self.pose,
+            sent: self.sent,
+        }
+    }
+
+    fn may_hold(&self, pose: &Pose) -> bool {
+        pose.beyond(&self.calibration).is_none() && self.hazard_of(pose).is_none()
     }
 
     /// Begins a gait, by way of its first pose. The gait that is already under
@@ -240,14 +292,19 @@ impl<R: Robot> Motion<R> {
         for (place, pulse) in pulses.0.iter_mut().enumerate() {
             let servo = &self.calibration[place];
             let sent = &mut self.sent.0[place];
+            let sleeps = self.awake < wakes_at;
             let mut width = servo.width(self.pose.0[place]);
             if self.settling {
-                let (wanted, way) = (width.0, servo.slew(per_frame));
+                let mut way = servo.slew(per_frame);
+                if sleeps && self.resumed {
+                    way = 0;
+                }
+                let wanted = width.0;
                 width.0 = wanted.clamp(sent.0.saturating_sub(way), sent.0.saturating_add(way));
                 under_way |= width.0 != wanted;
             }
             *sent = width;
-            if self.awake >= wakes_at {
+            if !sleeps {
                 *pulse = width;
             }
             wakes_at += WAKE_APART;
@@ -284,12 +341,9 @@ impl<R: Robot> Motion<R> {
         &self.pose
     }
 
-    /// The pose that the servos are held in; none while they rest.
-    pub const fn held_pose(&self) -> Option<&Pose> {
-        match self.state {
-            State::Resting => None,
-            _ => Some(&self.pose),
-        }
+    /// Whether there are no pulses.
+    pub const fn is_resting(&self) -> bool {
+        matches!(self.state, State::Resting)
     }
 
     /// The pulses of the last frame, of servos that sleep, too.
@@ -322,6 +376,7 @@ impl<R: Robot> Motion<R> {
         if matches!(self.state, State::Resting) {
             self.state = State::Holding { asked: false };
             self.awake = 0;
+            self.resumed = false;
             self.settling = false;
         }
         self.next = Some(target);

@@ -33,6 +33,9 @@ pub enum Side {
 }
 
 impl Servo {
+    /// All four, in their order.
+    pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
+
     /// The servo at a place of an array of four; past the end, the last one.
     pub const fn at(place: usize) -> Self {
         match place {
@@ -46,6 +49,16 @@ impl Servo {
     /// Its place in an array of four.
     pub const fn index(self) -> usize {
         self as usize
+    }
+
+    /// Its element of an array in that order.
+    pub const fn of<T>(self, four: &[T; 4]) -> &T {
+        &four[self as usize]
+    }
+
+    /// The same, to be changed.
+    pub const fn of_mut<T>(self, four: &mut [T; 4]) -> &mut T {
+        &mut four[self as usize]
     }
 }
 

@@ -7,7 +7,6 @@
 
 use crate::calibration::Calibration;
 use crate::part::Servo;
-use crate::robot::Robot;
 use crate::units::{Angle, Sweep, Width};
 
 /// Four sweeps, in servo order.
@@ -22,11 +21,12 @@ impl Pose {
     /// All servos at their neutral angle: the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// The pose at four chassis angles, 1/65536 turn; within the travel or not.
-    pub fn at<R: Robot>(angles: &[u16; 4], robot: &R) -> Self {
+    /// The pose at four chassis angles of servos with these neutral ones; within the
+    /// travel or not.
+    pub fn at(angles: &[Angle; 4], neutral: &[Angle; 4]) -> Self {
         let mut pose = Self::NEUTRAL;
-        for (place, (sweep, angle)) in pose.0.iter_mut().zip(angles).enumerate() {
-            *sweep = robot.neutral_of(place).sweep_to(Angle(*angle));
+        for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral)) {
+            *sweep = neutral.sweep_to(*angle);
         }
         pose
     }
@@ -74,6 +74,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::robot::Robot as _;
     use crate::sample::Sample;
 
     fn posed() -> impl Strategy<Value = (Sample, Pose)> {
@@ -87,7 +88,7 @@ mod tests {
         #[test]
         fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in posed()) {
             let angles = pose.angles(&robot.neutral());
-            prop_assert_eq!(Pose::at(&angles.map(|angle| angle.0), &robot), pose);
+            prop_assert_eq!(Pose::at(&angles, &robot.neutral()), pose);
             prop_assert_eq!(pose.beyond(&robot.calibration()), None);
         }
 

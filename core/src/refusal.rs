@@ -24,6 +24,8 @@ pub enum Refusal {
     Travel(Servo),
     /// Codes 4 and 5: the pose is not safe.
     Unsafe(Hazard),
+    /// Code 1: a byte of the line came garbled.
+    Garbled,
     /// Code 6: the line is too long.
     TooLong,
     /// Code 7: the servos have no pulses.
@@ -45,7 +47,7 @@ impl Refusal {
     /// The protocol's number for this refusal.
     pub const fn code(&self) -> u8 {
         match self {
-            Self::Misread(Misread::Unknown) => 1,
+            Self::Misread(Misread::Unknown) | Self::Garbled => 1,
             Self::Misread(Misread::Range(_) | Misread::PoseRange(_))
             | Self::Travel(_)
             | Self::Unfit(_)
@@ -73,12 +75,13 @@ impl Refusal {
             Self::Misread(misread) => print_misread(*misread, motion, out),
             Self::Travel(servo) => print_travel(*servo, motion, out),
             Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
+            Self::Garbled => Text::Garbled.print(out),
             Self::TooLong => Text::TooLong.print(out),
             Self::Resting => Text::Resting.print(out),
             Self::Unfit(servo) => {
                 print_servo(*servo, out)?;
                 Text::Needed.print(out)?;
-                let needed = motion.robot().reach(servo.index());
+                let needed = motion.robot().reach(*servo);
                 print_range(*servo, &needed, motion, out)
             }
             Self::Elsewhere(servo) => {
@@ -116,7 +119,7 @@ where
 {
     print_servo(servo, out)?;
     Text::Beyond.print(out)?;
-    let Calibration { min, max, .. } = motion.calibration()[servo.index()];
+    let Calibration { min, max, .. } = *servo.of(motion.calibration());
     print_range(servo, &Reach { min, max }, motion, out)
 }
 
@@ -130,7 +133,7 @@ where
     R: Robot,
     W: uWrite + ?Sized,
 {
-    let neutral = motion.robot().neutral_of(servo.index());
+    let neutral = motion.robot().neutral_of(servo);
     field(out, Text::Nothing, neutral.swept(reach.min).centideg())?;
     field(out, Text::Dots, neutral.swept(reach.max).centideg())
 }

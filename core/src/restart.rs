@@ -1,10 +1,10 @@
-//! Why the program began.
+//! Why the program began, and what it did until then.
 //!
 //! A robot that begins again in mid-step does not have to fall over: the servos
-//! are where they were, and a word of memory that survives a reset can say where
-//! that is.
+//! are where they were, and a few bytes of memory that survive a reset can say where
+//! that is ([`crate::kept`]).
 
-use crate::pose::Pose;
+use crate::pose::{Pose, Pulses};
 use crate::text::Text;
 
 /// What made the program begin.
@@ -21,18 +21,10 @@ pub enum Cause {
     Watchdog,
 }
 
-/// What is known at the beginning.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Restart {
-    /// Why.
-    pub cause: Cause,
-    /// How many times since power came on; stays at 255.
-    pub count: u8,
-    /// Where the servos were held until then, if that is known.
-    pub pose: Option<Pose>,
-}
-
 impl Cause {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Power, Self::External, Self::BrownOut, Self::Watchdog];
+
     /// Its word in `status`.
     pub const fn word(self) -> Text {
         match self {
@@ -42,4 +34,48 @@ impl Cause {
             Self::Watchdog => Text::CauseWatchdog,
         }
     }
+}
+
+/// What the servos are doing: all that has to survive a reset for the next program to
+/// take them over without a leap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stance {
+    /// Whether there are no pulses.
+    pub resting: bool,
+    /// Frames since pulses began, up to [`crate::motion::AWAKE`]; servos wake one
+    /// after the other.
+    pub awake: u8,
+    /// Restarts in a row that a weak supply may have made, up to
+    /// [`crate::supervisor::BROWN_OUTS`].
+    pub brown_outs: u8,
+    /// The pose.
+    pub pose: Pose,
+    /// The pulses of the last frame, of servos that sleep, too. They may belong to a
+    /// calibration that was never saved.
+    pub sent: Pulses,
+}
+
+/// What is known at the beginning.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Restart {
+    /// Why.
+    pub cause: Cause,
+    /// How many times since power came on; stays at 255.
+    pub count: u8,
+    /// Whether it may have been a weak supply: a brown-out, or a reset behind a boot
+    /// loader that does not tell one from the other.
+    pub may_be_supply: bool,
+    /// What the servos did until then, if that is known. Never after
+    /// [`Cause::Power`].
+    pub before: Option<Stance>,
+}
+
+impl Restart {
+    /// Power came on, and nothing is known.
+    pub const NONE: Self = Self {
+        cause: Cause::Power,
+        count: 0,
+        may_be_supply: false,
+        before: None,
+    };
 }

@@ -12,7 +12,7 @@ use crate::calibration::Calibration;
 use crate::five_bar::FiveBar;
 use crate::gait::{Gait, GaitId, Name, Wave};
 use crate::limits::Limits;
-use crate::part::{End, Side};
+use crate::part::{End, Servo, Side};
 use crate::point_to_point::Slew;
 use crate::slider::Slider;
 use crate::supply::Supplies;
@@ -36,9 +36,9 @@ pub trait Robot {
     /// The servos' angles in the neutral pose.
     fn neutral(&self) -> [Angle; 4];
 
-    /// One servo of [`Robot::neutral`], by its place.
-    fn neutral_of(&self, place: usize) -> Angle {
-        self.neutral()[place & 3]
+    /// One servo of [`Robot::neutral`].
+    fn neutral_of(&self, servo: Servo) -> Angle {
+        *servo.of(&self.neutral())
     }
 
     /// The servos' pulses and travel, as robot.toml has them.
@@ -53,19 +53,13 @@ pub trait Robot {
     /// The waveforms that gaits share.
     fn waves(&self) -> Flash<'_, [Wave]>;
 
-    /// One servo of [`Robot::calibration`], by its place.
-    fn servo(&self, place: usize) -> Calibration {
-        let [a1, a2, a3, a4] = self.calibration();
-        match place {
-            0 => a1,
-            1 => a2,
-            2 => a3,
-            _ => a4,
-        }
+    /// One servo of [`Robot::calibration`].
+    fn servo(&self, servo: Servo) -> Calibration {
+        *servo.of(&self.calibration())
     }
 
-    /// The sweeps that the gaits and the neutral pose need of a servo, by its place.
-    fn reach(&self, place: usize) -> Reach;
+    /// The sweeps that the gaits and the neutral pose need of a servo.
+    fn reach(&self, servo: Servo) -> Reach;
 
     /// The supplies that are measured, and what their voltages mean.
     fn supplies(&self) -> Supplies;
@@ -109,8 +103,8 @@ impl<R: Robot + ?Sized> Robot for &R {
         (**self).neutral()
     }
 
-    fn neutral_of(&self, place: usize) -> Angle {
-        (**self).neutral_of(place)
+    fn neutral_of(&self, servo: Servo) -> Angle {
+        (**self).neutral_of(servo)
     }
 
     fn calibration(&self) -> [Calibration; 4] {
@@ -129,12 +123,12 @@ impl<R: Robot + ?Sized> Robot for &R {
         (**self).waves()
     }
 
-    fn servo(&self, place: usize) -> Calibration {
-        (**self).servo(place)
+    fn servo(&self, servo: Servo) -> Calibration {
+        (**self).servo(servo)
     }
 
-    fn reach(&self, place: usize) -> Reach {
-        (**self).reach(place)
+    fn reach(&self, servo: Servo) -> Reach {
+        (**self).reach(servo)
     }
 
     fn supplies(&self) -> Supplies {
@@ -176,10 +170,10 @@ mod tests {
         assert_eq!((&reference).slew(), robot.slew);
         assert_eq!((&reference).neutral(), robot.neutral);
         assert_eq!((&reference).calibration(), robot.calibration);
-        for place in 0..4 {
-            assert_eq!((&reference).reach(place), robot.reach[place]);
-            assert_eq!((&reference).servo(place), robot.calibration[place]);
-            assert_eq!((&reference).neutral_of(place), robot.neutral[place]);
+        for servo in Servo::ALL {
+            assert_eq!((&reference).reach(servo), *servo.of(&robot.reach));
+            assert_eq!((&reference).servo(servo), *servo.of(&robot.calibration));
+            assert_eq!((&reference).neutral_of(servo), *servo.of(&robot.neutral));
         }
         assert_eq!((&reference).supplies(), robot.supplies);
         assert_eq!((&reference).hash(), robot.hash);

@@ -1,4 +1,10 @@
-//! Integer square root, for the one root that the five-bar's closed form needs.
+//! A square root and a quotient, in integers and bit by bit.
+//!
+//! The five-bar's closed form needs one root; a voltage and the end of a travel are
+//! quotients. The chip has neither, and the compiler's own division of 32 bits takes a
+//! kilobyte.
+
+use lizard_avr::mul_unsigned;
 
 /// The largest integer whose square is at most `square`.
 ///
@@ -18,6 +24,22 @@ pub const fn root(square: u32) -> u16 {
         bit >>= 2;
     }
     root as u16
+}
+
+/// `dividend / divisor`, rounded down; 65535 where it is more, or the divisor 0.
+#[inline(never)]
+pub fn quotient(dividend: u32, divisor: u16) -> u16 {
+    let (mut rest, mut quotient) = (dividend, 0);
+    let mut bit = 1u16 << 15;
+    while bit > 0 {
+        let part = mul_unsigned(divisor, bit);
+        if rest >= part {
+            rest -= part;
+            quotient |= bit;
+        }
+        bit >>= 1;
+    }
+    quotient
 }
 
 #[cfg(test)]
@@ -44,6 +66,17 @@ mod tests {
         #[test]
         fn any_root_is_the_largest_integer_whose_square_is_no_more(square: u32) {
             prop_assert!(is_root(square));
+        }
+
+        #[test]
+        fn a_quotient_is_that_of_the_processor_as_far_as_sixteen_bits_go(
+            dividend: u32,
+            divisor: u16,
+        ) {
+            let exact = dividend.checked_div(divisor.into());
+            let expected = exact.map_or(u16::MAX, |exact| exact.min(u16::MAX.into()) as u16);
+            prop_assert_eq!(quotient(dividend, divisor), expected);
+            prop_assert_eq!(quotient(dividend >> 14, divisor | 1), (dividend >> 14).div_euclid(u32::from(divisor | 1)).min(65535) as u16);
         }
     }
 }

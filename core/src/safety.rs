@@ -1,11 +1,13 @@
 //! What may go wrong beside a pose, watched every frame: the supply, the line, the
 //! pulses, the stack. And what the robot does unasked after power-on.
 //!
-//! A fault stops the motion and is kept until somebody tells the robot to move
-//! again. Nothing here ever begins a motion by itself, but for the one that
-//! `boot` asks for, three seconds after power-on.
+//! What follows from what is the [`supervisor`]'s table. A fault stops the motion and
+//! is kept until somebody tells the robot to move again. Nothing here ever begins a
+//! motion by itself, but for the one that `boot` asks for, three seconds after the
+//! start.
 
 use crate::fault::{Fault, Led};
+use crate::supervisor::{self, Event, Response, State};
 use crate::supply::{Level, Reading, Supplies, Supply};
 use crate::units::FRAMES_PER_SECOND;
 
@@ -33,15 +35,15 @@ impl Default for Health {
 
 /// What a frame asks for; of several, the last of this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Order {
+pub enum Reaction {
     /// Nothing.
     None,
     /// Do what `boot` says.
     Boot,
     /// Freeze.
-    Stop,
+    Freeze,
     /// End the pulses.
-    Rest,
+    EndPulses,
 }
 
 /// What is watched.
@@ -67,6 +69,8 @@ pub struct Safety {
 pub enum Notice {
     /// What was found in the memory at power-on.
     Memory,
+    /// The memory has not kept the pose of a rest.
+    NotKept,
     /// A fault.
     Fault,
     /// The supply's level has changed.
@@ -76,7 +80,13 @@ pub enum Notice {
 }
 
 /// In the order in which they are written.
-const NOTICES: [Notice; 4] = [Notice::Memory, Notice::Fault, Notice::Supply, Notice::Boot];
+const NOTICES: [Notice; 5] = [
+    Notice::Memory,
+    Notice::NotKept,
+    Notice::Fault,
+    Notice::Supply,
+    Notice::Boot,
+];
 
 /// Milliseconds of a frame.
 const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
@@ -120,56 +130,79 @@ impl Safety {
         self.lit
     }
 
-    /// Whether the supply allows a motion.
-    pub fn allows_motion(&self) -> bool {
-        self.supply.level() < Level::Stop
+    /// Whether the supply allows gaits no more than half their pace.
+    pub fn is_slow(&self) -> bool {
+        self.supply.level() > Level::Good
     }
 
-    /// Whether the supply allows to write the memory.
+    /// Whether the supply allows to write the memory. Not before it was measured.
     pub fn allows_writing(&self) -> bool {
-        self.supply.level() == Level::Good
+        self.supply.measured() == Some(Level::Good)
     }
 
-    /// One frame on. `walks` says whether a gait other than `stand` is under way,
-    /// which ends after `deadman` milliseconds without a line (0: never).
+    /// What follows from an event.
+    #[inline(never)]
+    pub fn response(&self, event: Event, state: State) -> Response {
+        supervisor::response(event, self.supply.measured(), state)
+    }
+
+    /// One frame on. A gait ends after `deadman` milliseconds without a line (0:
+    /// never), and no sooner.
     pub fn frame(
         &mut self,
         health: &Health,
         supplies: &Supplies,
-        walks: bool,
+        state: State,
         deadman: u16,
-    ) -> Order {
-        let mut order = Order::None;
+    ) -> Reaction {
+        let mut reaction = Reaction::None;
         self.silence = self.silence.saturating_add(FRAME_MS);
         if self.boot > 0 {
             self.boot -= 1;
-            if self.boot == 0 && self.fault.is_none() && self.allows_motion() {
+            if self.boot == 0
+                && self.fault.is_none()
+                && self.response(Event::Boot, state) == Response::Obey
+            {
                 self.silence = 0;
-                order = Order::Boot;
+                reaction = Reaction::Boot;
             }
         }
-        if walks && deadman != 0 && self.silence >= deadman {
-            order = order.max(self.fail(Fault::Link));
+        // The line came at some time in the first of these frames.
+        if deadman != 0 && self.silence.saturating_sub(FRAME_MS) >= deadman {
+            reaction = reaction.max(self.meet(Event::Silence, state));
         }
         if self.supply.measure(health.supply, supplies) {
             self.notify(Notice::Supply);
-            match self.supply.level() {
-                Level::Good | Level::Slow => {}
-                Level::Stop => order = order.max(self.fail(Fault::Supply)),
-                Level::Rest => {
-                    self.fail(Fault::Supply);
-                    order = Order::Rest;
-                }
-            }
+            reaction = reaction.max(match self.supply.level() {
+                Level::Good | Level::Slow => Reaction::None,
+                Level::Stop => self.meet(Event::TooLow, state),
+                Level::Rest => self.meet(Event::Empty, state),
+            });
         }
         if health.late != self.late {
             self.late = health.late;
-            order = order.max(self.fail(Fault::Late));
+            reaction = reaction.max(self.meet(Event::LateEdge, state));
         }
         if !health.stack_is_intact && self.fault != Some(Fault::Stack) {
-            order = order.max(self.fail(Fault::Stack));
+            reaction = reaction.max(self.meet(Event::Stack, state));
         }
-        order
+        reaction
+    }
+
+    /// Something has gone wrong: tells it, as the table says.
+    #[inline(never)]
+    fn meet(&mut self, event: Event, state: State) -> Reaction {
+        match self.response(event, state) {
+            Response::Freeze(fault) => {
+                self.fail(fault);
+                Reaction::Freeze
+            }
+            Response::EndPulses(fault) => {
+                self.fail(fault);
+                Reaction::EndPulses
+            }
+            _ => Reaction::None,
+        }
     }
 
     /// The LED's part of a frame; `guard` says whether the guard holds the robot.
@@ -184,10 +217,9 @@ impl Safety {
 
     /// A fault, from now on.
     #[inline(never)]
-    pub fn fail(&mut self, fault: Fault) -> Order {
+    pub fn fail(&mut self, fault: Fault) {
         self.fault = Some(fault);
         self.notify(Notice::Fault);
-        Order::Stop
     }
 
     /// The robot has been told to move.

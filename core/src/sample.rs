@@ -22,7 +22,7 @@ use crate::curve::Table;
 use crate::five_bar::{self, FiveBar};
 use crate::gait::{Channel, Gait, GaitId, SAMPLES, Wave};
 use crate::limits::Limits;
-use crate::part::{End, Side};
+use crate::part::{End, Servo, Side};
 use crate::point_to_point::Slew;
 use crate::pose::Pose;
 use crate::robot::Robot;
@@ -306,8 +306,8 @@ impl Robot for Sample {
         Flash::from(self.waves.as_slice())
     }
 
-    fn reach(&self, place: usize) -> Reach {
-        self.reach[place]
+    fn reach(&self, servo: Servo) -> Reach {
+        *servo.of(&self.reach)
     }
 
     fn supplies(&self) -> Supplies {

@@ -58,8 +58,8 @@ impl Settings {
     pub fn of<R: Robot>(robot: &R) -> Self {
         let mut settings = Self::NONE;
         settings.set_head(robot);
-        for place in 0..4 {
-            settings.set_servo(place, Adjustment::of(&robot.servo(place)));
+        for servo in Servo::ALL {
+            settings.set_servo(servo, Adjustment::of(&robot.servo(servo)));
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
         settings
@@ -73,7 +73,8 @@ impl Settings {
         self.put(HASH + 2, (hash >> 16) as u16);
     }
 
-    /// A pose in the trims of a record for the servos of a robot.
+    /// A record that keeps a pose instead of settings: each servo's sweep is where its
+    /// trim would be.
     #[inline(never)]
     pub fn of_pose<R: Robot>(pose: &Pose, robot: &R) -> Self {
         let mut kept = Self::NONE;
@@ -86,7 +87,7 @@ impl Settings {
         kept
     }
 
-    /// The pose in the trims.
+    /// The pose of [`Settings::of_pose`].
     #[inline(never)]
     pub fn pose(&self) -> Pose {
         let mut pose = Pose::NEUTRAL;
@@ -131,9 +132,9 @@ impl Settings {
         self.bytes[TURN] = turn;
     }
 
-    /// A servo's adjustment, by its place.
-    pub fn servo(&self, place: usize) -> Adjustment {
-        let number = |n: usize| self.get(SERVOS + 8 * (place & 3) + 2 * n) as i16;
+    /// A servo's adjustment.
+    pub fn servo(&self, servo: Servo) -> Adjustment {
+        let number = |n: usize| self.get(SERVOS + 8 * servo.index() + 2 * n) as i16;
         Adjustment {
             trim: Sweep(number(0)),
             gain: number(1),
@@ -143,9 +144,9 @@ impl Settings {
     }
 
     /// Sets a servo's adjustment.
-    pub fn set_servo(&mut self, place: usize, servo: Adjustment) {
-        let numbers = [servo.trim.0, servo.gain, servo.min.0, servo.max.0];
-        let mut at = SERVOS + 8 * (place & 3);
+    pub fn set_servo(&mut self, servo: Servo, set: Adjustment) {
+        let numbers = [set.trim.0, set.gain, set.min.0, set.max.0];
+        let mut at = SERVOS + 8 * servo.index();
         for number in numbers {
             self.put(at, number as u16);
             at += 2;
@@ -158,7 +159,7 @@ impl Settings {
         if kept == 0 {
             return Boot::Rest;
         }
-        let gait = GaitId::all(robot.gaits().len()).find(|id| key(robot, *id) == kept);
+        let gait = GaitId::all(robot.gaits().len()).find(|id| key(robot.name(*id)) == kept);
         Boot::Gait(gait.unwrap_or(GaitId::STAND))
     }
 
@@ -166,7 +167,7 @@ impl Settings {
     pub fn set_boot<R: Robot>(&mut self, boot: Boot, robot: &R) {
         let kept = match boot {
             Boot::Rest => 0,
-            Boot::Gait(id) => key(robot, id),
+            Boot::Gait(id) => key(robot.name(id)),
         };
         self.put(BOOT, kept);
     }
@@ -181,22 +182,19 @@ impl Settings {
         self.put(DEADMAN, ms);
     }
 
-    /// A servo's calibration, by its place.
+    /// A servo's calibration.
     #[inline(never)]
-    pub fn calibration<R: Robot>(&self, place: usize, robot: &R) -> Calibration {
-        self.servo(place).apply(&robot.servo(place))
+    pub fn calibration<R: Robot>(&self, servo: Servo, robot: &R) -> Calibration {
+        self.servo(servo).apply(&robot.servo(servo))
     }
 
     /// The first servo whose travel ends short of the neutral angle or of a gait.
     #[inline(never)]
     pub fn unfit<R: Robot>(&self, robot: &R) -> Option<Servo> {
-        (0..4)
-            .find(|place| {
-                let servo = self.calibration(*place, robot);
-                let needed = robot.reach(*place);
-                servo.min > needed.min || servo.max < needed.max
-            })
-            .map(Servo::at)
+        Servo::ALL.into_iter().find(|servo| {
+            let calibration = self.calibration(*servo, robot);
+            !robot.reach(*servo).is_within(&calibration)
+        })
     }
 
     fn get(&self, at: usize) -> u16 {
@@ -214,11 +212,12 @@ impl Settings {
 }
 
 /// What a gait is kept by: a number made of its name, so that it is found again
-/// when robot.toml has got other gaits. Never 0.
-pub fn key<R: Robot>(robot: &R, id: GaitId) -> u16 {
+/// when robot.toml has got other gaits. Never 0. Whoever makes a robot has checked that
+/// no two of its gaits have the same.
+pub fn key(name: impl Iterator<Item = u8>) -> u16 {
     let mut key = 0u16;
-    for byte in robot.name(id) {
+    for byte in name {
         key = (key << 5).wrapping_sub(key).wrapping_add(byte.into());
     }
-    key | 1
+    key.max(1)
 }

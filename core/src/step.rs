@@ -12,12 +12,14 @@ use core::convert::Infallible;
 use ufmt::uWrite;
 
 use crate::console::{Console, Counters, LONGEST_LINE};
+use crate::control::Control;
 use crate::memory::Memory;
-use crate::pose::{Pose, Pulses};
-use crate::restart::Restart;
+use crate::pose::Pulses;
+use crate::restart::{Restart, Stance};
 use crate::robot::Robot;
 use crate::safety::Health;
 use crate::supply::Reading;
+use crate::units::CYCLES_PER_US;
 
 /// What main needs of a board.
 pub trait Board {
@@ -27,18 +29,31 @@ pub trait Board {
     /// What outlasts power.
     type Memory: Memory;
 
+    /// Bytes that the writer takes without waiting when the line has taken all before;
+    /// at least [`LONGEST_LINE`], for a line is written when there is room for all of
+    /// it.
+    const ROOM: u8;
+
+    /// Steps of a pulse's width in a microsecond; the core counts in 1/16 us.
+    const CYCLES_PER_US: u16;
+
     /// Ticks since power-on, modulo 256; one every 20 ms.
     fn ticks(&self) -> u8;
 
-    /// Hands over the pulses of the next frame.
-    fn submit(&mut self, pulses: Pulses);
+    /// Hands over the pulses of the next frame. Says whether those of the call before
+    /// have been taken over, true at the first call: then the clock and all that makes
+    /// pulses are alive.
+    fn submit(&mut self, pulses: Pulses) -> bool;
 
-    /// Keeps the pose that the servos are held in, if they are, where a reset of the
-    /// processor cannot take it away.
-    fn keep(&mut self, pose: Option<&Pose>);
+    /// Puts off the watchdog, which begins the program anew when it hangs. Once it has
+    /// ended the pulses, nothing may put it off, and main must not go on.
+    fn feed(&mut self);
+
+    /// Keeps what the servos do where a reset of the processor cannot take it away.
+    fn keep(&mut self, stance: &Stance);
 
     /// Why the program began, and what was kept until then.
-    fn restart(&self) -> Restart;
+    fn restart(&self) -> &Restart;
 
     /// The supplies as measured last; begins the next measurement.
     fn supply(&mut self) -> Reading;
@@ -52,23 +67,26 @@ pub trait Board {
     /// Switches the LED on or off.
     fn set_led(&mut self, on: bool);
 
-    /// Bytes that the writer takes at this moment without waiting, at most 255.
+    /// Bytes that the writer takes at this moment without waiting.
     fn room(&self) -> u8;
 
     /// The serial line's writer.
     fn writer(&mut self) -> &mut Self::Writer;
 
-    /// The next byte received, if any.
+    /// The next byte received, if any; [`crate::line::GARBLED`] for one that came
+    /// garbled.
     fn receive(&mut self) -> Option<u8>;
 
     /// Faults counted so far.
     fn counters(&self) -> Counters;
 }
 
-/// The robot, and the ticks that it has computed a frame for.
+/// The robot, somebody at its serial line, and the ticks that it has computed a frame
+/// for.
 #[derive(Debug)]
 pub struct Main<R> {
-    console: Console<R>,
+    control: Control<R>,
+    console: Console,
     ticks: u8,
 }
 
@@ -85,7 +103,8 @@ impl<R: Robot> Main<R> {
     /// A robot; [`Main::begin`] has to follow.
     pub const fn new(robot: R) -> Self {
         Self {
-            console: Console::new(robot),
+            control: Control::new(robot),
+            console: Console::new(),
             ticks: 0,
         }
     }
@@ -93,14 +112,18 @@ impl<R: Robot> Main<R> {
     /// Begins on a board. Once, before the first step.
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, board: &mut B) {
+        const {
+            assert!(B::ROOM >= LONGEST_LINE);
+            assert!(B::CYCLES_PER_US == CYCLES_PER_US);
+        }
         self.ticks = board.ticks();
-        let restart = board.restart();
-        self.console.begin(board.memory(), &restart);
+        let restart = *board.restart();
+        self.control.begin(board.memory(), &restart);
     }
 
-    /// The console.
-    pub const fn console(&self) -> &Console<R> {
-        &self.console
+    /// The robot.
+    pub const fn control(&self) -> &Control<R> {
+        &self.control
     }
 
     /// The most urgent thing that there is to do.
@@ -113,19 +136,25 @@ impl<R: Robot> Main<R> {
                 late: board.counters().late,
                 stack_is_intact: board.stack_is_intact(),
             };
-            board.submit(self.console.frame(&health));
-            board.keep(self.console.motion().held_pose());
-            board.set_led(self.console.is_lit());
-        } else if self.console.has_output() {
+            if board.submit(self.control.frame(&health)) {
+                board.feed();
+            }
+            board.keep(&self.control.stance());
+            board.set_led(self.control.is_lit());
+            self.console.frame();
+        } else if self.console.has_output(&self.control) {
             if board.room() < LONGEST_LINE {
                 return Step::Idle(self.ticks);
             }
             let counters = board.counters();
-            let Ok(()) = self.console.write_line(board.writer(), counters);
-        } else if self.console.is_writing() {
-            self.console.write_memory(board.memory());
+            let out = board.writer();
+            let Ok(()) = self.console.write_line(&mut self.control, out, counters);
+        } else if self.control.is_writing() {
+            if let Some(outcome) = self.control.write_memory(board.memory()) {
+                self.console.done(outcome);
+            }
         } else if let Some(byte) = board.receive() {
-            self.console.receive(byte);
+            self.console.receive(byte, &mut self.control);
         } else {
             return Step::Idle(self.ticks);
         }

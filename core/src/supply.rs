@@ -11,6 +11,8 @@
 
 use lizard_avr::mul_unsigned;
 
+use crate::root::quotient;
+
 /// Steps of the analogue converter.
 const FULL_SCALE: u16 = 1024;
 
@@ -83,14 +85,17 @@ pub struct Supply {
     level: Level,
     /// Frames for which another level has been measured.
     frames: u8,
+    /// Of these levels the one that is nearest to the present one.
+    nearest: Level,
 }
 
-/// A level is left for a worse one after as many frames: a servo's start pulls
+/// A level is left for a worse one that lasts for as many frames: a servo's start pulls
 /// the supply down for a few milliseconds. A reading stands for four frames where the
 /// rail is measured, too, so one that has met such a dip changes nothing.
 const TO_WORSE: u8 = 6;
 
-/// And for a better one after a second of a voltage that much above the threshold.
+/// And for a better one that lasts for a second, by a voltage that much above the
+/// threshold.
 const TO_BETTER: u8 = 50;
 const HYSTERESIS: u16 = 150;
 
@@ -118,25 +123,16 @@ impl Voltage {
 
     /// In hundredths of a volt, rounded down; 0 if unknown.
     pub fn hundredths(self) -> u16 {
-        // Long division; the compiler's own of 32 bits takes a kilobyte. The
-        // divisor is ten times the counts.
-        let step = mul_unsigned(self.counts, 10);
-        if step == 0 {
+        if self.counts == 0 {
             return 0;
         }
-        let (mut rest, mut quotient) = (self.product, 0);
-        let mut bit = 1u16 << 12;
-        while bit > 0 {
-            let part = mul_unsigned(step as u16, bit);
-            if rest >= part {
-                rest -= part;
-                quotient |= bit;
-            }
-            bit >>= 1;
-        }
-        quotient
+        let step = mul_unsigned(self.counts, 10) as u16;
+        quotient(self.product, step).min(MOST_HUNDREDTHS)
     }
 }
+
+/// No reading of a supply that the chip survives gives more.
+const MOST_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
     /// The level of a voltage, `above` the thresholds.
@@ -177,6 +173,7 @@ impl Supply {
             },
             level: Level::Good,
             frames: 0,
+            nearest: Level::Good,
         }
     }
 
@@ -188,6 +185,14 @@ impl Supply {
     /// What the supply allows.
     pub const fn level(&self) -> Level {
         self.level
+    }
+
+    /// The same, once it has been measured.
+    pub const fn measured(&self) -> Option<Level> {
+        match self.reading.reference {
+            0 => None,
+            _ => Some(self.level),
+        }
     }
 
     /// The voltage of the supply that allows less.
@@ -206,7 +211,8 @@ impl Supply {
         }
     }
 
-    /// One frame on; true where the level has changed.
+    /// One frame on; true where the level has changed: to what held for all of the
+    /// frames that a change takes, so that one reading decides nothing.
     pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
         let worse = supplies.level(reading, 0);
@@ -222,11 +228,17 @@ impl Supply {
             self.frames = 0;
             return false;
         }
-        self.frames += 1;
+        let goes_on = self.frames > 0 && (self.nearest > self.level) == (level > self.level);
+        self.nearest = match goes_on {
+            false => level,
+            true if level > self.level => level.min(self.nearest),
+            true => level.max(self.nearest),
+        };
+        self.frames = if goes_on { self.frames + 1 } else { 1 };
         let changed = self.frames >= frames;
         if changed {
             self.frames = 0;
-            self.level = level;
+            self.level = self.nearest;
         }
         changed
     }
@@ -331,6 +343,37 @@ mod tests {
         let mut supply = Supply::default();
         let change = until_change(&mut supply, reading(3.9, 0.0), &SUPPLIES);
         assert_eq!(change, (6, Level::Rest), "all at once, if it falls at once");
+    }
+
+    #[test]
+    fn one_reading_decides_nothing_what_held_for_all_six_frames_counts() {
+        for (others, one, level) in [
+            (4.45, 3.5, Level::Slow),
+            (4.25, 3.5, Level::Stop),
+            (3.5, 4.45, Level::Slow),
+        ] {
+            for odd in 0..6 {
+                let mut supply = Supply::default();
+                for frame in 0..6 {
+                    let volts = if frame == odd { one } else { others };
+                    supply.measure(reading(volts, 0.0), &SUPPLIES);
+                }
+                assert_eq!(supply.level(), level, "{one} V in frame {odd}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_reading_does_not_recover_a_supply_either() {
+        for odd in 0..50 {
+            let mut supply = Supply::default();
+            until_change(&mut supply, reading(4.2, 0.0), &SUPPLIES);
+            for frame in 0..50 {
+                let volts = if frame == odd { 4.5 } else { 5.0 };
+                supply.measure(reading(volts, 0.0), &SUPPLIES);
+            }
+            assert_eq!(supply.level(), Level::Slow, "4.5 V in frame {odd}");
+        }
     }
 
     #[test]

@@ -45,6 +45,7 @@ texts! {
     MemoryDamaged = "# calibration: damaged, robot.toml's is in use";
     MemoryForeign = "# calibration: for other servos, robot.toml's is in use";
     MemoryUnfit = "# calibration: does not suit the gaits, robot.toml's is in use";
+    MemoryNotKept = "# memory: does not keep the pose of this rest";
     NoticeFault = "# fault: ";
     NoticeSupply = "# supply: ";
     NoticeBoot = "# boot: ";
@@ -52,7 +53,8 @@ texts! {
     WhySupply = "the supply is too low to move";
     WhyLink = "no line for as long as deadman says, stopped";
     WhyWatchdog = "the program hung and began anew";
-    WhyLate = "a pulse came late and was dropped, stopped";
+    WhyLate = "a pulse came late, stopped";
+    WhyBrownOut = "the supply broke down several times in a row, resting";
     WhyStack = "the stack has grown into the data, stopped";
     LevelGood = ", good";
     LevelSlow = ", low: half speed, no saving";
@@ -93,6 +95,7 @@ texts! {
     FaultWatchdog = "watchdog";
     FaultLate = "late";
     FaultStack = "stack";
+    FaultBrownOut = "brownout";
     CausePower = "power";
     CauseExternal = "external";
     CauseBrownOut = "brownout";
@@ -101,6 +104,7 @@ texts! {
 
     // Reasons.
     Unknown = "unknown command, send help for the list";
+    Garbled = "the line came garbled, send it again";
     Surplus = "this command takes no argument";
     Incomplete = "this command wants one more word";
     SpeedWants = "speed wants a whole number, 10..100";

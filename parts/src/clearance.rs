@@ -128,9 +128,7 @@ impl Assembly {
         };
         (0..steps.pow(4)).filter_map(move |index| {
             let digit = |place: u32| index / steps.pow(place) % steps;
-            let pose = Pose::from([0, 1, 2, 3].map(|i| angle(i as usize, digit(i))));
-            let solution = robot.lizard().solve(&pose).ok()?;
-            robot.limits().allow(&solution).then_some(solution)
+            robot.accepted([0, 1, 2, 3].map(|i| angle(i as usize, digit(i))))
         })
     }
 }

@@ -321,20 +321,15 @@ impl Assembly {
     /// then others, the nearer first.
     fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
         let from: [f64; 4] = neutral.into();
-        let accepted = |angles: [f64; 4]| {
-            let solution = self.robot().lizard().solve(&angles.into()).ok()?;
-            self.robot().limits().allow(&solution).then_some(solution)
-        };
         let turned =
             |turn: f64| (0..4).flat_map(move |servo| [turn, -turn].map(|turn| (servo, turn)));
         let mut poses: Vec<_> = TURNS
             .into_iter()
             .flat_map(turned)
             .filter_map(|(servo, turn)| {
-                let (low, high) = self.robot().servos()[servo].travel();
                 let mut angles = from;
                 angles[servo] += turn;
-                (low..=high).contains(&turn).then(|| accepted(angles))?
+                self.robot().accepted(angles)
             })
             .collect();
         let away = |solution: &Solution| {

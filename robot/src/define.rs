@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use lizard_core::gait::{LONGEST_NAME, MOST_GAITS};
+use lizard_core::settings::key;
 use lizard_core::word::Word;
 use lizard_kinematics::End;
 
@@ -48,6 +49,7 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
         }
         .at("gait"));
     }
+    check_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
         return Err(Problem::Stand.at("gait"));
     }
@@ -70,6 +72,18 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     } else {
         Err(Problem::Moving.at("gait.stand"))
     }
+}
+
+/// The memory keeps the gait of `boot` by a number made of its name.
+fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
+    let mut known = HashMap::new();
+    for name in names {
+        let written = name.bytes().map(|byte| if byte == b'-' { b' ' } else { byte });
+        if let Some(other) = known.insert(key(written), *name) {
+            return Err(Problem::SameKey(other.to_string()).at(section.path(name)));
+        }
+    }
+    Ok(())
 }
 
 fn check_name(name: &str) -> Result<(), Problem> {

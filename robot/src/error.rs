@@ -223,6 +223,9 @@ pub enum Problem {
         /// How many it may have.
         most: usize,
     },
+    /// A gait name whose number in the memory is that of another one.
+    #[error("is no gait name: the memory would take it for {0} when `boot` begins it, so one of them needs another name")]
+    SameKey(String),
     /// A gait name that is a console command.
     #[error("is no gait name: \"{0}\" is a command of the console")]
     Command(String),

@@ -12,7 +12,7 @@ use lizard_core::calibration::Calibration;
 use lizard_core::five_bar::FiveBar;
 use lizard_core::gait::{Gait, Wave};
 use lizard_core::limits::Limits;
-use lizard_core::part::{End, Side};
+use lizard_core::part::{End, Servo, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
@@ -109,8 +109,8 @@ impl Robot for Firmware {
         Flash::from(self.numbers.tables.waves.as_slice())
     }
 
-    fn reach(&self, place: usize) -> Reach {
-        self.numbers.reach[place & 3]
+    fn reach(&self, servo: Servo) -> Reach {
+        *servo.of(&self.numbers.reach)
     }
 
     fn supplies(&self) -> Supplies {

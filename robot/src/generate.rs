@@ -301,11 +301,11 @@ mod tests {
                 ]
             });
             assert_eq!(of("CALIBRATION"), calibration.concat());
-            let reach = |place| {
-                let reach = firmware.reach(place);
+            let reach = |servo| {
+                let reach = firmware.reach(servo);
                 [reach.min.0, reach.max.0].map(i64::from)
             };
-            assert_eq!(of("REACH"), [0, 1, 2, 3].map(reach).concat());
+            assert_eq!(of("REACH"), lizard_core::part::Servo::ALL.map(reach).concat());
             let supplies = firmware.supplies();
             let board = supplies.board;
             assert_eq!(

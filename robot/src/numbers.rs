@@ -400,8 +400,8 @@ mod tests {
                     }
                 }
             }
-            let reach: [_; 4] = std::array::from_fn(|place| {
-                let reach = firmware.reach(place);
+            let reach = lizard_core::part::Servo::ALL.map(|servo| {
+                let reach = firmware.reach(servo);
                 (reach.min.0, reach.max.0)
             });
             assert_eq!(reach, widest, "{name}");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lizard_core::gait::MOST_WAVES;
-use lizard_kinematics::{Limits, Lizard, Pose, wrap};
+use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
 use crate::audit;
@@ -194,6 +194,17 @@ impl Robot {
     /// The neutral pose.
     pub fn neutral(&self) -> Pose {
         self.measures.neutral().into()
+    }
+
+    /// The robot at servo angles (deg, chassis frame, servo order), if it may take this
+    /// pose: its guard accepts it, and the servos reach it.
+    pub fn accepted(&self, angles: [f64; 4]) -> Option<Solution> {
+        let mut servos = self.servos().iter().zip(angles);
+        if !servos.all(|(servo, angle)| servo.reaches(angle)) {
+            return None;
+        }
+        let solution = self.lizard().solve(&angles.into()).ok()?;
+        self.limits().allow(&solution).then_some(solution)
     }
 
     /// The legs' sweeps (deg, foot forward positive) at servo angles (deg,

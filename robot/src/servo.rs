@@ -1,6 +1,6 @@
 //! The four servos, in the order of every array of this project: A1, A2, A3, A4.
 
-use lizard_kinematics::wrap;
+use lizard_kinematics::{Side, wrap};
 
 use crate::units::STEPS_PER_DEGREE;
 
@@ -16,7 +16,10 @@ pub const FORWARD: [f64; 4] = [-1.0, 1.0, 1.0, -1.0];
 
 /// 1 where the slider's arm of a servo's link stands counter-clockwise from its crank,
 /// else -1.
-pub const HAND: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
+pub const HAND: [f64; 4] = {
+    let (left, right) = (Side::Left.sign(), Side::Right.sign());
+    [left, right, -right, -left]
+};
 
 /// The servo on the other side: left and right exchanged.
 pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
@@ -47,6 +50,12 @@ impl Servo {
         (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
     }
 
+    /// Whether it can turn to a chassis-frame angle, deg.
+    pub fn reaches(&self, angle: f64) -> bool {
+        let (least, most) = self.travel();
+        (least - ROUNDING..=most + ROUNDING).contains(&wrap(angle - self.neutral))
+    }
+
     /// The sweep from neutral that a pulse width (us) asks for, deg,
     /// counter-clockwise positive.
     pub fn sweep(&self, pulse: f64) -> f64 {
@@ -59,6 +68,8 @@ impl Servo {
     }
 }
 
+/// Angles that miss the end of a travel by less, deg, miss it by rounding.
+const ROUNDING: f64 = 1e-9;
 /// The largest sweep that the core holds, deg.
 const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
 
@@ -105,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_sliders_arm_stands_on_the_hand_that_the_kinematics_gives_it() {
-        use lizard_kinematics::{Side, Vector};
+        use lizard_kinematics::Vector;
         let crank = Vector::new(1.0, 0.0);
         for side in Side::ALL {
             let [front, rear] = side.servos();

@@ -13,11 +13,12 @@
 //!   then of the program before, [`stack`] a guard of the data against the stack.
 //! - [`sleep`] stops the processor until a tick or a byte.
 //!
-//! Main never switches interrupts off for more than the few cycles that `sleep`
-//! and a 16-bit load take: what it shares with an interrupt is a byte at a time,
+//! Main never switches interrupts off for more than the few cycles that `sleep`, a
+//! 16-bit load and the begin of an EEPROM write take: what it shares with an interrupt is a byte at a time,
 //! with one writer. Interrupts do not nest. Of the interrupts in use Timer1's
 //! come first in the vector table; INT0, INT1, PCINT, TIMER2 and TIMER1_CAPT would
-//! come before them and are not to be used, and WDT only comes to a program that hangs.
+//! come before them and are not to be used, and WDT only comes to a program that hangs, and does
+//! not return to it.
 
 pub mod eeprom;
 mod kept;
@@ -32,8 +33,8 @@ mod watchdog;
 
 use avr_device::atmega328p::Peripherals;
 use lizard_core::console::Counters;
-use lizard_core::pose::{Pose, Pulses};
-use lizard_core::restart::Restart;
+use lizard_core::pose::Pulses;
+use lizard_core::restart::{Restart, Stance};
 use lizard_core::step::Board;
 use lizard_core::supply::Reading;
 
@@ -78,26 +79,32 @@ impl Board for Uno {
     type Writer = serial::Writer;
     type Memory = eeprom::Eeprom;
 
+    const ROOM: u8 = serial::ROOM;
+    const CYCLES_PER_US: u16 = pulses::CYCLES_PER_US;
+
     #[inline(always)]
     fn ticks(&self) -> u8 {
         pulses::ticks()
     }
 
     #[inline(always)]
-    fn submit(&mut self, pulses: Pulses) {
-        if pulses::submit(pulses) {
-            watchdog::feed();
-        }
+    fn submit(&mut self, pulses: Pulses) -> bool {
+        pulses::submit(pulses)
     }
 
     #[inline(always)]
-    fn keep(&mut self, pose: Option<&Pose>) {
-        kept::keep(pose);
+    fn feed(&mut self) {
+        watchdog::feed();
     }
 
     #[inline(always)]
-    fn restart(&self) -> Restart {
-        self.restart
+    fn keep(&mut self, stance: &Stance) {
+        kept::keep(stance);
+    }
+
+    #[inline(always)]
+    fn restart(&self) -> &Restart {
+        &self.restart
     }
 
     #[inline(always)]

@@ -67,6 +67,9 @@ use crate::robot::PINS as NUMBERS;
 /// fixed distance. At most 255, because the wait is counted in a byte.
 const LEAD: u8 = 220;
 
+/// Timer1 counts every cycle of the UNO's 16 MHz.
+pub const CYCLES_PER_US: u16 = 16;
+
 /// Cycles of a slot, 4 ms; five of them are the 20 ms that a servo expects.
 const SLOT_CYCLES: u16 = 64_000;
 
@@ -183,7 +186,6 @@ pub fn submit(pulses: Pulses) -> bool {
 /// 4 ms. For whoever is about to reset the board, which would cut it short and so
 /// send the servo to its end stop. The tick goes on. One store, right in an
 /// interrupt and anywhere else; only a reset ends it.
-#[allow(dead_code, reason = "for a watchdog")]
 pub fn hush() {
     ALLOWED.set(0);
 }

@@ -9,12 +9,19 @@
 use core::convert::Infallible;
 
 use avr_device::atmega328p::USART0;
+use lizard_core::line::GARBLED;
 
 use super::shared::{Byte, Counter};
 
 /// A whole line: main may look away for 64 bytes, 89 000 cycles, seven times what
 /// a frame may take.
 const RECEIVE: usize = 64;
+
+/// The longest line of the console fits, and numbers modulo 256 are the cheapest.
+const SEND: usize = 256;
+
+/// Bytes that the empty ring takes for sending.
+pub const ROOM: u8 = Ring::<SEND>::CAPACITY;
 
 /// 16 MHz / 8 / (16 + 1) = 117 647 baud, 2.1 % fast; the divisor that the boot
 /// loader uses too.
@@ -34,6 +41,9 @@ impl<const N: usize> Ring<N> {
         (N - 1) as u8
     };
 
+    /// A ring of 256 holds 255, because 256 would look empty.
+    const CAPACITY: u8 = if N == 256 { 255 } else { N as u8 };
+
     const fn new() -> Self {
         Self {
             bytes: [const { Byte::new(0) }; N],
@@ -42,10 +52,9 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Bytes that fit. A ring of 256 holds 255, because 256 would look empty.
+    /// Bytes that fit.
     fn room(&self) -> u8 {
-        let capacity = if N == 256 { 255 } else { N as u8 };
-        capacity - self.head.get().wrapping_sub(self.tail.get())
+        Self::CAPACITY - self.head.get().wrapping_sub(self.tail.get())
     }
 
     fn is_empty(&self) -> bool {
@@ -73,7 +82,7 @@ impl<const N: usize> Ring<N> {
 }
 
 static RECEIVED: Ring<RECEIVE> = Ring::new();
-static TO_SEND: Ring<256> = Ring::new();
+static TO_SEND: Ring<SEND> = Ring::new();
 static LOST: Counter = Counter::new();
 
 /// Sets up the port. With interrupts off, once.
@@ -95,7 +104,7 @@ pub fn start(usart: USART0) {
     listen(&usart, false);
 }
 
-/// The next byte received, if any.
+/// The next byte received, if any; [`GARBLED`] in place of one without its stop bit.
 pub fn read() -> Option<u8> {
     RECEIVED.take()
 }
@@ -116,7 +125,7 @@ pub fn room() -> u8 {
 }
 
 /// Bytes received and lost, because main left them in a full ring or because an
-/// overrun in the receiver dropped at least one. Stays at 65535.
+/// overrun in the receiver dropped at least one, or received garbled. Stays at 65535.
 pub fn lost() -> u16 {
     LOST.read()
 }
@@ -177,14 +186,18 @@ fn USART_RX() {
     // SAFETY: the handler reads UCSR0A and UDR0, which main never touches.
     let usart = unsafe { USART0::steal() };
     // The status belongs to the byte that UDR0 gives next.
-    let overrun = usart.ucsr0a().read().dor0().bit_is_set();
-    let byte = usart.udr0().read().bits();
+    let status = usart.ucsr0a().read();
+    let mut byte = usart.udr0().read().bits();
+    if status.fe0().bit_is_set() {
+        byte = GARBLED;
+        LOST.count();
+    }
     if RECEIVED.room() != 0 {
         RECEIVED.put(byte);
     } else {
         LOST.count();
     }
-    if overrun {
+    if status.dor0().bit_is_set() {
         LOST.count();
     }
 }

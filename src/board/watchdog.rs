@@ -1,9 +1,11 @@
 //! The watchdog: begins the program anew when it hangs.
 //!
 //! It has a clock of its own, 128 kHz. After 125 ms without being fed it interrupts
-//! the program, which then marks in memory that it hung, and lets no further pulse
-//! begin; after 125 ms more it resets the chip (data sheet, section 11.8). So a
-//! pulse is not cut short by the reset, and the program that begins knows why.
+//! the program; after 125 ms more it resets the chip (data sheet, section 11.8). The
+//! interrupt marks in memory that the program hung, lets no further pulse begin, and
+//! never returns: what has hung once is not trusted again, also where it would go on.
+//! Meanwhile the pulses' own interrupts are served, so a pulse is not cut short by
+//! the reset, and the program that begins knows why.
 //!
 //! It is fed only with a frame whose predecessor has been taken over by the pulses:
 //! then main, the clock that woke it and both handlers of the pulses are alive.
@@ -45,4 +47,10 @@ pub fn feed() {
 fn WDT() {
     kept::mark_hung();
     pulses::hush();
+    // SAFETY: every interrupt that is on has its handler. This one does not come again,
+    // for the chip has switched it off by itself, and nothing is returned to.
+    unsafe { avr_device::interrupt::enable() };
+    loop {
+        avr_device::asm::nop();
+    }
 }

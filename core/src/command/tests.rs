@@ -12,36 +12,45 @@ fn read(line: &str) -> Result<Command, Misread> {
 
 /// A word of the console with the numbers that follow it.
 fn word<const N: usize>(word: Word, numbers: [u16; N]) -> Command {
-    let mut command = Command {
-        word: Some(word),
-        ..Command::NONE
-    };
-    command.numbers[..N].copy_from_slice(&numbers);
-    command
+    let number = numbers.first().copied().unwrap_or_default();
+    Command::Order(match word {
+        Word::Help | Word::QuestionMark => return Command::Help,
+        Word::Status => return Command::Status,
+        Word::Cal => return Command::Cal,
+        Word::Watch => return Command::Watch(number),
+        Word::Stop => Order::Stop,
+        Word::Rest => Order::Rest,
+        Word::Center => Order::Center,
+        Word::Save => Order::Save,
+        Word::Load => Order::Load,
+        Word::Factory => Order::Factory,
+        Word::Speed => Order::Speed(number as u8),
+        Word::Deadman => Order::Deadman(number),
+        Word::Pose => Order::Pose(core::array::from_fn(|place| Angle(numbers[place]))),
+        other => panic!("{other:?} has a servo or a name"),
+    })
 }
 
 /// The same of a servo.
 fn adjust<const N: usize>(what: Word, servo: Servo, numbers: [u16; N]) -> Command {
-    Command {
-        servo: servo as u8,
-        ..word(what, numbers)
-    }
+    let setting = match what {
+        Word::Trim => Setting::Trim(Sweep(numbers[0] as i16)),
+        Word::Limit => Setting::Limit(Angle(numbers[0]), Angle(numbers[1])),
+        Word::Dir => Setting::Direct(numbers[0] == 1),
+        Word::Scale => Setting::Scale(numbers[0]),
+        other => panic!("{other:?} is no setting"),
+    };
+    Command::Order(Order::Set(servo, setting))
 }
 
 /// `boot` with a gait, or with `rest`.
 fn boot(gait: Option<GaitId>) -> Command {
-    Command {
-        gait,
-        ..word(Word::Boot, [])
-    }
+    Command::Order(Order::Boot(gait.map_or(Boot::Rest, Boot::Gait)))
 }
 
 /// The name of a gait.
 fn gait_of(gait: GaitId) -> Command {
-    Command {
-        gait: Some(gait),
-        ..Command::NONE
-    }
+    Command::Order(Order::Gait(gait))
 }
 
 #[test]
@@ -375,7 +384,8 @@ fn pose_with(place: usize, angle: &str) -> String {
 
 fn angle_read(place: usize, angle: &str) -> Result<i32, Misread> {
     match thread_robot(|robot| parse(pose_with(place, angle).as_bytes(), robot)) {
-        Ok(command) => Ok(Angle(command.numbers[place]).centideg().into()),
+        Ok(Command::Order(Order::Pose(angles))) => Ok(angles[place].centideg().into()),
+        Ok(other) => panic!("{other:?}"),
         Err(misread) => Err(misread),
     }
 }
@@ -438,11 +448,10 @@ fn what_is_no_angle_is_not_taken_for_one() {
 
 #[test]
 fn four_angles_go_to_the_servos_in_their_order_and_the_first_too_large_is_named() {
-    let Ok(command) = read("pose 138.59   41.42\t318.60 221.44") else {
+    let Ok(Command::Order(Order::Pose(angles))) = read("pose 138.59   41.42\t318.60 221.44") else {
         panic!("a pose");
     };
-    assert_eq!(command.word, Some(Word::Pose));
-    let centideg = command.numbers.map(|angle| Angle(angle).centideg());
+    let centideg = angles.map(Angle::centideg);
     assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
     assert_eq!(
         read("pose 1 361 3 -400"),

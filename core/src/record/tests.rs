@@ -5,6 +5,7 @@ use std::vec::Vec;
 use super::*;
 use crate::gait::GaitId;
 use crate::memory::{ERASED, LENGTH, Progress};
+use crate::part::Servo;
 use crate::sample::{Chip, Sample};
 use crate::settings::Boot;
 use crate::units::Sweep;
@@ -16,12 +17,12 @@ fn robot() -> Sample {
 /// Settings that differ in everything, the `n`-th of them.
 fn settings(robot: &Sample, n: i16) -> Settings {
     let mut settings = Settings::of(robot);
-    for place in 0..4 {
-        let mut set = settings.servo(place);
-        set.trim = Sweep(37 * n - 5 * place as i16);
+    for servo in Servo::ALL {
+        let mut set = settings.servo(servo);
+        set.trim = Sweep(37 * n - 5 * servo as i16);
         set.min.0 += n;
         set.max.0 -= 2 * n;
-        settings.set_servo(place, set);
+        settings.set_servo(servo, set);
     }
     settings.set_deadman(1000 + n as u16);
     settings.set_boot(Boot::Gait(robot.id("sway left")), robot);
@@ -216,9 +217,9 @@ fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     let robot = robot();
     let mut chip = Chip::blank();
     let mut narrow = settings(&robot, 1);
-    let mut set = narrow.servo(2);
+    let mut set = narrow.servo(Servo::A3);
     set.max = Sweep(robot.reach[2].max.0 - 1);
-    narrow.set_servo(2, set);
+    narrow.set_servo(Servo::A3, set);
     save_all(&narrow, &mut chip);
     let found = loaded(&robot, &chip);
     assert_eq!(found, (Settings::of(&robot), Outcome::Unfit));

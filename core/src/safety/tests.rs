@@ -15,8 +15,8 @@ fn without_boot() -> Safety {
     safety
 }
 
-fn frame(safety: &mut Safety, health: &Health) -> Order {
-    safety.frame(health, &supplies(), false, 0)
+fn frame(safety: &mut Safety, health: &Health) -> Reaction {
+    safety.frame(health, &supplies(), State::Still, 0)
 }
 
 /// A board at so many volts, its rail at 6 V.
@@ -44,11 +44,27 @@ fn notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
 fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
     let mut safety = without_boot();
     for _ in 0..1000 {
-        assert_eq!(frame(&mut safety, &WELL), Order::None);
+        assert_eq!(frame(&mut safety, &WELL), Reaction::None);
     }
     assert_eq!(safety.fault(), None);
     assert_eq!(safety.notice(), None);
-    assert!(safety.allows_motion() && safety.allows_writing());
+    assert!(!safety.is_slow() && safety.allows_writing());
+}
+
+#[test]
+fn before_the_supply_has_been_measured_a_robot_may_move_and_not_write() {
+    let mut safety = without_boot();
+    for _ in 0..20 {
+        frame(&mut safety, &Health::default());
+        assert!(!safety.allows_writing());
+        assert_eq!(
+            safety.response(Event::Save, State::Still),
+            Response::RefuseSupply
+        );
+        assert_eq!(safety.response(Event::Move, State::Still), Response::Obey);
+    }
+    frame(&mut safety, &WELL);
+    assert!(safety.allows_writing());
 }
 
 #[test]
@@ -57,9 +73,9 @@ fn boot_is_asked_for_once_three_seconds_after_power_on() {
     for number in 1..=1000 {
         let order = frame(&mut safety, &WELL);
         let expected = if number == 150 {
-            Order::Boot
+            Reaction::Boot
         } else {
-            Order::None
+            Reaction::None
         };
         assert_eq!(order, expected, "{number}");
     }
@@ -71,7 +87,7 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
         let mut safety = Safety::default();
         let mut booted = false;
         for number in 1..=400 {
-            booted |= frame(&mut safety, &WELL) == Order::Boot;
+            booted |= frame(&mut safety, &WELL) == Reaction::Boot;
             if number == 100 {
                 disturb(&mut safety);
             }
@@ -80,7 +96,7 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
     };
     assert!(boots(|_| {}));
     assert!(!boots(Safety::byte_came));
-    assert!(!boots(|safety| _ = safety.fail(Fault::Late)));
+    assert!(!boots(|safety| safety.fail(Fault::Late)));
     assert!(!boots(|safety| {
         for _ in 0..6 {
             frame(safety, &at(4.2));
@@ -90,16 +106,22 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
 }
 
 #[test]
-fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
-    for deadman in [20u16, 100, 1000, 60_000] {
+fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner() {
+    for deadman in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = without_boot();
         for _ in 0..10 {
             safety.line_came();
             let mut frames = 0;
-            while safety.frame(&WELL, &supplies(), true, deadman) == Order::None {
+            while safety.frame(&WELL, &supplies(), State::Walking, deadman) == Reaction::None {
                 frames += 1;
             }
-            assert_eq!(frames + 1, u32::from(deadman).div_ceil(20));
+            // A line may come just before a frame: so many milliseconds have passed since,
+            // in this frame and in the one before.
+            let (least, before) = (20 * frames, 20 * frames - 20);
+            assert!(
+                least >= u32::from(deadman) && before < u32::from(deadman),
+                "{frames}"
+            );
             assert_eq!(safety.fault(), Some(Fault::Link));
             safety.clear();
         }
@@ -110,9 +132,34 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
 fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
     let mut safety = without_boot();
     for _ in 0..5000 {
-        assert_eq!(safety.frame(&WELL, &supplies(), true, 0), Order::None);
-        assert_eq!(safety.frame(&WELL, &supplies(), false, 20), Order::None);
+        for (state, deadman) in [
+            (State::Walking, 0),
+            (State::Still, 20),
+            (State::Resting, 20),
+        ] {
+            let reaction = safety.frame(&WELL, &supplies(), state, deadman);
+            assert_eq!(reaction, Reaction::None);
+        }
     }
+}
+
+#[test]
+fn boot_begins_a_gait_that_no_line_ends_before_deadman_has_passed() {
+    let mut safety = Safety::default();
+    let mut state = State::Still;
+    let mut booted = 0;
+    for number in 1..400 {
+        match safety.frame(&WELL, &supplies(), state, 1000) {
+            Reaction::Boot => (state, booted) = (State::Walking, number),
+            Reaction::None => {}
+            other => {
+                assert_eq!(other, Reaction::Freeze);
+                assert_eq!((booted, number), (150, 150 + 51));
+                return;
+            }
+        }
+    }
+    panic!("it never ends");
 }
 
 #[test]
@@ -123,15 +170,15 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
         (
             orders[5],
             safety.fault(),
-            safety.allows_motion(),
+            safety.response(Event::Move, State::Still) == Response::Obey,
             safety.allows_writing(),
             notices(&mut safety).len(),
         )
     };
     let supply = Some(Fault::Supply);
-    assert_eq!(run(4.4), (Order::None, None, true, false, 1));
-    assert_eq!(run(4.2), (Order::Stop, supply, false, false, 2));
-    assert_eq!(run(4.0), (Order::Rest, supply, false, false, 2));
+    assert_eq!(run(4.4), (Reaction::None, None, true, false, 1));
+    assert_eq!(run(4.2), (Reaction::Freeze, supply, false, false, 2));
+    assert_eq!(run(4.0), (Reaction::EndPulses, supply, false, false, 2));
 }
 
 #[test]
@@ -139,10 +186,10 @@ fn each_late_edge_stops_and_is_told() {
     let mut safety = without_boot();
     for late in [1, 2, 7, 65_535] {
         let health = Health { late, ..WELL };
-        assert_eq!(frame(&mut safety, &health), Order::Stop);
+        assert_eq!(frame(&mut safety, &health), Reaction::Freeze);
         assert_eq!(safety.fault(), Some(Fault::Late));
         assert_eq!(notices(&mut safety), [Notice::Fault]);
-        assert_eq!(frame(&mut safety, &health), Order::None, "once");
+        assert_eq!(frame(&mut safety, &health), Reaction::None, "once");
     }
 }
 
@@ -154,23 +201,23 @@ fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
         ..WELL
     };
     for _ in 0..3 {
-        assert_eq!(frame(&mut safety, &health), Order::Stop);
+        assert_eq!(frame(&mut safety, &health), Reaction::Freeze);
         assert_eq!(safety.fault(), Some(Fault::Stack));
         for _ in 0..100 {
-            assert_eq!(frame(&mut safety, &health), Order::None);
+            assert_eq!(frame(&mut safety, &health), Reaction::None);
         }
         safety.clear();
     }
 }
 
 #[test]
-fn of_two_orders_at_once_the_stronger_one_counts() {
+fn of_two_reactions_at_once_the_stronger_one_counts() {
     let mut safety = without_boot();
     for _ in 0..5 {
         frame(&mut safety, &at(4.0));
     }
     let health = Health { late: 1, ..at(4.0) };
-    assert_eq!(frame(&mut safety, &health), Order::Rest);
+    assert_eq!(frame(&mut safety, &health), Reaction::EndPulses);
 }
 
 #[test]
@@ -181,10 +228,17 @@ fn what_is_said_unasked_comes_in_one_order_each_once() {
         Notice::Memory,
         Notice::Supply,
         Notice::Fault,
+        Notice::NotKept,
         Notice::Boot,
     ] {
         safety.notify(notice);
     }
-    let expected = [Notice::Memory, Notice::Fault, Notice::Supply, Notice::Boot];
+    let expected = [
+        Notice::Memory,
+        Notice::NotKept,
+        Notice::Fault,
+        Notice::Supply,
+        Notice::Boot,
+    ];
     assert_eq!(notices(&mut safety), expected);
 }

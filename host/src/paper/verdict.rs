@@ -4,9 +4,6 @@
 use lizard_kinematics::{Pose, Solution, wrap};
 use lizard_robot::{Robot, servo};
 
-/// Angles that miss the end of a travel by less, deg, miss it by rounding.
-const ROUNDING: f64 = 1e-9;
-
 /// Every reason why the robot may not take a solved pose, each as a sentence;
 /// none if the pose is safe.
 pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
@@ -25,10 +22,10 @@ pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String>
 
 /// A sentence if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
 pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
-    let neutral = robot.servos()[servo].neutral;
-    let sweep = wrap(angle - neutral);
-    let (least, most) = robot.servos()[servo].travel();
-    (sweep < least - ROUNDING || sweep > most + ROUNDING).then(|| {
+    let of = &robot.servos()[servo];
+    (!of.reaches(angle)).then(|| {
+        let (neutral, (least, most)) = (of.neutral, of.travel());
+        let sweep = wrap(angle - neutral);
         format!(
             "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg, its travel is {:.1} to {:.1} deg",
             servo::NAMES[servo],

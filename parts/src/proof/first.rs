@@ -6,11 +6,10 @@
 //! at the edge of what the guard accepts, in every direction from neutral. If some meet,
 //! only the worst are bounded.
 
-use lizard_kinematics::{Pose, Solution};
+use lizard_kinematics::Solution;
 use lizard_robot::Robot;
 
 use super::solids::Task;
-use super::{LEAST, TOUCH};
 use crate::assembly::Assembly;
 
 /// Angles of each servo on the grid.
@@ -23,7 +22,7 @@ const WORST: usize = 3;
 /// Of some tasks those whose parts meet most, if any are seen to meet.
 pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
-    let mut poses: Vec<Solution> = solve(robot, robot.neutral()).into_iter().collect();
+    let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
     poses.extend((0..81).filter_map(|direction| edge(robot, direction)));
     poses.extend(assembly.poses(STEPS));
     let least = |task: &Task| {
@@ -31,7 +30,7 @@ pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
         at.fold(f64::INFINITY, f64::min)
     };
     let all = tasks.iter().map(|task| (least(task), task));
-    let mut found: Vec<_> = all.filter(|(mm, task)| *mm < allowed(task)).collect();
+    let mut found: Vec<_> = all.filter(|(mm, task)| *mm < task.least()).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let found: Vec<_> = found
         .into_iter()
@@ -41,11 +40,6 @@ pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     (!found.is_empty()).then_some(found)
 }
 
-/// Nearer than this they must not come, mm.
-fn allowed(task: &Task) -> f64 {
-    if task.meet { -TOUCH } else { LEAST }
-}
-
 /// How near a task's parts are at a pose, mm, if nearer than they may be.
 fn seen(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
@@ -53,7 +47,7 @@ fn seen(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let near = task
         .solids
         .iter()
-        .filter(|solid| !solid.far(&place, [0.0; 2], allowed(task)));
+        .filter(|solid| !solid.far(&place, [0.0; 2], task.least()));
     near.map(|solid| solid.apart(&place))
         .fold(f64::INFINITY, f64::min)
 }
@@ -66,12 +60,7 @@ fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
         let (low, high) = robot.servos()[servo].travel();
         [low, 0.0, high][(direction / 3_u32.pow(servo as u32) % 3) as usize]
     });
-    let at = |share: f64| {
-        solve(
-            robot,
-            [0, 1, 2, 3].map(|i| from[i] + share * ends[i]).into(),
-        )
-    };
+    let at = |share: f64| robot.accepted([0, 1, 2, 3].map(|i| from[i] + share * ends[i]));
     let (mut within, mut beyond) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let share = (within + beyond) / 2.0;
@@ -82,9 +71,4 @@ fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
         }) = share;
     }
     at(within)
-}
-
-fn solve(robot: &Robot, pose: Pose) -> Option<Solution> {
-    let solution = robot.lizard().solve(&pose).ok()?;
-    robot.limits().allow(&solution).then_some(solution)
 }

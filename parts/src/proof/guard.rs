@@ -237,7 +237,7 @@ impl<'a> Guard<'a> {
         let or = |of: fn(&lizard_robot::Servo) -> f64| {
             ALL.map(|servo| angles[servo].unwrap_or(of(&self.robot.servos()[servo])))
         };
-        if let Some(pose) = self.accepted(or(|servo| servo.neutral).into()) {
+        if let Some(pose) = self.robot.accepted(or(|servo| servo.neutral)) {
             return Some(pose);
         }
         let bounds = ALL.map(|servo| match angles[servo] {
@@ -247,7 +247,7 @@ impl<'a> Guard<'a> {
         let mut regions = VecDeque::from([Region::of(bounds)]);
         for _ in 0..ATTEMPTS {
             let region: Region<4> = regions.pop_front()?;
-            if let Some(pose) = self.accepted(region.middle.into()) {
+            if let Some(pose) = self.robot.accepted(region.middle) {
                 return Some(pose);
             }
             if !self.refuses(&ALL, &region) {
@@ -259,15 +259,4 @@ impl<'a> Guard<'a> {
         None
     }
 
-    fn accepted(&self, pose: Pose) -> Option<Solution> {
-        let angles: [f64; 4] = pose.into();
-        for (servo, angle) in self.robot.servos().iter().zip(angles) {
-            let (low, high) = servo.travel();
-            if !(low..=high).contains(&(angle - servo.neutral)) {
-                return None;
-            }
-        }
-        let solution = self.robot.lizard().solve(&pose).ok()?;
-        self.robot.limits().allow(&solution).then_some(solution)
-    }
 }

@@ -158,8 +158,7 @@ impl Assembly {
     /// How near any two parts come at any pose that the guard accepts; whether that is
     /// near enough to fit, [`Proof::judge`] says. If parts are seen to meet already at one
     /// of some poses, it is of the worst of them alone; else it ends at the first that do
-    /// not fit. `progress` is called with what is
-    /// done and what there is to do.
+    /// not fit. `progress` is called with what is done and what there is to do.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
         self.prove_some(|_, _| true, progress)
     }
@@ -199,8 +198,7 @@ impl Assembly {
                 let found = search::least(self, &guard, &task, most);
                 proof.regions += found.regions;
                 let near = self.near(found);
-                let least = if task.meet { -TOUCH } else { LEAST };
-                let clash = near.clash(least);
+                let clash = near.clash(task.least());
                 list.push(near);
                 // One is enough, and where parts hardly fit each takes long.
                 match clash {

@@ -8,7 +8,7 @@ use lizard_kinematics::Vector;
 
 use super::guard::{Guard, Region};
 use super::slope::Slope;
-use super::sweep;
+use super::{LEAST, TOUCH, sweep};
 use crate::assembly::Assembly;
 use crate::body::{Body, Mount, Prism};
 use crate::place::Place;
@@ -48,6 +48,11 @@ pub struct Task {
 }
 
 impl Task {
+    /// Nearer than this its parts must not come, mm.
+    pub fn least(&self) -> f64 {
+        if self.meet { -TOUCH } else { LEAST }
+    }
+
     /// The servos that decide how the two stand to each other.
     pub fn servos(&self) -> Vec<usize> {
         let mut all: Vec<_> = self.mounts.iter().flat_map(|of| of.servos()).collect();

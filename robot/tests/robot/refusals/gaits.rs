@@ -34,6 +34,11 @@ mirror = "walk""#,
         "gait.walk- is no gait name: a dash stands for a blank between two words",
     ),
     (
+        "[gait.crawl]",
+        "[gait.go-an]\nreverse = \"walk\"\n\n[gait.go-c0]\nreverse = \"walk\"\n\n[gait.crawl]",
+        "gait.go-c0 is no gait name: the memory would take it for go-an when `boot` begins it, so one of them needs another name",
+    ),
+    (
         "[gait.walk]",
         "[gait.status]",
         r#"gait.status is no gait name: "status" is a command of the console"#,

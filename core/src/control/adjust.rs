@@ -1,0 +1,79 @@
+//! How settings of the servos take effect: at once, and only if the robot can still do
+//! everything that it does and go where it goes.
+
+use super::Control;
+use crate::calibration::Calibration;
+use crate::order::Setting;
+use crate::part::Servo;
+use crate::refusal::Refusal;
+use crate::robot::Robot;
+use crate::settings::Settings;
+
+impl<R: Robot> Control<R> {
+    /// Sets something of a servo.
+    #[inline(never)]
+    pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
+        let mut set = self.settings.servo(servo);
+        match setting {
+            Setting::Trim(trim) => set.trim = trim,
+            Setting::Direct(direct) => set.set_direct(direct),
+            Setting::Scale(scale) => set.set_scale(scale),
+            Setting::Limit(clockwise, counter_clockwise) => {
+                let neutral = self.motion.robot().neutral_of(servo);
+                set.min = neutral.sweep_to(clockwise);
+                set.max = neutral.sweep_to(counter_clockwise);
+            }
+        }
+        let calibration = set.apply(&self.motion.robot().servo(servo));
+        self.fits(servo, &calibration)?;
+        self.reaches(servo, &calibration)?;
+        self.settings.set_servo(servo, set);
+        self.motion.calibrate(servo, calibration);
+        self.motion.settle();
+        Ok(())
+    }
+
+    /// Takes other settings.
+    #[inline(never)]
+    pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
+        let mut calibration = *self.motion.calibration();
+        for servo in Servo::ALL {
+            let servos = servo.of_mut(&mut calibration);
+            *servos = settings.calibration(servo, self.motion.robot());
+            self.fits(servo, servos)?;
+        }
+        for servo in Servo::ALL {
+            self.reaches(servo, servo.of(&calibration))?;
+        }
+        self.settings = *settings;
+        self.motion.calibrate_all(&calibration);
+        self.motion.settle();
+        Ok(())
+    }
+
+    /// An error where a gait leaves a servo's travel.
+    #[inline(never)]
+    fn fits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
+        match self.motion.robot().reach(servo).is_within(calibration) {
+            true => Ok(()),
+            false => Err(Refusal::Unfit(servo)),
+        }
+    }
+
+    /// An error where the robot is beyond a servo's travel, or goes there.
+    #[inline(never)]
+    fn reaches(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
+        match self.motion.goes_beyond(servo, calibration) {
+            false => Ok(()),
+            true => Err(Refusal::Elsewhere(servo)),
+        }
+    }
+
+    /// Hands the motion what the settings say of the servos.
+    pub(super) fn calibrate(&mut self) {
+        for servo in Servo::ALL {
+            let calibration = self.settings.calibration(servo, self.motion.robot());
+            self.motion.calibrate(servo, calibration);
+        }
+    }
+}

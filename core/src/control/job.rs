@@ -1,0 +1,79 @@
+//! What is to be done with the memory, a byte at a time between the frames.
+//!
+//! A byte takes 3.4 ms to write. So no order waits for it: main asks for the next
+//! step whenever it has nothing more urgent to do, and takes no input meanwhile. And
+//! a byte that is written by a weak supply may be another one: below that voltage, and
+//! before it has been measured, nothing is written.
+
+use super::Control;
+use crate::memory::{Memory, Progress, Writing};
+use crate::record::{self, Outcome};
+use crate::refusal::Refusal;
+use crate::robot::Robot;
+use crate::safety::Notice;
+use crate::settings::Settings;
+
+/// What an order has the memory do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Job {
+    /// Take the settings that are kept.
+    Load,
+    /// Find out where the settings are to be kept.
+    Save,
+    /// Keep the settings.
+    Saving(Writing),
+}
+
+impl<R: Robot> Control<R> {
+    /// True while there is something to do with the memory. No order is to be given
+    /// meanwhile. The pose of a rest waits for a supply that allows to write it, and
+    /// nobody has to wait with it.
+    pub fn is_writing(&self) -> bool {
+        self.job.is_some() || self.rested.is_some() && self.safety.allows_writing()
+    }
+
+    /// Does a part of what there is to do with the memory: one byte at most. Returns
+    /// what has come of an order, once it is done.
+    #[inline(never)]
+    pub fn write_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
+        if !memory.is_ready() {
+            return None;
+        }
+        let may_write = self.safety.allows_writing();
+        if may_write && let Some(writing) = &mut self.rested {
+            let pose = Settings::of_pose(self.motion.pose(), self.motion.robot());
+            match writing.step(pose.bytes(), memory) {
+                Progress::Going => return None,
+                Progress::Done => {}
+                Progress::Failed => self.safety.notify(Notice::NotKept),
+            }
+            self.rested = None;
+            return None;
+        }
+        let done = match &mut self.job {
+            None => return None,
+            Some(Job::Load) => {
+                let mut kept = Settings::NONE;
+                match record::load(self.motion.robot(), memory, &mut kept) {
+                    Outcome::Latest | Outcome::Other => self.replace(&kept),
+                    _ => Err(Refusal::NothingSaved),
+                }
+            }
+            Some(Job::Save | Job::Saving(_)) if !may_write => Err(Refusal::Supply),
+            Some(Job::Save) => match record::save(&mut self.settings, memory) {
+                None => Ok(()),
+                Some(writing) => {
+                    self.job = Some(Job::Saving(writing));
+                    return None;
+                }
+            },
+            Some(Job::Saving(writing)) => match writing.step(self.settings.bytes(), memory) {
+                Progress::Going => return None,
+                Progress::Done => Ok(()),
+                Progress::Failed => Err(Refusal::NotKept),
+            },
+        };
+        self.job = None;
+        Some(done)
+    }
+}
