@@ -12,9 +12,9 @@
 
 static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *param);
 
-static bool next_byte(struct sender *sender, uint8_t *byte)
+static bool next_byte(struct sender *sender, struct line_byte *byte)
 {
-	const uint8_t *queue = sender->queue.items;
+	const struct line_byte *queue = sender->queue.items;
 	if (sender->next < sender->queue.count) {
 		*byte = queue[sender->next++];
 		if (sender->next == sender->queue.count)
@@ -23,7 +23,7 @@ static bool next_byte(struct sender *sender, uint8_t *byte)
 	}
 	if (!sender->flood_length)
 		return false;
-	*byte = sender->flood[sender->flood_next];
+	*byte = (struct line_byte){ .value = sender->flood[sender->flood_next] };
 	sender->flood_next = (sender->flood_next + 1) % sender->flood_length;
 	return true;
 }
@@ -33,7 +33,7 @@ static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *para
 	(void)when;
 	struct sender *sender = param;
 	sender->busy = false;
-	serial_bytes_push(&sender->delivered, avr->cycle, sender->byte);
+	serial_bytes_push(&sender->delivered, avr->cycle, sender->byte.value);
 	sender->receiver.byte(sender->receiver.param, sender->byte, sender->cycles_per_bit);
 	/* Always look again when the line is free: a byte queued meanwhile starts
 	 * then. */
@@ -77,7 +77,7 @@ static void start(struct sender *sender, uint64_t now)
 
 void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud)
 {
-	*sender = (struct sender){ .avr = avr, .receiver = receiver, .queue.size = 1 };
+	*sender = (struct sender){ .avr = avr, .receiver = receiver, .queue.size = sizeof(struct line_byte) };
 	serial_bytes_init(&sender->delivered);
 	sender_set_baud(sender, baud);
 }
@@ -93,10 +93,13 @@ void sender_set_baud(struct sender *sender, double baud)
 	sender->cycles_per_bit = CHIP_FREQUENCY / baud;
 }
 
-void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_low,
+                 uint64_t now)
 {
-	for (size_t i = 0; i < length; i++)
-		*(uint8_t *)list_push(&sender->queue) = bytes[i];
+	for (size_t i = 0; i < length; i++) {
+		struct line_byte *last = list_push(&sender->queue);
+		*last = (struct line_byte){ bytes[i], stop_low };
+	}
 	start(sender, now);
 }
 

@@ -16,13 +16,19 @@
 #include "list.h"
 #include "serial_bytes.h"
 
+/* A byte as it comes through the line. */
+struct line_byte {
+	uint8_t value;
+	bool stop_low;  /* the line is low where the stop bit should be */
+};
+
 /* What the cable is plugged into. */
 struct receiver {
 	void *param;
 	/* Cycles from one start bit to the next, given the sender's own. */
 	double (*frame_cycles)(void *param, double frame);
 	void (*start_bit)(void *param);
-	void (*byte)(void *param, uint8_t byte, double cycles_per_bit);
+	void (*byte)(void *param, struct line_byte byte, double cycles_per_bit);
 };
 
 struct sender {
@@ -30,12 +36,12 @@ struct sender {
 	struct receiver receiver;
 	double cycles_per_bit;
 	double line_free;               /* cycle at which the last stop bit ends */
-	struct list queue;              /* uint8_t */
+	struct list queue;              /* struct line_byte */
 	size_t next;                    /* first unsent byte of the queue */
 	uint8_t *flood;                 /* sent over and over once the queue is empty */
 	size_t flood_length, flood_next;
 	uint64_t sent;                  /* bytes put on the line */
-	uint8_t byte;                   /* on the line now */
+	struct line_byte byte;          /* on the line now */
 	bool busy;
 	struct serial_bytes delivered;  /* complete at the receiver */
 };
@@ -46,7 +52,8 @@ void sender_reset(struct sender *sender, uint64_t now);
 void sender_set_baud(struct sender *sender, double baud);
 /* `now` in all of these: the cycle reached, which is ahead of avr->cycle while
  * the CPU sleeps. */
-void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_low,
+                 uint64_t now);
 /* Repeats `bytes` for ever after what is queued; length 0 ends it. */
 void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
 /* Queued bytes that are not through the line. */

@@ -25,11 +25,12 @@ static void start_bit(void *param)
 	(void)param;
 }
 
-static void receive(void *param, uint8_t byte, double cycles_per_bit)
+static void receive(void *param, struct line_byte byte, double cycles_per_bit)
 {
 	(void)cycles_per_bit;
 	const struct stock_uart *stock = param;
-	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, byte);
+	uint32_t input = byte.value | (byte.stop_low ? UART_INPUT_FE : 0);
+	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, input);
 }
 
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,

@@ -299,9 +299,9 @@ void uno_time_calls(struct uno *uno, bool on, uint32_t entry)
 	call_timer_set(&uno->call_timer, on, entry);
 }
 
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length)
+void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_low)
 {
-	sender_send(&uno->sender, bytes, length, uno->now);
+	sender_send(&uno->sender, bytes, length, stop_low, uno->now);
 }
 
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)

@@ -31,7 +31,8 @@ enum stop uno_run(struct uno *uno, uint64_t until);
 void uno_stop_at_line(struct uno *uno, bool on);
 /* Times the calls of the function at byte address `entry` from now on. */
 void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length);
+/* `stop_low`: with the line low where each stop bit should be. */
+void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_low);
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length);
 void uno_set_baud(struct uno *uno, double baud);
 /* A foreign interrupt of so many cycles, now or when interrupts are on next. */

@@ -57,20 +57,20 @@ static void start_bit(void *param)
 	show_receiver(usart);
 }
 
-static void receive(void *param, uint8_t byte, double sender_cycles_per_bit)
+static void receive(void *param, struct line_byte byte, double sender_cycles_per_bit)
 {
 	struct usart *usart = param;
 	const avr_t *avr = usart->avr;
 	if (!(avr->data[REG_UCSR0B] & RXEN))
 		return;
 	double error = cycles_per_bit(avr) / sender_cycles_per_bit - 1.0;
-	bool frame_error = fabs(error) > BAUD_TOLERANCE;
+	bool frame_error = byte.stop_low || fabs(error) > BAUD_TOLERANCE;
 	if (usart->count == 2) {
-		usart->held = byte;
+		usart->held = byte.value;
 		usart->held_frame_error = frame_error;
 		usart->holding = true;
 	} else {
-		into_fifo(usart, byte, frame_error);
+		into_fifo(usart, byte.value, frame_error);
 	}
 	show_receiver(usart);
 }

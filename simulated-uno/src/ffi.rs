@@ -98,7 +98,7 @@ unsafe extern "C" {
     pub fn uno_run(uno: *mut RawUno, until: u64) -> Stop;
     pub fn uno_stop_at_line(uno: *mut RawUno, on: bool);
     pub fn uno_time_calls(uno: *mut RawUno, on: bool, entry: u32);
-    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize);
+    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, stop_low: bool);
     pub fn uno_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
     pub fn uno_hold(uno: *mut RawUno, cycles: u64);

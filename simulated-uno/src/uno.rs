@@ -187,7 +187,15 @@ impl Uno {
     /// the baud rate allows, whether or not the firmware keeps up.
     pub fn send(&mut self, bytes: &[u8]) {
         // SAFETY: the shim copies the bytes.
-        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len()) }
+        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
+    }
+
+    /// The same, but the line is low where each byte's stop bit should be, as after
+    /// noise or a start bit missed: the byte arrives with a framing error, FE0 in
+    /// UCSR0A. The next byte begins where it would without.
+    pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
+        // SAFETY: the shim copies the bytes.
+        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
     }
 
     /// Saturates the serial line: repeats `bytes` without end once the queue is

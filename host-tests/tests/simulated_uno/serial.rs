@@ -188,6 +188,53 @@ fn a_wrong_baud_rate_is_a_framing_error() {
 }
 
 #[test]
+fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
+    // The flag is valid until UDR0 is read, so it is looked at first (data sheet 20.7.4).
+    let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
+                GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
+    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+        let mut uno = Uno::with_image(program(body), fidelity);
+        uno.run_ms(1);
+        uno.send(b"a");
+        uno.send_with_framing_error(b"bc");
+        uno.send(b"d");
+        uno.run_ms(2);
+        let marks: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
+        let told = [0, b'a', 0x10, b'b', 0x10, b'c', 0, b'd'];
+        assert_eq!(marks, told, "{fidelity:?}");
+        assert_eq!(uno.received_by_uno().len(), 4, "on the line all are bytes");
+    }
+}
+
+#[test]
+fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
+    // Reads nothing for 2 ms; then how the status changes with each byte read.
+    let body = "_delay_ms(2);
+                for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
+                GPIOR0 = UCSR0A & 0x90;";
+    let statuses = |broken: usize| {
+        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+        uno.run_cycles(3200);
+        for (at, byte) in b"abc".iter().enumerate() {
+            if at == broken {
+                uno.send_with_framing_error(&[*byte]);
+            } else {
+                uno.send(&[*byte]);
+            }
+        }
+        uno.run_ms(3);
+        let marks = uno.marks();
+        <[u8; 4]>::try_from(marks.iter().map(|mark| mark.value).collect::<Vec<_>>())
+            .expect("one round")
+    };
+    // Two bytes wait in the buffer, the third in the shift register.
+    assert_eq!(statuses(0), [0x90, 0x80, 0x80, 0]);
+    assert_eq!(statuses(1), [0x80, 0x90, 0x80, 0]);
+    assert_eq!(statuses(2), [0x80, 0x80, 0x90, 0]);
+    assert_eq!(statuses(3), [0x80, 0x80, 0x80, 0], "none");
+}
+
+#[test]
 fn a_line_is_waited_for_no_longer_than_it_takes() {
     let mut uno = Uno::with_image(
         program("put('o'); put('k'); put('\\n'); _delay_ms(50);"),
