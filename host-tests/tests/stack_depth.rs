@@ -193,3 +193,22 @@ fn what_cannot_be_bounded_is_refused() {
     let error = refusal(&nests).to_string();
     assert!(error.contains("lets interrupts into"), "{error}");
 }
+
+#[test]
+fn a_handler_that_lets_others_in_and_never_returns_lies_below_the_deepest_of_them() {
+    let image = assembler(
+        "jmp start
+        .org 0x2c
+        jmp handler
+        jmp hung
+        .org 0x68
+    start: sei
+    end: rjmp end
+    handler: push r1 $ push r1 $ push r1 $ pop r1 $ pop r1 $ pop r1 $ reti
+    hung: push r1 $ sei
+    stay: rjmp stay",
+    );
+    let depth = depth(&image);
+    assert_eq!((depth.main, depth.handler, depth.last), (0, 2 + 3, 2 + 1));
+    assert_eq!(depth.worst(), 8);
+}

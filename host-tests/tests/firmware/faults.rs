@@ -83,7 +83,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
         "{:?}",
         edges[0]
     );
-    let sentence = "a pulse came late and was dropped, stopped";
+    let sentence = "a pulse came late, stopped";
     assert_stopped(&mut walk.bench, "late", sentence, 5);
     assert_eq!(Status::of(&mut walk.bench).number("late"), 1.0);
 }

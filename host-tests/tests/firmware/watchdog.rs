@@ -217,3 +217,78 @@ fn robot_neutral() -> [f64; 4] {
         .servos()
         .map(|servo| (servo.neutral * 100.0).round() / 100.0)
 }
+
+#[test]
+fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
+    let (mut bench, widths) = posed();
+    // From shorter than the watchdog's first patience to longer than both.
+    for ms in (90..300).step_by(10) {
+        let resets = bench.uno.resets();
+        bench.uno.stall_main(ms * MS);
+        bench.run_ms(ms + 150);
+        let began_anew = bench.uno.resets() > resets;
+        let frames = pulses_in(&mut bench, 200);
+        for (servo, pulses) in frames.iter().enumerate() {
+            let all = pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
+            assert!(all, "A{} after {ms} ms: {pulses:?}", servo + 1);
+        }
+        assert!(began_anew || ms < 130, "{ms} ms");
+        let fault = if began_anew { "watchdog" } else { "none" };
+        assert_eq!(Status::of(&mut bench).text("fault"), fault, "{ms} ms");
+        // Another round begins without a fault, in the same pose.
+        bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
+        bench.run_ms(500);
+    }
+}
+
+#[test]
+fn a_robot_that_rests_and_hangs_comes_back_without_a_pulse_whatever_was_kept() {
+    // The pose of the rest is in the memory, or the memory holds nothing.
+    for blank in [false, true] {
+        for ms in [140, 200, 400] {
+            let (mut bench, _) = posed();
+            assert_eq!(bench.say("rest"), "ok rest");
+            bench.run_ms(500);
+            if blank {
+                let erased = bench.uno.eeprom().map(|_| 0xff);
+                bench.uno.set_eeprom(&erased);
+            }
+            let resets = bench.uno.resets();
+            bench.uno.stall_main(ms * MS);
+            bench.run_ms(ms + 150);
+            assert!(bench.uno.resets() > resets);
+            let after = pulses_in(&mut bench, 6000);
+            assert!(after.iter().all(Vec::is_empty), "{ms} ms: {after:?}");
+            let status = Status::of(&mut bench);
+            let told = [status.text("gait"), status.text("fault")];
+            assert_eq!(told, ["rest", "watchdog"]);
+            let walk = bench.say(&moving());
+            assert_eq!(walk, "err 7 servos are resting, send stand first");
+            assert_eq!(bench.say("stand"), "ok stand");
+            bench.run_ms(2000);
+            assert_eq!(widths_now(&mut bench), neutral_widths());
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
+    let (mut bench, _) = posed();
+    bench.say("rest");
+    bench.run_ms(300);
+    bench.uno.reset();
+    // `boot` says stand, as long as nobody says anything else; nobody sends a byte.
+    let before = pulses_in(&mut bench, 2_900);
+    assert!(before.iter().all(Vec::is_empty), "{before:?}");
+    bench.run_ms(2_500);
+    assert_eq!(widths_now(&mut bench), neutral_widths());
+    let said = bench.lines().iter().any(|line| line.text == "# boot: stand");
+    assert!(said);
+    bench.say("rest");
+    bench.run_ms(300);
+    bench.uno.reset();
+    bench.run_ms(1000);
+    bench.uno.send(b"\r");
+    let after = pulses_in(&mut bench, 5_000);
+    assert!(after.iter().all(Vec::is_empty), "a byte has called boot off");
+}

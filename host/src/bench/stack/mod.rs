@@ -10,7 +10,8 @@
 //! matters to the stack is two dozen instructions, fewer lines than a parser of that
 //! listing, and the program needs no tool beside it.
 //!
-//! What the bound rests on: interrupts do not nest, which is checked; no function
+//! What the bound rests on: interrupts do not nest, which is checked, but in a handler
+//! that never returns, as the watchdog's, where one more may come; no function
 //! calls itself, nothing jumps to a computed address, and the stack pointer changes
 //! by `push`, `pop`, calls, returns, and frames that r28 and r29 point to. Anything
 //! else is refused, with the name of the function.
@@ -46,6 +47,8 @@ pub struct StackDepth {
     pub main: u16,
     /// Of the deepest interrupt, its return address included; 0 without interrupts.
     pub handler: u16,
+    /// Of the deepest interrupt that lets others in and never returns; 0 without one.
+    pub last: u16,
     /// First address of SRAM that the stack may use.
     floor: u16,
 }
@@ -60,13 +63,21 @@ impl StackDepth {
         let flash = image.flash();
         let unused = image.symbol("__bad_interrupt");
         let unused = unused.map(|symbol| symbol.address as u32);
-        let mut handler = 0;
+        let (mut handler, mut last) = (0, 0);
         let mut walk = Walk::new(image, &flash, Context::Interrupt);
         for vector in 1..VECTORS {
             let target = instruction::jump_target(&flash, 0)
                 .and_then(|_| instruction::jump_target(&flash, vector * 4));
             if let Some(target) = target.filter(|target| Some(*target) != unused) {
-                handler = handler.max(ENTRY + walk.function(target)?.depth);
+                let function = walk.function(target)?;
+                match function.lets_in {
+                    None => handler = handler.max(ENTRY + function.depth),
+                    Some(at) if function.returns => {
+                        let what = "lets interrupts into an interrupt";
+                        return Err(walk.refuse(target, at, what));
+                    }
+                    Some(_) => last = last.max(ENTRY + function.depth),
+                }
             }
         }
         let main = Walk::new(image, &flash, Context::Main).function(0)?.depth;
@@ -74,14 +85,16 @@ impl StackDepth {
         Ok(Self {
             main,
             handler,
+            last,
             floor,
         })
     }
 
-    /// The deepest of all: an interrupt on top of main at its deepest.
+    /// The deepest of all: on top of main at its deepest an interrupt, or one that never
+    /// returns and another.
     #[must_use]
     pub fn worst(&self) -> u16 {
-        self.main + self.handler
+        self.main + self.last + self.handler
     }
 
     /// Bytes between static data and the deepest stack; negative if they collide.

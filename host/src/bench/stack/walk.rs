@@ -55,7 +55,9 @@ pub struct Function {
     /// The most bytes in it and all that it calls, its own return address left out.
     pub depth: u16,
     /// Whether it ever returns; if not, what follows a call of it is not its caller's.
-    returns: bool,
+    pub returns: bool,
+    /// Where a handler lets other interrupts in, if it does.
+    pub lets_in: Option<u32>,
 }
 
 impl<'a> Walk<'a> {
@@ -84,6 +86,7 @@ impl<'a> Walk<'a> {
     fn walk(&mut self, entry: u32) -> Result<Function, StackError> {
         let mut worst = 0;
         let mut returns = false;
+        let mut lets_in = None;
         let mut seen: HashMap<u32, State> = HashMap::new();
         let begin = State {
             depth: 0,
@@ -115,6 +118,7 @@ impl<'a> Walk<'a> {
                     let called = self.function(target)?;
                     let below = i32::from(called.depth);
                     worst = worst.max(state.depth + RETURN_ADDRESS + below);
+                    lets_in = lets_in.or(called.lets_in);
                     if !called.returns {
                         after.clear();
                     }
@@ -139,7 +143,7 @@ impl<'a> Walk<'a> {
                     return Err(self.refuse(entry, at, what));
                 }
                 Effect::EnableInterrupts if self.context == Context::Interrupt => {
-                    return Err(self.refuse(entry, at, "lets interrupts into an interrupt"));
+                    lets_in = Some(at);
                 }
                 Effect::StackFromOther => return Err(self.refuse(entry, at, POINTER)),
                 effect => {
@@ -153,10 +157,15 @@ impl<'a> Walk<'a> {
         }
         let depth = u16::try_from(worst)
             .map_err(|_| self.refuse(entry, entry, "needs more stack than there is"))?;
-        Ok(Function { depth, returns })
+        Ok(Function {
+            depth,
+            returns,
+            lets_in,
+        })
     }
 
-    fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
+    /// An error of the function at `entry`.
+    pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
         let before =
             |symbol: &&simulated_uno::Symbol| symbol.function && u64::from(entry) >= symbol.address;
         let symbols = self.image.symbols().iter().filter(before);
