@@ -131,3 +131,24 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
     }
     assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
 }
+
+#[test]
+fn a_line_with_a_garbled_byte_is_refused_wherever_it_is_and_the_byte_is_counted() {
+    in_both(|fidelity| {
+        let mut bench = awake(fidelity);
+        let line = b"speed 90";
+        for place in 0..line.len() {
+            bench.uno.send(&line[..place]);
+            bench.uno.send_with_framing_error(&line[place..=place]);
+            bench.uno.send(&line[place + 1..]);
+            bench.uno.send(b"\n");
+            bench.run_ms(20);
+            let said = bench.lines().last().map(|line| line.text.clone());
+            let refused = "err 1 the line came garbled, send it again";
+            assert_eq!(said.as_deref(), Some(refused), "byte {place}");
+        }
+        let status = Status::of(&mut bench);
+        assert_eq!((status.number("speed"), status.number("rx_lost")), (100.0, 8.0));
+        assert_eq!(bench.say("speed 90"), "ok speed 90");
+    });
+}
