@@ -67,7 +67,7 @@ pub struct Counters {
 struct Refused;
 
 /// The robot as its console sees it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Console<R> {
     line: Line,
     motion: Motion<R>,

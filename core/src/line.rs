@@ -18,7 +18,7 @@ pub enum Ended {
 }
 
 /// The line that is being received.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Line {
     bytes: Vec<u8, LONGEST>,
     overlong: bool,

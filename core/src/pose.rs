@@ -11,11 +11,11 @@ use crate::robot::Robot;
 use crate::units::{Angle, Sweep, Width};
 
 /// Four sweeps, in servo order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pose(pub [Sweep; 4]);
 
 /// Four pulse widths, in servo order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pulses(pub [Width; 4]);
 
 impl Pose {

@@ -8,7 +8,7 @@ use crate::pose::Pose;
 use crate::text::Text;
 
 /// What made the program begin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Cause {
     /// Power came on.
     #[default]
@@ -22,7 +22,7 @@ pub enum Cause {
 }
 
 /// What is known at the beginning.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Restart {
     /// Why.
     pub cause: Cause,

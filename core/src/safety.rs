@@ -45,7 +45,7 @@ pub enum Order {
 }
 
 /// What is watched.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,

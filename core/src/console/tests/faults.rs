@@ -4,23 +4,20 @@ use super::*;
 
 #[test]
 fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     for boot in ["sway left", "rest"] {
         dialogue.say(&format!("boot {boot}"));
         assert_eq!(dialogue.say("save"), "ok save");
-        let chip = dialogue.chip.clone();
-        let mut alone = Dialogue::begun(Sample::odd(), chip.clone(), Restart::default());
+        let chip = dialogue.board.memory.clone();
+        let mut alone = Dialogue::with(Sample::odd(), chip.clone(), Restart::default());
         let said = alone.run(149);
         assert_eq!(said.len(), 1, "{said:?}");
-        assert_eq!(
-            alone.console.motion().activity(),
-            Activity::Gait(GaitId::STAND)
-        );
+        assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
         assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
         assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
-        let mut watched = Dialogue::begun(Sample::odd(), chip, Restart::default());
+        let mut watched = Dialogue::with(Sample::odd(), chip, Restart::default());
         watched.run(100);
-        watched.console.receive(b' ');
+        watched.board.send(b" ");
         watched.run(400);
         assert_eq!(watched.status("gait"), "stand");
     }
@@ -28,7 +25,7 @@ fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
 
 #[test]
 fn a_gait_ends_when_the_link_is_lost_and_says_why() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("deadman 400");
     dialogue.say("sway");
     for _ in 0..30 {
@@ -48,30 +45,25 @@ fn a_gait_ends_when_the_link_is_lost_and_says_why() {
     assert_eq!(dialogue.status("fault"), "none");
 }
 
-/// A board at so many volts, its rail at 6 V.
-fn at(volts: f64) -> Health {
-    let reading = |mv: f64| (mv / volts * 1024.0) as u16;
-    Health {
-        supply: crate::supply::Reading {
-            reference: reading(1.08),
-            rail: reading(6.0 / 3.378 * 1.08),
-        },
-        ..WELL
-    }
+/// The board's supply is at so many millivolts, its rail at 6 V.
+fn supply(dialogue: &mut Dialogue, mv: u32) {
+    let supplies = dialogue.motion().robot().supplies();
+    let truth = reading(&supplies, mv, 6_000);
+    dialogue.board.converter.set(truth);
 }
 
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothing_restarts() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("sway");
     dialogue.run(150);
     let pace = |dialogue: &mut Dialogue| {
-        let before = dialogue.console.motion().phase();
+        let before = dialogue.motion().phase();
         dialogue.run(10);
-        dialogue.console.motion().phase().wrapping_sub(before) & 0xff_ffff
+        dialogue.motion().phase().wrapping_sub(before) & 0xff_ffff
     };
     let full = pace(&mut dialogue);
-    dialogue.health = at(4.4);
+    supply(&mut dialogue, 4_400);
     let said = dialogue.run(40);
     assert!(
         said[0].starts_with("# supply: 4.") && said[0].ends_with("V, low: half speed, no saving"),
@@ -80,18 +72,18 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
     let half = f64::from(pace(&mut dialogue)) / f64::from(full);
     assert!((half - 0.5).abs() < 0.02, "{half}");
     assert_eq!(dialogue.say("save"), "err 8 the supply is too low");
-    dialogue.health = at(4.2);
+    supply(&mut dialogue, 4_200);
     let said = dialogue.run(40);
     assert_eq!(said.len(), 2);
     assert_eq!(dialogue.status("gait"), "stop");
     assert_eq!(dialogue.status("fault"), "supply");
     assert!(dialogue.say("sway").starts_with("err 8 "));
     assert!(dialogue.say(NEUTRAL).starts_with("err 8 "));
-    dialogue.health = at(4.0);
+    supply(&mut dialogue, 4_000);
     dialogue.run(40);
     assert_eq!(dialogue.status("gait"), "rest");
-    assert_eq!(dialogue.frame().0, Pulses::default());
-    dialogue.health = at(5.0);
+    assert_eq!(dialogue.frame(), Pulses::default());
+    supply(&mut dialogue, 5_000);
     let said = dialogue.run(100);
     assert!(
         said.last().is_some_and(|line| line.ends_with(" V, good")),
@@ -109,16 +101,16 @@ fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
         count: 3,
         pose: Some(Pose(sweeps)),
     };
-    let mut dialogue = Dialogue::begun(Sample::odd(), Chip::blank(), restart);
+    let mut dialogue = Dialogue::with(Sample::odd(), Eeprom::blank(), restart);
     let said = dialogue.run(1);
     assert!(
         said.contains(&"# fault: the program hung and began anew".to_string()),
         "{said:?}"
     );
-    let motion = dialogue.console.motion();
+    let motion = dialogue.motion();
     let held = Pose(sweeps).pulses(motion.calibration());
     for _ in 0..400 {
-        assert_eq!(dialogue.frame().0, held, "at once, and for good");
+        assert_eq!(dialogue.frame(), held, "at once, and for good");
     }
     assert_eq!(dialogue.status("reset"), "watchdog");
     assert_eq!(dialogue.status("resets"), "3");
@@ -141,7 +133,7 @@ fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over() {
             count: 1,
             pose: Some(Pose(sweeps.map(crate::units::Sweep))),
         };
-        let mut dialogue = Dialogue::begun(Sample::odd(), Chip::blank(), restart);
+        let mut dialogue = Dialogue::with(Sample::odd(), Eeprom::blank(), restart);
         dialogue.run(30);
         assert_eq!(dialogue.status("pose"), dialogue_neutral());
     }
@@ -149,19 +141,15 @@ fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over() {
 
 #[test]
 fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("pose 140 50 311 224.5");
     dialogue.run(150);
     dialogue.say("rest");
-    let chip = dialogue.chip.clone();
-    let mut again = Dialogue::begun(Sample::odd(), chip.clone(), Restart::default());
-    again.read();
+    let chip = dialogue.board.memory.clone();
+    let mut again = Dialogue::with(Sample::odd(), chip.clone(), Restart::default());
+    again.lines();
     assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
-    let there = again
-        .console
-        .motion()
-        .pose()
-        .pulses(again.console.motion().calibration());
+    let there = again.motion().pose().pulses(again.motion().calibration());
     for servo in 0..4 {
         for _ in 0..5 {
             let widths = widths(&mut again);
@@ -175,21 +163,23 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
     again.run(200);
     assert_eq!(again.status("pose"), dialogue_neutral());
     // Having moved, it has forgotten where it rested.
-    let after = Dialogue::begun(Sample::odd(), again.chip.clone(), Restart::default());
-    assert_eq!(after.console.motion().pose(), &Pose::NEUTRAL);
+    let after = Dialogue::with(
+        Sample::odd(),
+        again.board.memory.clone(),
+        Restart::default(),
+    );
+    assert_eq!(after.motion().pose(), &Pose::NEUTRAL);
 }
 
 #[test]
 fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("rest");
-    assert_eq!(dialogue.chip.bytes[128], 0xa5);
-    for byte in b"stand\r" {
-        dialogue.console.receive(*byte);
-    }
+    assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
+    dialogue.board.send(b"stand\r");
     // The answer goes first; then main deals with the memory, long before the first
     // servo wakes.
-    dialogue.read();
-    assert_eq!(dialogue.chip.bytes[128], 0xff);
-    assert_eq!(dialogue.frame().0, Pulses::default());
+    dialogue.lines();
+    assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
+    assert_eq!(dialogue.frame(), Pulses::default());
 }
