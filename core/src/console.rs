@@ -53,7 +53,7 @@ pub struct Counters {
 }
 
 /// Somebody at the other end of a serial line.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
     banner: bool,

@@ -30,7 +30,7 @@ mod job;
 const STEADY: u32 = 1500;
 
 /// The robot.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Control<R> {
     motion: Motion<R>,
     settings: Settings,

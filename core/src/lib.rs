@@ -23,7 +23,7 @@
 #![deny(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
 
-#[cfg(test)]
+#[cfg(any(test, feature = "host"))]
 extern crate std;
 
 pub mod adjustment;
@@ -65,4 +65,6 @@ pub mod supply;
 pub mod text;
 pub mod trig;
 pub mod units;
+#[cfg(any(test, feature = "host"))]
+pub mod virtual_board;
 pub mod word;

@@ -24,7 +24,7 @@ pub enum Ended {
 pub const GARBLED: u8 = 0xff;
 
 /// The line that is being received.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Line {
     bytes: Vec<u8, LONGEST>,
     overlong: bool,

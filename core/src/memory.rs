@@ -22,33 +22,6 @@ pub trait Memory {
 /// Bytes of a memory.
 pub const SIZE: usize = 1024;
 
-/// A memory that is ready at once, for hosts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bytes(pub [u8; SIZE]);
-
-impl Default for Bytes {
-    /// Never written to.
-    fn default() -> Self {
-        Self([ERASED; SIZE])
-    }
-}
-
-impl Memory for Bytes {
-    fn is_ready(&self) -> bool {
-        true
-    }
-
-    fn read(&self, address: u16) -> u8 {
-        self.0.get(usize::from(address)).copied().unwrap_or(ERASED)
-    }
-
-    fn write(&mut self, address: u16, byte: u8) {
-        if let Some(place) = self.0.get_mut(usize::from(address)) {
-            *place = byte;
-        }
-    }
-}
-
 /// Bytes of what a record says.
 pub const CONTENT: usize = 42;
 
@@ -201,7 +174,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::sample::Chip;
+    use crate::virtual_board::Eeprom;
 
     const PLACE: Place = Place(64);
 
@@ -218,7 +191,7 @@ mod tests {
     }
 
     /// Writes to the end.
-    fn write(chip: &mut Chip, content: &Content) -> Progress {
+    fn write(chip: &mut Eeprom, content: &Content) -> Progress {
         let mut writing = PLACE.write();
         for _ in 0..10_000 {
             match writing.step(content, chip) {
@@ -229,7 +202,7 @@ mod tests {
         panic!("it never ends");
     }
 
-    fn read(chip: &Chip) -> (Found, Content) {
+    fn read(chip: &Eeprom) -> (Found, Content) {
         let mut content = [0; CONTENT];
         PLACE.fetch(chip, &mut content);
         (PLACE.check(chip), content)
@@ -242,24 +215,24 @@ mod tests {
         fn what_is_written_is_read_again_and_nothing_else_is_touched(
             first in content(),
             second in content(),
-            slowness in 0usize..4,
+            slowness in 0u16..4,
         ) {
-            let mut chip = Chip::blank();
+            let mut chip = Eeprom::blank();
             chip.slowness = slowness;
-            prop_assert_eq!(read(&Chip::blank()).0, Found::Blank);
+            prop_assert_eq!(read(&Eeprom::blank()).0, Found::Blank);
             for content in [first, second] {
                 prop_assert_eq!(write(&mut chip, &content), Progress::Done);
                 chip.slowness = 0;
-                let chip = Chip::with(chip.bytes.clone());
+                let chip = Eeprom::with(*chip.bytes());
                 prop_assert_eq!(read(&chip), (Found::Whole, content));
             }
             let beside = |at: &usize| !(64..64 + usize::from(LENGTH)).contains(at);
-            prop_assert!((0..1024).filter(beside).all(|at| chip.bytes[at] == ERASED));
+            prop_assert!((0..1024).filter(beside).all(|at| chip.bytes()[at] == ERASED));
         }
 
         #[test]
         fn the_crc_is_that_of_the_catalogue(content in content()) {
-            let mut chip = Chip::blank();
+            let mut chip = Eeprom::blank();
             write(&mut chip, &content);
             // CRC-16/IBM-3740, bit by bit.
             let mut crc = 0xffffu16;
@@ -269,13 +242,13 @@ mod tests {
                     crc = if crc & 0x8000 == 0 { crc << 1 } else { (crc << 1) ^ 0x1021 };
                 }
             }
-            prop_assert_eq!(&chip.bytes[64 + 43..][..2], &crc.to_le_bytes());
+            prop_assert_eq!(&chip.bytes()[64 + 43..][..2], &crc.to_le_bytes());
         }
     }
 
     #[test]
     fn writing_the_same_again_touches_the_mark_alone_and_other_bytes_only_where_they_differ() {
-        let mut chip = Chip::blank();
+        let mut chip = Eeprom::blank();
         let mut content = [7; CONTENT];
         write(&mut chip, &content);
         chip.log.clear();
@@ -296,20 +269,20 @@ mod tests {
 
     #[test]
     fn a_memory_that_keeps_nothing_is_found_out() {
-        let mut chip = Chip::blank();
+        let mut chip = Eeprom::blank();
         chip.worn = true;
         assert_eq!(write(&mut chip, &[1; CONTENT]), Progress::Failed);
     }
 
     #[test]
     fn a_record_that_is_taken_away_is_no_record_and_its_bytes_stay() {
-        let mut chip = Chip::blank();
+        let mut chip = Eeprom::blank();
         write(&mut chip, &[3; CONTENT]);
-        let before = chip.bytes.clone();
+        let before = *chip.bytes();
         let mut writing = PLACE.forget();
         while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
         assert_eq!(read(&chip).0, Found::Damaged);
-        assert_eq!(chip.bytes[64], ERASED);
-        assert_eq!(chip.bytes[65..], before[65..]);
+        assert_eq!(chip.bytes()[64], ERASED);
+        assert_eq!(chip.bytes()[65..], before[65..]);
     }
 }

@@ -60,7 +60,7 @@ const SLOW: u8 = 50;
 pub const AWAKE: u8 = 4 * WAKE_APART;
 
 /// The robot's motion.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Motion<R> {
     robot: R,
     calibration: [Calibration; 4],

@@ -10,11 +10,11 @@ use crate::part::Servo;
 use crate::units::{Angle, Sweep, Width};
 
 /// Four sweeps, in servo order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pose(pub [Sweep; 4]);
 
 /// Four pulse widths, in servo order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pulses(pub [Width; 4]);
 
 impl Pose {

@@ -8,7 +8,7 @@ use crate::pose::{Pose, Pulses};
 use crate::text::Text;
 
 /// What made the program begin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Cause {
     /// Power came on.
     #[default]
@@ -38,7 +38,7 @@ impl Cause {
 
 /// What the servos are doing: all that has to survive a reset for the next program to
 /// take them over without a leap.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Stance {
     /// Whether there are no pulses.
     pub resting: bool,
@@ -56,7 +56,7 @@ pub struct Stance {
 }
 
 /// What is known at the beginning.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Restart {
     /// Why.
     pub cause: Cause,

@@ -47,7 +47,7 @@ pub enum Reaction {
 }
 
 /// What is watched.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,

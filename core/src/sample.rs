@@ -6,7 +6,6 @@
 //! width and a travel of its own. What one part is measured by instead of another
 //! shows.
 
-mod chip;
 mod measures;
 
 use std::vec::Vec;
@@ -31,7 +30,6 @@ use crate::slider::{self, Slider};
 use crate::supply::{Rail, Reading, Supplies, Thresholds};
 use crate::units::{Angle, Scale, Sine, Sweep};
 
-pub use chip::Chip;
 pub use measures::Measures;
 
 /// Steps of an angle in a degree.

@@ -83,7 +83,7 @@ pub trait Board {
 
 /// The robot, somebody at its serial line, and the ticks that it has computed a frame
 /// for.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Main<R> {
     control: Control<R>,
     console: Console,
@@ -126,6 +126,11 @@ impl<R: Robot> Main<R> {
         &self.control
     }
 
+    /// Whoever is at its serial line.
+    pub const fn console(&self) -> &Console {
+        &self.console
+    }
+
     /// The most urgent thing that there is to do.
     #[inline(always)]
     pub fn step<B: Board>(&mut self, board: &mut B) -> Step {
@@ -164,186 +169,98 @@ impl<R: Robot> Main<R> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::VecDeque;
-    use std::string::String;
     use std::vec::Vec;
 
     use super::*;
     use crate::motion::Activity;
     use crate::motion::Motion;
-    use crate::sample::{Chip, Sample, WELL};
+    use crate::sample::Sample;
+    use crate::virtual_board::{Running, Transmitter, VirtualBoard};
 
-    /// A board that does as it is told and keeps what it was given.
-    struct Fake {
-        late: u16,
-        chip: Chip,
-        kept: Vec<Option<Pose>>,
-        ticks: u8,
-        room: u8,
-        input: VecDeque<u8>,
-        output: String,
-        pulses: Vec<Pulses>,
-        leds: Vec<bool>,
+    /// A robot whose program begins at this tick, with these bytes already received.
+    fn begun(ticks: u8, received: &str) -> Running<Sample> {
+        let mut board = VirtualBoard::default().at_tick(ticks);
+        board.send(received.as_bytes());
+        Running::on(Sample::odd(), board)
     }
 
-    impl Fake {
-        fn new(ticks: u8, input: &str) -> Self {
-            Self {
-                late: 0,
-                chip: Chip::blank(),
-                kept: Vec::new(),
-                ticks,
-                room: u8::MAX,
-                input: input.bytes().collect(),
-                output: String::new(),
-                pulses: Vec::new(),
-                leds: Vec::new(),
-            }
-        }
+    /// Whether main does something in a step.
+    fn works(running: &mut Running<Sample>) -> bool {
+        running.main.step(&mut running.board) == Step::Worked
     }
 
-    impl Board for Fake {
-        type Writer = String;
-        type Memory = Chip;
-
-        fn keep(&mut self, pose: Option<&Pose>) {
-            self.kept.push(pose.copied());
-        }
-
-        fn restart(&self) -> Restart {
-            Restart::default()
-        }
-
-        fn supply(&mut self) -> Reading {
-            WELL.supply
-        }
-
-        fn stack_is_intact(&self) -> bool {
-            true
-        }
-
-        fn memory(&mut self) -> &mut Chip {
-            &mut self.chip
-        }
-
-        fn ticks(&self) -> u8 {
-            self.ticks
-        }
-
-        fn submit(&mut self, pulses: Pulses) {
-            self.pulses.push(pulses);
-        }
-
-        fn set_led(&mut self, on: bool) {
-            self.leds.push(on);
-        }
-
-        fn room(&self) -> u8 {
-            self.room
-        }
-
-        fn writer(&mut self) -> &mut String {
-            &mut self.output
-        }
-
-        fn receive(&mut self) -> Option<u8> {
-            self.input.pop_front()
-        }
-
-        fn counters(&self) -> Counters {
-            Counters {
-                late: self.late,
-                rx_lost: 34,
-            }
-        }
-    }
-
-    fn main_at(ticks: u8) -> Main<Sample> {
-        let mut main = Main::new(Sample::odd());
-        main.begin(&mut Fake::new(ticks, ""));
-        main
-    }
-
-    /// Steps until there is nothing to do.
-    fn settle(main: &mut Main<Sample>, board: &mut Fake) {
-        for _ in 0..10_000 {
-            if main.step(board) != Step::Worked {
-                return;
-            }
-        }
-        panic!("it never rests");
+    /// The lines written so far.
+    fn written(running: &Running<Sample>) -> usize {
+        running.board.transmitter.text.lines().count()
     }
 
     #[test]
     fn a_tick_comes_before_output_and_output_before_input() {
-        let mut main = main_at(7);
-        let mut board = Fake::new(8, "speed 50\r");
-        assert_eq!(main.step(&mut board), Step::Worked);
-        assert_eq!(
-            (board.pulses.len(), board.output.len(), board.input.len()),
-            (1, 0, 9)
-        );
-        assert_eq!(main.step(&mut board), Step::Worked);
-        assert!(board.output.starts_with("# lizard "));
-        assert_eq!(board.output.lines().count(), 1, "one line at a time");
-        while board.output.lines().count() < 2 || main.console().is_writing() {
-            assert_eq!(main.step(&mut board), Step::Worked);
+        let mut running = begun(7, "speed 50\r");
+        running.board.tick();
+        assert!(works(&mut running));
+        assert!(running.board.is_fresh());
+        assert_eq!((written(&running), running.board.waiting()), (0, 9));
+        assert!(works(&mut running));
+        assert!(running.board.transmitter.text.starts_with("# lizard "));
+        assert_eq!(written(&running), 1, "one line at a time");
+        while written(&running) < 2 || running.main.control().is_writing() {
+            assert!(works(&mut running));
         }
-        assert_eq!(board.input.len(), 9);
-        board.ticks = 9;
-        assert_eq!(main.step(&mut board), Step::Worked);
-        assert_eq!((board.pulses.len(), board.input.len()), (2, 9));
-        assert_eq!(main.step(&mut board), Step::Worked);
-        assert_eq!(board.input.len(), 8, "one byte at a time");
+        assert_eq!(running.board.waiting(), 9);
+        running.board.tick();
+        assert!(works(&mut running));
+        assert_eq!(running.motion().frames(), 2);
+        assert_eq!(running.board.waiting(), 9);
+        assert!(works(&mut running));
+        assert_eq!(running.board.waiting(), 8, "one byte at a time");
     }
 
     #[test]
     fn nothing_is_written_without_room_for_the_longest_line_but_frames_go_on() {
-        let mut main = main_at(0);
-        let mut board = Fake::new(0, "speed 50\r");
-        board.room = LONGEST_LINE - 1;
-        assert_eq!(main.step(&mut board), Step::Idle(0));
-        assert_eq!((board.output.len(), board.input.len()), (0, 9));
-        board.ticks = 1;
-        assert_eq!(main.step(&mut board), Step::Worked);
-        assert_eq!(main.step(&mut board), Step::Idle(1));
-        board.room = LONGEST_LINE;
-        settle(&mut main, &mut board);
-        assert!(
-            board.output.ends_with("\r\nok speed 50\r\n"),
-            "{}",
-            board.output
-        );
-        assert_eq!(board.pulses.len(), 1);
+        let mut running = begun(0, "speed 50\r");
+        running.board.transmitter = Transmitter::new(16_000, 255);
+        let full = 255 - u64::from(LONGEST_LINE) + 1;
+        running.board.transmitter.fill(full);
+        assert_eq!(running.main.step(&mut running.board), Step::Idle(0));
+        assert_eq!((written(&running), running.board.waiting()), (0, 9));
+        running.board.tick();
+        assert!(works(&mut running));
+        assert_eq!(running.main.step(&mut running.board), Step::Idle(1));
+        assert_eq!((written(&running), running.board.waiting()), (0, 9));
+        running.board.transmitter = Transmitter::default();
+        running.settle();
+        let text = &running.board.transmitter.text;
+        assert!(text.ends_with("\r\nok speed 50\r\n"), "{text}");
+        assert_eq!(running.motion().frames(), 1);
     }
 
     #[test]
     fn every_missed_tick_gets_its_frame_also_across_the_end_of_the_count() {
-        let mut main = main_at(250);
-        let mut board = Fake::new(250, "");
-        settle(&mut main, &mut board);
-        board.ticks = 4;
-        for frame in 1..=10 {
-            assert_eq!(main.step(&mut board), Step::Worked);
-            assert_eq!(board.pulses.len(), frame);
+        let mut running = begun(250, "");
+        running.settle();
+        for _ in 0..10 {
+            running.board.tick();
         }
-        assert_eq!(main.step(&mut board), Step::Idle(4));
-        assert_eq!(main.console().motion().frames(), 10);
+        for frame in 1..=10 {
+            assert!(works(&mut running));
+            assert_eq!(running.motion().frames(), frame);
+        }
+        assert_eq!(running.main.step(&mut running.board), Step::Idle(4));
+        assert_eq!(running.motion().frames(), 10);
     }
 
     #[test]
     fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
-        let mut main = main_at(0);
+        let mut running = begun(0, "");
         let mut twin = Motion::new(Sample::odd());
-        let mut board = Fake::new(30, "status\r");
-        settle(&mut main, &mut board);
-        let expected: Vec<Pulses> = (0..30).map(|_| twin.tick()).collect();
-        assert_eq!(board.pulses, expected);
-        assert!(
-            board.output.contains(" frames=30 late=0 rx_lost=34 "),
-            "{}",
-            board.output
-        );
+        for _ in 0..30 {
+            running.frame();
+            assert_eq!(running.board.submitted(), twin.tick());
+        }
+        running.board.lose(34);
+        let status = running.say("status");
+        assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
     }
 
     /// After how many frames the LED changes.
@@ -356,20 +273,18 @@ mod tests {
 
     #[test]
     fn the_led_beats_slowly_and_flashes_once_a_while_when_the_guard_holds_the_robot() {
-        let mut main = main_at(0);
-        let mut board = Fake::new(0, "stray\r");
-        settle(&mut main, &mut board);
-        let mut held_since = 0;
+        let mut running = begun(0, "stray\r");
+        let (mut leds, mut held_since) = (Vec::new(), 0);
         for frame in 1..400 {
-            board.ticks = board.ticks.wrapping_add(1);
-            settle(&mut main, &mut board);
-            if held_since == 0 && main.console().motion().hazard().is_some() {
+            running.frame();
+            leds.push(running.board.is_lit());
+            if held_since == 0 && running.motion().hazard().is_some() {
                 held_since = frame;
             }
         }
-        assert_eq!(main.console().motion().activity(), Activity::Stop);
+        assert_eq!(running.motion().activity(), Activity::Stop);
         assert!(held_since > 40);
-        let (slow, fast) = board.leds.split_at(held_since - 1);
+        let (slow, fast) = leds.split_at(held_since - 1);
         // Lit from power-on for the first 31 frames; then 32 dark, and so on.
         assert!(slow[..31].iter().all(|led| *led) && !slow[31]);
         assert!(beats(slow).iter().all(|frames| *frames == 32));
@@ -381,57 +296,64 @@ mod tests {
     }
 
     #[test]
-    fn the_pose_is_kept_with_every_frame_but_not_while_the_servos_rest() {
-        let mut main = main_at(0);
-        let mut board = Fake::new(0, "sway\r");
+    fn what_the_servos_do_is_kept_with_every_frame_also_that_they_rest() {
+        let mut running = begun(0, "sway\r");
         for _ in 0..100 {
-            settle(&mut main, &mut board);
-            board.ticks = board.ticks.wrapping_add(1);
-            assert_eq!(main.step(&mut board), Step::Worked);
-            let held = main.console().motion().pose();
-            assert_eq!(board.kept.last(), Some(&Some(*held)));
+            let pulses = running.frame();
+            let kept = running.board.kept().expect("a stance");
+            assert!(!kept.resting);
+            assert_eq!(kept.pose, *running.motion().pose());
+            for (sent, pulse) in kept.sent.0.iter().zip(pulses.0) {
+                assert!(pulse.0 == 0 || pulse == *sent);
+            }
         }
-        board.input.extend(b"rest\r");
-        settle(&mut main, &mut board);
-        board.ticks = board.ticks.wrapping_add(1);
-        settle(&mut main, &mut board);
-        assert_eq!(board.kept.last(), Some(&None));
+        running.say("rest");
+        running.frame();
+        let kept = running.board.kept().expect("a stance");
+        assert!(kept.resting);
+        assert_eq!(kept.pose, *running.motion().pose());
     }
 
     #[test]
     fn a_slow_memory_holds_up_the_input_and_no_frame() {
-        let mut main = main_at(0);
-        let mut board = Fake::new(0, "save\rstand\r");
-        board.chip.slowness = 50;
+        let mut running = Running::power_on(Sample::odd());
+        running.run(10);
+        running.board.send(b"save\rstand\r");
+        running.board.memory.slowness = 50;
         let mut steps = 0;
-        while !board.output.contains("ok save") {
-            assert!(!board.output.contains("ok stand"));
+        while !running.board.transmitter.text.contains("ok save") {
+            assert!(!running.board.transmitter.text.contains("ok stand"));
             // A tick in every seventh step.
             steps += 1;
             if steps % 7 == 0 {
-                board.ticks = board.ticks.wrapping_add(1);
+                running.board.tick();
             }
-            assert_eq!(main.step(&mut board), Step::Worked);
+            assert!(works(&mut running));
             assert!(steps < 20_000);
         }
-        assert!(board.chip.log.len() > 40 && steps > 40 * 50);
-        assert!(board.pulses.len() >= steps / 7 - 1);
-        settle(&mut main, &mut board);
-        assert!(board.output.ends_with("ok stand\r\n"));
+        assert!(running.board.memory.log.len() > 40 && steps > 40 * 50);
+        assert!(running.motion().frames() >= steps / 7 - 1);
+        running.settle();
+        assert!(running.board.transmitter.text.ends_with("ok stand\r\n"));
     }
 
     #[test]
     fn a_late_edge_and_a_stack_in_the_data_reach_the_robot() {
-        let mut main = main_at(0);
-        let mut board = Fake::new(0, "");
-        settle(&mut main, &mut board);
-        board.late = 1;
-        board.ticks = 1;
-        settle(&mut main, &mut board);
+        let mut running = begun(0, "");
+        running.run(1);
+        running.board.late = 1;
+        let said = running.run(1);
         assert!(
-            board.output.contains("# fault: a pulse came late"),
-            "{}",
-            board.output
+            said.iter()
+                .any(|line| line.starts_with("# fault: a pulse came late")),
+            "{said:?}"
+        );
+        running.board.stack_is_intact = false;
+        let said = running.run(1);
+        assert!(
+            said.iter()
+                .any(|line| line.starts_with("# fault: the stack")),
+            "{said:?}"
         );
     }
 }

@@ -17,7 +17,7 @@ use crate::root::quotient;
 const FULL_SCALE: u16 = 1024;
 
 /// What the converter has read, 0..=1023; 0 stands for nothing yet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Reading {
     /// The reference, in parts of the supply.
     pub reference: u16,

@@ -50,7 +50,7 @@ pub struct Angle(pub u16);
 
 /// An angle that a servo has turned from its neutral angle, counter-clockwise
 /// positive, 1/65536 turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Sweep(pub i16);
 
@@ -60,7 +60,7 @@ pub struct Sweep(pub i16);
 pub struct Sine(pub i16);
 
 /// The width of a pulse in CPU cycles of 62.5 ns; 0 is no pulse.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Width(pub u16);
 

@@ -1,21 +1,17 @@
 //! The core on a board without time: what it says and does is checked at every byte
 //! and every frame.
 
-use lizard_core::console::{Console, Counters};
-use lizard_core::memory::{Bytes, Memory};
+use lizard_core::memory::Memory;
 use lizard_core::record::{self, Outcome, RESTED};
 use lizard_core::restart::Restart;
-use lizard_core::safety::Health;
 use lizard_core::settings::Settings;
-use lizard_core::supply::Reading;
+use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::{Firmware, Robot};
 
 /// The core on a board without time.
 pub struct Board {
     robot: &'static Robot,
-    console: Console<&'static Firmware>,
-    memory: Bytes,
-    health: Health,
+    running: Running<&'static Firmware>,
     said: String,
     /// The line under way as another reader of lines has it.
     line: Vec<u8>,
@@ -28,21 +24,11 @@ impl Board {
     /// # Panics
     /// If it never falls silent.
     #[must_use]
-    pub fn new(robot: &'static Robot, memory: Bytes) -> Self {
-        let health = Health {
-            supply: Reading {
-                reference: 225,
-                rail: 225 * 3,
-            },
-            ..Health::default()
-        };
-        let mut console = Console::new(robot.firmware());
-        console.begin(&memory, &Restart::default());
+    pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
+        let running = Running::with(robot.firmware(), memory, Restart::default());
         let mut board = Self {
             robot,
-            console,
-            memory,
-            health,
+            running,
             said: String::new(),
             line: Vec::new(),
             overlong: false,
@@ -53,16 +39,10 @@ impl Board {
 
     /// Lets it write all that it has to write.
     fn settle(&mut self) {
-        for _ in 0..10_000 {
-            if self.console.has_output() {
-                let Ok(()) = self.console.write_line(&mut self.said, Counters::default());
-            } else if self.console.is_writing() {
-                self.console.write_memory(&mut self.memory);
-            } else {
-                return;
-            }
-        }
-        panic!("it never rests");
+        self.running.settle();
+        self.said.push_str(&self.running.board.transmitter.text);
+        self.running.board.transmitter.text.clear();
+        self.running.board.memory.log.clear();
     }
 
     /// What was said since the last byte.
@@ -73,8 +53,8 @@ impl Board {
 
     /// What it keeps.
     #[must_use]
-    pub const fn memory(&self) -> &Bytes {
-        &self.memory
+    pub const fn memory(&self) -> &Eeprom {
+        &self.running.board.memory
     }
 
     /// A byte; what it ends has exactly one answer.
@@ -83,10 +63,8 @@ impl Board {
     /// If it has not.
     pub fn take(&mut self, byte: u8) {
         self.said.clear();
-        self.console.receive(byte);
-        if self.console.has_output() || self.console.is_writing() {
-            self.settle();
-        }
+        self.running.board.send(&[byte]);
+        self.settle();
         let mut due = 0;
         match byte {
             b'\r' | b'\n' => {
@@ -115,7 +93,8 @@ impl Board {
     /// # Panics
     /// If one is.
     pub fn frame(&mut self) {
-        let pulses = self.console.frame(&self.health);
+        self.running.frame();
+        let pulses = self.running.board.submitted();
         for (width, servo) in pulses.0.into_iter().zip(self.robot.servos()) {
             let us = f64::from(width.0) / 16.0;
             assert!(
@@ -133,17 +112,17 @@ impl Board {
     pub fn assert_memory_is_right(&self) {
         let robot = self.robot.firmware();
         let mut settings = Settings::of(robot);
-        let outcome = record::load(robot, &self.memory, &mut settings);
+        let outcome = record::load(robot, self.memory(), &mut settings);
         assert!(
             matches!(outcome, Outcome::Latest | Outcome::Blank),
             "{outcome:?}"
         );
-        let is_forgotten = self.memory.read(RESTED.0) == 0xff;
+        let is_forgotten = self.memory().read(RESTED.0) == 0xff;
         assert!(
-            is_forgotten || record::rested(robot, &self.memory).is_some(),
+            is_forgotten || record::rested(robot, self.memory()).is_some(),
             "a pose that is not whole"
         );
         let beyond = 192..1024;
-        assert!(beyond.into_iter().all(|at| self.memory.read(at) == 0xff));
+        assert!(beyond.into_iter().all(|at| self.memory().read(at) == 0xff));
     }
 }

@@ -16,9 +16,10 @@ pub use board::Board;
 
 use std::sync::LazyLock;
 
-use lizard_core::memory::{Bytes, CONTENT, Memory, Place, Progress};
+use lizard_core::memory::{CONTENT, Place, Progress};
 use lizard_core::record::{COPIES, RESTED};
 use lizard_core::settings::Settings;
+use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
 
 /// The robot that `LIZARD_ROBOT` names, else the source tree's robot.toml.
@@ -39,7 +40,7 @@ pub fn robot() -> &'static Robot {
 /// # Panics
 /// If they do harm.
 pub fn console(data: &[u8]) {
-    let mut board = Board::new(robot(), Bytes::default());
+    let mut board = Board::new(robot(), Eeprom::blank());
     for eight in data.chunks(8) {
         for byte in eight {
             board.take(*byte);
@@ -58,7 +59,7 @@ pub fn console(data: &[u8]) {
 /// If it does harm.
 pub fn memory(data: &[u8]) {
     let robot = robot();
-    let mut memory = Bytes::default();
+    let mut memory = Eeprom::blank();
     let (records, patches) = data.split_at(data.len().min(3 * CONTENT));
     let places = [COPIES[0], COPIES[1], RESTED];
     for (place, change) in places.into_iter().zip(records.chunks(CONTENT)) {
@@ -69,7 +70,8 @@ pub fn memory(data: &[u8]) {
         write(place, &content, &mut memory);
     }
     for patch in patches.chunks_exact(3) {
-        memory.write(u16::from_le_bytes([patch[0], patch[1]]) % 1024, patch[2]);
+        let at = u16::from_le_bytes([patch[0], patch[1]]) % 1024;
+        memory.bytes_mut()[usize::from(at)] = patch[2];
     }
     let before = memory.clone();
     let mut board = Board::new(robot, memory);
@@ -77,9 +79,13 @@ pub fn memory(data: &[u8]) {
     for _ in 0..175 {
         board.frame();
     }
-    let kept = &board.memory().0;
+    let kept = board.memory().bytes();
     let settings = 0..usize::from(RESTED.0);
-    assert_eq!(kept[settings.clone()], before.0[settings], "nobody saved");
+    assert_eq!(
+        kept[settings.clone()],
+        before.bytes()[settings],
+        "nobody saved"
+    );
     for byte in b"status\nstand\n" {
         board.take(*byte);
     }
@@ -89,7 +95,7 @@ pub fn memory(data: &[u8]) {
 }
 
 /// Writes a record as the core does.
-fn write(place: Place, content: &[u8; CONTENT], memory: &mut Bytes) {
+fn write(place: Place, content: &[u8; CONTENT], memory: &mut Eeprom) {
     let mut writing = place.write();
     while writing.step(content, memory) == Progress::Going {}
 }

@@ -7,7 +7,8 @@
 use std::thread;
 
 use fastrand::Rng;
-use lizard_core::memory::{Bytes, CONTENT};
+use lizard_core::memory::CONTENT;
+use lizard_core::virtual_board::Eeprom;
 use lizard_fuzz::Board;
 use lizard_host_tests::robot;
 
@@ -43,7 +44,7 @@ fn in_parts(part: impl Fn(&mut Rng, u64) + Sync) {
 #[test]
 fn ten_million_random_bytes_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
-        let mut board = Board::new(robot(), Bytes::default());
+        let mut board = Board::new(robot(), Eeprom::blank());
         for n in 0..count {
             // Line ends more often than by chance.
             let byte = if rng.u8(..32) == 0 { b'\n' } else { rng.u8(..) };
@@ -66,7 +67,7 @@ fn ten_million_random_bytes_do_no_harm_to_the_core() {
 #[test]
 fn ten_million_lines_that_are_nearly_right_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
-        let mut board = Board::new(robot(), Bytes::default());
+        let mut board = Board::new(robot(), Eeprom::blank());
         let mut accepted = 0u64;
         for n in 0..count {
             for byte in lines::mutated(rng) {

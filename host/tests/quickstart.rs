@@ -2,11 +2,7 @@
 
 use std::path::Path;
 
-use lizard_core::console::{Console, Counters};
-use lizard_core::memory::Bytes;
-use lizard_core::restart::Restart;
-use lizard_core::safety::Health;
-use lizard_core::supply::Reading;
+use lizard_core::virtual_board::Running;
 use lizard_robot::{Firmware, Robot};
 
 fn read(path: &str) -> String {
@@ -16,49 +12,27 @@ fn read(path: &str) -> String {
 
 /// The paper's robot with an EEPROM that was never written, on 5 V.
 struct Board {
-    console: Console<Firmware>,
-    memory: Bytes,
+    running: Running<Firmware>,
 }
 
 impl Board {
     fn new() -> Self {
         let robot = Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
-        let memory = Bytes::default();
-        let mut console = Console::new(robot.firmware().clone());
-        console.begin(&memory, &Restart::default());
-        Self { console, memory }
+        Self {
+            running: Running::power_on(robot.firmware().clone()),
+        }
     }
 
     /// What it says within some frames.
-    fn run(&mut self, frames: usize) -> Vec<String> {
-        let health = Health {
-            supply: Reading {
-                reference: 225,
-                rail: 0,
-            },
-            ..Health::default()
-        };
-        let mut said = String::new();
-        for _ in 0..frames {
-            self.console.frame(&health);
-            // Long enough for what there is to write in a frame.
-            for _ in 0..200 {
-                if self.console.has_output() {
-                    let Ok(()) = self.console.write_line(&mut said, Counters::default());
-                } else {
-                    self.console.write_memory(&mut self.memory);
-                }
-            }
-        }
-        said.lines().map(str::to_string).collect()
+    fn run(&mut self, frames: u32) -> Vec<String> {
+        self.running.run(frames)
     }
 
     /// What it says to a line until all motion has ended.
     fn send(&mut self, line: &str) -> Vec<String> {
-        line.bytes()
-            .chain([b'\r'])
-            .for_each(|byte| self.console.receive(byte));
-        self.run(100)
+        let mut said = self.running.send(format!("{line}\r").as_bytes());
+        said.extend(self.run(100));
+        said
     }
 }
 

@@ -12,9 +12,14 @@ mod faults;
 
 use super::*;
 use crate::guard::Clearance;
-use crate::sample::{Chip, GAITS, Sample, WELL};
+use crate::motion::Activity;
+use crate::pose::{Pose, Pulses};
+use crate::restart::{Cause, Restart, Stance};
+use crate::sample::{GAITS, Sample};
+use crate::step::Step;
 use crate::units::Width;
-use dialogue::{Dialogue, is_final, pairs, widths};
+use crate::virtual_board::{Eeprom, is_final, reading};
+use dialogue::{Dialogue, awake, pairs, standing, widths};
 
 /// The neutral pose of the odd robot, as a command.
 const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
@@ -22,14 +27,14 @@ const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
 #[test]
 fn the_banner_names_version_and_tables_once() {
     for hash in [0, 0x1f0a_9c3e, 0x0000_00f0, u32::MAX, 0x9999_9999] {
-        let mut dialogue = Dialogue::new(Sample {
+        let mut dialogue = Dialogue::power_on(Sample {
             hash,
             ..Sample::odd()
         });
         let version = env!("CARGO_PKG_VERSION");
         let banner = format!("# lizard {version} tables {hash:08x}, send help for the commands");
         let blank = "# calibration: none is saved, robot.toml's is in use".to_string();
-        assert_eq!(dialogue.read(), [banner, blank]);
+        assert_eq!(dialogue.lines(), [banner, blank]);
         assert!(dialogue.run(50).is_empty());
     }
 }
@@ -46,15 +51,15 @@ fn what_is_obeyed_is_answered_by_ok_and_the_line_as_it_was_understood() {
         NEUTRAL,
     ];
     for command in commands.into_iter().chain(GAITS) {
-        assert_eq!(Dialogue::standing().say(command), format!("ok {command}"));
+        assert_eq!(standing().say(command), format!("ok {command}"));
         let shouted = format!("  {}\t", command.to_uppercase());
-        assert_eq!(Dialogue::standing().say(&shouted), format!("ok {command}"));
+        assert_eq!(standing().say(&shouted), format!("ok {command}"));
     }
 }
 
 #[test]
 fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     let said = dialogue.send(b"help\r");
     let gaits = format!("# gaits: {}", GAITS.join("|"));
     let expected = [
@@ -85,7 +90,7 @@ fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_lon
         let names: Vec<String> = crate::gait::GaitId::all(robot.gaits().len())
             .map(|id| robot.name(id).map(char::from).collect())
             .collect();
-        let said = Dialogue::awake(robot).send(b"help\r");
+        let said = awake(robot).send(b"help\r");
         let lines: Vec<&str> = said
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "))
@@ -104,16 +109,15 @@ fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_lon
 
 #[test]
 fn status_tells_everything_as_key_and_value() {
-    let mut dialogue = Dialogue::standing();
-    dialogue.counters = Counters {
-        late: 7,
-        rx_lost: 65_535,
-    };
+    let mut dialogue = standing();
+    dialogue.board.late = 7;
+    dialogue.board.lose(65_535);
+    dialogue.run(1);
     dialogue.say("speed 42");
     dialogue.say("sway left");
     dialogue.run(200);
     let line = dialogue.say("status");
-    let motion = dialogue.console.motion();
+    let motion = dialogue.motion();
     let phase = (u64::from(motion.phase()) * 1000) >> 24;
     let angles: Vec<String> = motion
         .pose()
@@ -138,7 +142,7 @@ fn status_tells_everything_as_key_and_value() {
 
 #[test]
 fn status_names_what_the_robot_does() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     assert_eq!(dialogue.status("gait"), "stand");
     for (command, name) in [
         ("sway", "sway"),
@@ -158,11 +162,9 @@ fn the_longest_status_that_there_can_be_fits_a_line() {
     let name = "longest name of a gait that any robot may have..";
     assert_eq!(name.len(), crate::gait::LONGEST_NAME);
     let robot = Sample::odd().with_gait(name);
-    let mut dialogue = Dialogue::awake(robot);
-    dialogue.counters = Counters {
-        late: u16::MAX,
-        rx_lost: u16::MAX,
-    };
+    let mut dialogue = awake(robot);
+    dialogue.board.late = u16::MAX;
+    dialogue.board.lose(u16::MAX);
     assert_eq!(dialogue.say(name), format!("ok {name}"));
     let line = dialogue.say("status");
     // Each number as long as it gets.
@@ -185,16 +187,16 @@ fn the_longest_status_that_there_can_be_fits_a_line() {
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
     for every in [1u32, 2, 7, 50] {
-        let mut dialogue = Dialogue::standing();
+        let mut dialogue = standing();
         dialogue.say("sway");
         dialogue.say(&format!("watch {every}"));
-        let begin = dialogue.console.motion().frames();
+        let begin = dialogue.motion().frames();
         let mut times = Vec::new();
         for _ in 0..200 {
-            for line in dialogue.frame().1 {
+            for line in dialogue.run(1) {
                 let report = pairs(line.strip_prefix("# ").expect("a report"));
                 let time: u32 = report["t"].parse().expect("a number");
-                assert_eq!(time, dialogue.console.motion().frames());
+                assert_eq!(time, dialogue.motion().frames());
                 assert_eq!(report["pose"], dialogue.status("pose"));
                 assert_eq!(report.len(), 2);
                 times.push(time - begin);
@@ -209,7 +211,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
 
 #[test]
 fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginning() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("watch 5");
     dialogue.say("rest");
     assert_eq!(dialogue.run(50).len(), 10);
@@ -220,29 +222,26 @@ fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginni
 }
 
 #[test]
-fn a_report_that_nobody_read_is_written_once_and_a_new_watch_forgets_it() {
-    let mut dialogue = Dialogue::standing();
+fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
+    let mut dialogue = standing();
     dialogue.say("watch 2");
-    for _ in 0..20 {
-        dialogue.console.frame(&WELL);
-    }
-    assert_eq!(dialogue.read().len(), 1);
-    dialogue.console.frame(&WELL);
-    dialogue.console.frame(&WELL);
-    assert!(dialogue.console.has_output());
-    for byte in b"watch 0\r" {
-        dialogue.console.receive(*byte);
-    }
-    assert_eq!(dialogue.read(), ["ok watch 0"]);
+    dialogue.run_unheard(20);
+    assert_eq!(dialogue.lines().len(), 1);
+    dialogue.run_unheard(2);
+    assert!(dialogue.has_output());
+    dialogue.board.send(b"watch 0\r");
+    let said = dialogue.lines();
+    assert!(said.len() == 2 && said[1] == "ok watch 0", "{said:?}");
+    assert!(dialogue.run(10).is_empty());
 }
 
 /// A robot that the guard has just stopped, with nothing read since.
 fn guarded() -> Dialogue {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("stray");
     for _ in 0..200 {
-        dialogue.console.frame(&WELL);
-        if dialogue.console.motion().hazard().is_some() {
+        dialogue.run_unheard(1);
+        if dialogue.motion().hazard().is_some() {
             return dialogue;
         }
     }
@@ -252,7 +251,7 @@ fn guarded() -> Dialogue {
 #[test]
 fn why_the_guard_holds_the_robot_is_told_once_and_status_goes_on_saying_so() {
     let mut dialogue = guarded();
-    let told = dialogue.read();
+    let told = dialogue.lines();
     assert_eq!(told.len(), 1);
     assert!(
         told[0].starts_with("# held in the last safe pose: "),
@@ -276,40 +275,52 @@ fn why_the_guard_holds_the_robot_is_told_once_and_status_goes_on_saying_so() {
 #[test]
 fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
     let mut dialogue = guarded();
-    for byte in b"stand\r" {
-        dialogue.console.receive(*byte);
-    }
-    for _ in 0..3 {
-        dialogue.console.frame(&WELL);
-    }
-    let said = dialogue.read();
+    dialogue.board.send(b"stand\r");
+    dialogue.run_unheard(3);
+    let said = dialogue.lines();
     assert_eq!(said.len(), 2);
-    assert_eq!(said[0], "ok stand");
-    assert!(said[1].starts_with("# held in the last safe pose: "));
-    assert!(!dialogue.console.has_output());
+    assert!(said[0].starts_with("# held in the last safe pose: "));
+    assert_eq!(said[1], "ok stand");
+    assert!(!dialogue.has_output());
+    dialogue.run(3);
     assert_eq!(dialogue.status("guard"), "clear");
 }
 
 #[test]
-fn what_waits_is_written_in_one_order_banner_answer_reason_report() {
-    let mut console = Dialogue::new(Sample::odd());
-    for byte in b"watch 1\r" {
-        console.console.receive(*byte);
-    }
-    console.console.held = Some(Hazard::Stroke {
-        side: crate::part::Side::Left,
-        length: 1,
-    });
-    console.console.frame(&WELL);
-    let said = console.read();
+fn what_waits_is_written_in_one_order_banner_answer_fault_reason_report() {
+    let mut dialogue = Dialogue::power_on(Sample::odd());
+    dialogue.board.send(b"stray\rwatch 1\rhelp\r");
+    // Room for a line at a time, until the first one of the help is written.
+    let mut said = Vec::new();
+    let mut line = |dialogue: &mut Dialogue| {
+        while !dialogue.board.transmitter.text.ends_with("\r\n") {
+            assert_eq!(dialogue.main.step(&mut dialogue.board), Step::Worked);
+        }
+        said.push(core::mem::take(&mut dialogue.board.transmitter.text));
+        said.last().expect("a line").starts_with("# gaits: ")
+    };
+    while !line(&mut dialogue) {}
+    // The guard holds the robot, an edge comes late, a report is due.
+    dialogue.run_unheard(199);
+    assert!(dialogue.motion().hazard().is_some());
+    dialogue.board.late = 1;
+    dialogue.run_unheard(1);
+    let rest = dialogue.lines();
     let starts = [
         "# lizard ",
-        "ok watch 1",
         "# calibration: ",
+        "ok stray",
+        "ok watch 1",
+        "# gaits: ",
+        "# others: ",
+        "# a word ",
+        "ok help",
+        "# fault: ",
         "# held ",
-        "# t=1 pose=",
+        "# t=200 pose=",
     ];
-    assert_eq!(said.len(), starts.len());
+    said.extend(rest);
+    assert_eq!(said.len(), starts.len(), "{said:?}");
     for (line, start) in said.iter().zip(starts) {
         assert!(line.starts_with(start), "{line}");
     }
@@ -319,14 +330,14 @@ fn what_waits_is_written_in_one_order_banner_answer_reason_report() {
 fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
     let unsafe_pose = "pose 95 90 309.64 226.18";
     for line in ["sway", "sway left", "stop", NEUTRAL, unsafe_pose] {
-        let mut dialogue = Dialogue::standing();
+        let mut dialogue = standing();
         assert_eq!(dialogue.say("rest"), "ok rest");
         assert_eq!(
             dialogue.say(line),
             "err 7 servos are resting, send stand first"
         );
         for _ in 0..50 {
-            assert_eq!(dialogue.frame().0, Pulses::default(), "{line}");
+            assert_eq!(dialogue.frame(), Pulses::default(), "{line}");
         }
         assert_eq!(dialogue.status("gait"), "rest");
         // What moves nothing is answered, and a mistake is still a mistake.
@@ -340,13 +351,13 @@ fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
         assert!(dialogue.say("dance").starts_with("err 1 "));
         assert_eq!(dialogue.say("stand"), "ok stand");
         dialogue.run(25);
-        assert!(dialogue.frame().0.0.iter().all(|width| *width > Width(0)));
+        assert!(dialogue.frame().0.iter().all(|width| *width > Width(0)));
     }
 }
 
 #[test]
 fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     assert_eq!(
         dialogue.say("pose 400 1 1 1"),
         "err 3 A1 reaches 61.37..215.36"
@@ -365,7 +376,7 @@ fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
 
 #[test]
 fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
         let line = format!("pose {pose}");
         assert_eq!(dialogue.say(&line), format!("ok {line}"));
@@ -376,7 +387,7 @@ fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
 
 #[test]
 fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     let refused = "err 6 a line has at most 63 characters";
     assert_eq!(dialogue.say(&"stand".repeat(13)), refused);
     assert_eq!(dialogue.say("stand"), "ok stand");
@@ -430,7 +441,7 @@ proptest! {
         bytes in bytes(),
         frames in 0u32..3,
     ) {
-        let (mut at_once, mut apart) = (Dialogue::standing(), Dialogue::standing());
+        let (mut at_once, mut apart) = (standing(), standing());
         let finals = |said: Vec<String>| -> Vec<String> {
             said.into_iter().filter(|line| is_final(line)).collect()
         };
@@ -454,7 +465,7 @@ proptest! {
         speed in 10u8..=100,
         line in prop::sample::select(REFUSED.to_vec()),
     ) {
-        let [mut asked, mut spared] = [(); 2].map(|()| Dialogue::standing());
+        let [mut asked, mut spared] = [(); 2].map(|()| standing());
         for dialogue in [&mut asked, &mut spared] {
             dialogue.say(&format!("speed {speed}"));
             for (gait, frames) in &history {
@@ -465,6 +476,7 @@ proptest! {
         prop_assert!(asked.say(line).starts_with("err "));
         for _ in 0..40 {
             prop_assert_eq!(asked.frame(), spared.frame());
+            prop_assert_eq!(asked.lines(), spared.lines());
         }
         prop_assert_eq!(asked.say("status"), spared.say("status"));
     }

@@ -6,9 +6,10 @@ use super::*;
 use crate::gait::GaitId;
 use crate::memory::{ERASED, LENGTH, Progress};
 use crate::part::Servo;
-use crate::sample::{Chip, Sample};
+use crate::sample::Sample;
 use crate::settings::Boot;
 use crate::units::Sweep;
+use crate::virtual_board::Eeprom;
 
 fn robot() -> Sample {
     Sample::odd()
@@ -31,7 +32,7 @@ fn settings(robot: &Sample, n: i16) -> Settings {
 }
 
 /// Saves, as the console does.
-fn save_all(settings: &Settings, chip: &mut Chip) -> Settings {
+fn save_all(settings: &Settings, chip: &mut Eeprom) -> Settings {
     let mut kept = *settings;
     if let Some(mut writing) = save(&mut kept, chip) {
         loop {
@@ -45,7 +46,7 @@ fn save_all(settings: &Settings, chip: &mut Chip) -> Settings {
     kept
 }
 
-fn loaded(robot: &Sample, chip: &Chip) -> (Settings, Outcome) {
+fn loaded(robot: &Sample, chip: &Eeprom) -> (Settings, Outcome) {
     let mut settings = Settings::of(robot);
     let outcome = load(robot, chip, &mut settings);
     (settings, outcome)
@@ -61,7 +62,7 @@ fn said(settings: &Settings) -> Settings {
 #[test]
 fn what_is_saved_is_loaded_again_the_last_one_of_a_thousand() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     assert_eq!(
         loaded(&robot, &chip),
         (Settings::of(&robot), Outcome::Blank)
@@ -77,7 +78,7 @@ fn what_is_saved_is_loaded_again_the_last_one_of_a_thousand() {
 #[test]
 fn what_is_there_already_is_not_written_again() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 3), &mut chip);
     chip.log.clear();
     save_all(&settings(&robot, 3), &mut chip);
@@ -100,25 +101,25 @@ fn torn(old: u8, new: u8) -> impl Iterator<Item = u8> {
 fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new_whole() {
     let robot = robot();
     for saved_before in 0..4 {
-        let mut chip = Chip::blank();
+        let mut chip = Eeprom::blank();
         let mut old = (Settings::of(&robot), Outcome::Blank);
         for n in 0..saved_before {
             save_all(&settings(&robot, 10 + n), &mut chip);
             old = loaded(&robot, &chip);
         }
-        let before = chip.bytes.clone();
+        let before = *chip.bytes();
         chip.log.clear();
         let new = save_all(&settings(&robot, 60), &mut chip);
         assert!(chip.log.len() > 10);
         let mut olds = 0;
         for (count, (address, from, to)) in chip.log.iter().enumerate() {
-            let mut bytes = before.clone();
+            let mut bytes = before;
             for (address, _, byte) in &chip.log[..count] {
                 bytes[usize::from(*address)] = *byte;
             }
             for byte in torn(*from, *to) {
                 bytes[usize::from(*address)] = byte;
-                let (settings, outcome) = loaded(&robot, &Chip::with(bytes.clone()));
+                let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
                 if settings == old.0 {
                     olds += 1;
                 } else {
@@ -133,16 +134,16 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new_whole() {
 #[test]
 fn a_save_after_a_power_cut_is_whole_whatever_the_cut_has_left() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 1), &mut chip);
     save_all(&settings(&robot, 2), &mut chip);
-    let before = chip.bytes.clone();
+    let before = *chip.bytes();
     chip.log.clear();
     save_all(&settings(&robot, 3), &mut chip);
     for count in 0..chip.log.len() {
-        let mut cut = Chip::with(before.clone());
+        let mut cut = Eeprom::with(before);
         for (address, _, byte) in &chip.log[..count] {
-            cut.bytes[usize::from(*address)] = *byte;
+            cut.bytes_mut()[usize::from(*address)] = *byte;
         }
         let new = save_all(&settings(&robot, 4), &mut cut);
         assert_eq!(loaded(&robot, &cut).0, new);
@@ -152,14 +153,14 @@ fn a_save_after_a_power_cut_is_whole_whatever_the_cut_has_left() {
 #[test]
 fn any_bit_flipped_leaves_the_last_settings_the_ones_before_or_robot_tomls() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     let before = save_all(&settings(&robot, 1), &mut chip);
     let last = save_all(&settings(&robot, 2), &mut chip);
     let (mut lasts, mut befores) = (0, 0);
     for bit in 0..8 * 1024 {
-        let mut bytes = chip.bytes.clone();
+        let mut bytes = *chip.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = loaded(&robot, &Chip::with(bytes));
+        let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
         if settings == last {
             lasts += 1;
         } else {
@@ -174,12 +175,12 @@ fn any_bit_flipped_leaves_the_last_settings_the_ones_before_or_robot_tomls() {
 #[test]
 fn any_bit_flipped_of_the_only_copy_leaves_it_or_robot_tomls() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     let only = save_all(&settings(&robot, 1), &mut chip);
     for bit in 0..8 * 1024 {
-        let mut bytes = chip.bytes.clone();
+        let mut bytes = *chip.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let found = loaded(&robot, &Chip::with(bytes));
+        let found = loaded(&robot, &Eeprom::with(bytes));
         let own = bit / 8 < 45;
         let other = (64..109).contains(&(bit / 8));
         let expected = match (own, other) {
@@ -194,7 +195,7 @@ fn any_bit_flipped_of_the_only_copy_leaves_it_or_robot_tomls() {
 #[test]
 fn settings_for_other_servos_or_of_another_format_are_not_used() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 1), &mut chip);
     let other = Sample {
         servo_hash: robot.servo_hash ^ 0x0001_0000,
@@ -215,7 +216,7 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
 #[test]
 fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     let mut narrow = settings(&robot, 1);
     let mut set = narrow.servo(Servo::A3);
     set.max = Sweep(robot.reach[2].max.0 - 1);
@@ -228,7 +229,7 @@ fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
 #[test]
 fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     let kept = save_all(&settings(&robot, 1), &mut chip);
     assert_eq!(kept.boot(&robot), Boot::Gait(robot.id("sway left")));
     let mut fewer = robot.clone();
@@ -244,7 +245,7 @@ fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
 #[test]
 fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     assert_eq!(rested(&robot, &chip), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let there = Pose(sweeps.map(Sweep));
@@ -269,7 +270,7 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
         .filter(outside)
         .collect();
     assert!(touched.is_empty());
-    assert_eq!(chip.bytes[128], ERASED);
+    assert_eq!(chip.bytes()[128], ERASED);
 }
 
 #[test]
@@ -277,18 +278,16 @@ fn random_bytes_in_the_memory_are_no_settings() {
     let robot = robot();
     let mut state = 1u32;
     for _ in 0..2000 {
-        let bytes: Vec<u8> = (0..1024)
-            .map(|at| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                // With the marks in place, so that the CRC alone is left to tell.
-                if at % 64 == 0 {
-                    0xa5
-                } else {
-                    (state >> 24) as u8
-                }
-            })
-            .collect();
-        let found = loaded(&robot, &Chip::with(bytes));
+        let bytes: [u8; 1024] = core::array::from_fn(|at| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            // With the marks in place, so that the CRC alone is left to tell.
+            if at % 64 == 0 {
+                0xa5
+            } else {
+                (state >> 24) as u8
+            }
+        });
+        let found = loaded(&robot, &Eeprom::with(bytes));
         assert_eq!(found, (Settings::of(&robot), Outcome::Damaged));
     }
 }

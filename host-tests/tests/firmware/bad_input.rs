@@ -2,9 +2,9 @@
 //! line carries them: a minute of each, or as many as `LIZARD_FUZZ_MINUTES` says.
 
 use fastrand::Rng;
-use lizard_core::memory::Bytes;
 use lizard_core::record::{self, Outcome};
 use lizard_core::settings::Settings;
+use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
@@ -61,7 +61,7 @@ fn assert_well(mut bench: FirmwareBench) {
     let firmware = robot().firmware();
     let contents = bench.uno.eeprom();
     let mut settings = Settings::of(firmware);
-    let outcome = record::load(firmware, &Bytes(contents), &mut settings);
+    let outcome = record::load(firmware, &Eeprom::with(contents), &mut settings);
     assert!(
         matches!(outcome, Outcome::Latest | Outcome::Blank),
         "{outcome:?}"

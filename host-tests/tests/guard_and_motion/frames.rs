@@ -2,15 +2,12 @@
 //! all that no frame may do.
 
 use fastrand::Rng;
-use lizard_core::console::{Console, Counters};
 use lizard_core::gait::GaitId;
-use lizard_core::memory::Bytes;
 use lizard_core::motion::{Activity, Motion};
 use lizard_core::pose::{Pose, Pulses};
-use lizard_core::restart::Restart;
 use lizard_core::robot::Robot as _;
-use lizard_core::safety::Health;
 use lizard_core::units::CYCLE;
+use lizard_core::virtual_board::Running;
 use lizard_host_tests::Named;
 use lizard_robot::{CheckedGait, Firmware, Robot};
 
@@ -80,8 +77,7 @@ pub fn long_enough(robot: &Robot) -> u32 {
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
-    console: Console<&'a Firmware>,
-    memory: Bytes,
+    running: Running<&'a Firmware>,
     /// Degrees a second of each servo in the last frame.
     speeds: [f64; 4],
     /// True if the next frame may stop dead.
@@ -94,16 +90,10 @@ pub struct Walker<'a> {
 impl<'a> Walker<'a> {
     /// A robot at power-on, its banner read.
     pub fn new(Named { name, robot }: &'a Named) -> Self {
-        let memory = Bytes::default();
         let mut walker = Self {
             name,
             robot,
-            console: {
-                let mut console = Console::new(robot.firmware());
-                console.begin(&memory, &Restart::default());
-                console
-            },
-            memory,
+            running: Running::power_on(robot.firmware()),
             speeds: [0.0; 4],
             may_stop: false,
             most_jerk: jerk(robot),
@@ -121,7 +111,7 @@ impl<'a> Walker<'a> {
     }
 
     pub fn motion(&self) -> &Motion<&'a Firmware> {
-        self.console.motion()
+        self.running.motion()
     }
 
     pub fn pose(&self) -> Pose {
@@ -130,27 +120,16 @@ impl<'a> Walker<'a> {
 
     /// Everything that the console has to write.
     pub fn read(&mut self) -> Vec<String> {
-        let mut text = String::new();
-        while self.console.has_output() || self.console.is_writing() {
-            if self.console.has_output() {
-                let Ok(()) = self.console.write_line(&mut text, Counters::default());
-            } else {
-                self.console.write_memory(&mut self.memory);
-            }
-        }
-        text.lines().map(str::to_owned).collect()
+        self.running.lines()
     }
 
     /// Types a line; returns its answer.
     pub fn say(&mut self, line: &str) -> String {
-        self.read();
-        for byte in line.bytes().chain([b'\r']) {
-            self.console.receive(byte);
-        }
+        let answer = self.running.say(line);
         if ["stop", "rest"].contains(&line) {
             self.may_stop = true;
         }
-        self.read().pop().expect("every line is answered")
+        answer
     }
 
     /// Types a line that must be understood and done.
@@ -184,8 +163,9 @@ impl<'a> Walker<'a> {
         let (name, robot) = (self.name, self.robot);
         let before = self.pose();
         let held_before = self.motion().hazard().is_some();
-        let pulses = self.console.frame(&Health::default());
-        let (pose, motion) = (self.pose(), self.console.motion());
+        self.running.frame();
+        let pulses = self.running.board.submitted();
+        let (pose, motion) = (self.pose(), self.running.motion());
 
         let guard_stopped = !held_before && motion.hazard().is_some();
         if guard_stopped {

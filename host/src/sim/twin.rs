@@ -11,15 +11,9 @@
 //! main waits for while it writes the EEPROM is not reconstructed: here that takes no
 //! time.
 
-use std::collections::VecDeque;
-
-use lizard_core::console::{Counters, LONGEST_LINE};
-use lizard_core::memory::Bytes;
-use lizard_core::pose::{Pose, Pulses};
-use lizard_core::restart::Restart;
+use lizard_core::console::LONGEST_LINE;
 use lizard_core::robot::Robot;
-use lizard_core::step::{Board, Main, Step};
-use lizard_core::supply::Reading;
+use lizard_core::virtual_board::{Converter, Running, Transmitter, VirtualBoard};
 use simulated_uno::SerialByte;
 
 use super::frame::{FRAME, SLOT};
@@ -39,119 +33,34 @@ const READING_TAKES: u64 = 1_600;
 /// The robot wakes within this many frames of power-on.
 const WAKES: usize = 500;
 
-/// A board that consists of its serial line and its ticks.
-#[derive(Default)]
-struct Line {
-    /// The cycle of the moment.
-    now: u64,
-    ticks: u8,
-    /// Bytes that have come and wait for main.
-    received: VecDeque<u8>,
-    written: String,
-    /// Cycle at which all that was written is through the line.
-    free: u64,
-    pulses: Pulses,
-    memory: Bytes,
-    /// What the converter reads.
-    reading: Reading,
-    /// Frames whose supply has been asked for.
-    measured: u32,
-}
-
-impl Board for Line {
-    type Writer = String;
-    type Memory = Bytes;
-
-    fn keep(&mut self, _: Option<&Pose>) {}
-
-    fn restart(&self) -> Restart {
-        Restart::default()
-    }
-
-    fn supply(&mut self) -> Reading {
-        self.measured += 1;
-        // The first conversion is not complete then.
-        if self.measured > 1 {
-            self.reading
-        } else {
-            Reading::default()
-        }
-    }
-
-    fn stack_is_intact(&self) -> bool {
-        true
-    }
-
-    fn memory(&mut self) -> &mut Bytes {
-        &mut self.memory
-    }
-
-    fn ticks(&self) -> u8 {
-        self.ticks
-    }
-
-    fn submit(&mut self, pulses: Pulses) {
-        self.pulses = pulses;
-    }
-
-    fn set_led(&mut self, _: bool) {}
-
-    fn room(&self) -> u8 {
-        let queued = self.free.saturating_sub(self.now).div_ceil(BYTE);
-        CAPACITY.saturating_sub(queued).min(255) as u8
-    }
-
-    fn writer(&mut self) -> &mut String {
-        &mut self.written
-    }
-
-    fn receive(&mut self) -> Option<u8> {
-        self.received.pop_front()
-    }
-
-    fn counters(&self) -> Counters {
-        Counters::default()
-    }
-}
-
 /// The firmware's main on such a board.
 struct Twin<R> {
-    main: Main<R>,
-    line: Line,
+    running: Running<R>,
 }
 
 impl<R: Robot> Twin<R> {
     fn new(robot: R) -> Self {
-        let mut line = Line {
-            reading: supplies::reading(&robot.supplies()),
-            ..Line::default()
-        };
-        let mut main = Main::new(robot);
-        main.begin(&mut line);
-        Self { main, line }
+        let supplies = robot.supplies();
+        let mut board = VirtualBoard::default();
+        board.transmitter = Transmitter::new(BYTE, CAPACITY);
+        board.converter = Converter::new(supplies::reading(&supplies), supplies.rail.is_some());
+        Self {
+            running: Running::on(robot, board),
+        }
     }
 
     /// The main loop, woken at a cycle, until it has nothing left to do.
     fn wake(&mut self, cycle: u64) {
-        self.line.now = cycle;
-        loop {
-            let before = self.line.written.len();
-            if let Step::Idle(_) = self.main.step(&mut self.line) {
-                break;
-            }
-            let length = (self.line.written.len() - before) as u64;
-            if length > 0 {
-                self.line.free = self.line.free.max(cycle) + length * BYTE;
-            }
-        }
+        self.running.board.transmitter.at(cycle);
+        self.running.settle();
     }
 
     /// The frame that a tick at this cycle begins.
     fn tick(&mut self, cycle: u64) -> [u16; 4] {
         self.wake(cycle);
-        self.line.ticks = self.line.ticks.wrapping_add(1);
-        _ = self.main.step(&mut self.line);
-        let widths = self.line.pulses.0.map(|width| width.0);
+        self.running.board.tick();
+        _ = self.running.main.step(&mut self.running.board);
+        let widths = self.running.board.submitted().0.map(|width| width.0);
         // What the frame gives to say is said right after it.
         self.wake(cycle + FRAME_TAKES);
         widths
@@ -159,8 +68,9 @@ impl<R: Robot> Twin<R> {
 
     /// When lines and bytes that wait for room are written and taken.
     fn retry(&self) -> Option<u64> {
-        let waits = !self.line.received.is_empty() || self.main.console().has_output();
-        waits.then(|| self.line.free.saturating_sub(QUEUED * BYTE))
+        let board = &self.running.board;
+        let waits = board.waiting() > 0 || self.running.main.console().has_output();
+        waits.then(|| board.transmitter.free().saturating_sub(QUEUED * BYTE))
     }
 }
 
@@ -197,7 +107,7 @@ pub fn play<R: Robot + Copy>(
                 byte.cycle < tick && retry.is_none_or(|retry| byte.cycle < retry)
             };
             if let Some(byte) = received.next_if(due) {
-                twin.line.received.push_back(byte.byte);
+                twin.running.board.send(&[byte.byte]);
                 twin.wake(byte.cycle);
             } else if let Some(retry) = retry {
                 twin.wake(retry);
@@ -212,7 +122,7 @@ pub fn play<R: Robot + Copy>(
     }
     Commands {
         widths,
-        written: twin.line.written,
+        written: twin.running.board.transmitter.text,
     }
 }
 
@@ -229,7 +139,5 @@ pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = us
 /// Frames before A1's first pulse, if no command comes.
 fn frames_before_waking<R: Robot>(robot: R) -> usize {
     let mut twin = Twin::new(robot);
-    (0..WAKES)
-        .take_while(|_| twin.tick(twin.line.now)[0] == 0)
-        .count()
+    (0..WAKES).take_while(|_| twin.tick(0)[0] == 0).count()
 }

@@ -4,87 +4,16 @@
 //! what an UNO with that robot's image would, to the bit; only the cycles of the chip
 //! are missing.
 
-use std::collections::VecDeque;
-
-use lizard_core::console::Counters;
-use lizard_core::memory::Bytes;
-use lizard_core::pose::{Pose, Pulses};
 use lizard_core::restart::Restart;
 use lizard_core::robot::Robot as _;
-use lizard_core::step::{Board, Main, Step};
 use lizard_core::supply::Reading;
+use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::{Firmware, healthy_rail_mv};
 use serde::Serialize;
 
 /// Steps of the analogue converter, and the reference on the chip in V.
 const FULL_SCALE: f64 = 1024.0;
 const REFERENCE: f64 = 1.1;
-
-/// A board that consists of its serial line, its ticks and its memory.
-struct Line {
-    ticks: u8,
-    volts: f64,
-    /// What a healthy rail of the servos leaves at its pin.
-    rail_mv: f64,
-    received: VecDeque<u8>,
-    written: String,
-    pulses: Pulses,
-    memory: Bytes,
-}
-
-impl Board for Line {
-    type Writer = String;
-    type Memory = Bytes;
-
-    fn ticks(&self) -> u8 {
-        self.ticks
-    }
-
-    fn submit(&mut self, pulses: Pulses) {
-        self.pulses = pulses;
-    }
-
-    fn keep(&mut self, _: Option<&Pose>) {}
-
-    fn restart(&self) -> Restart {
-        Restart::default()
-    }
-
-    fn supply(&mut self) -> Reading {
-        let parts = (FULL_SCALE * REFERENCE / self.volts).round();
-        Reading {
-            reference: parts.clamp(0.0, FULL_SCALE - 1.0) as u16,
-            rail: (FULL_SCALE * self.rail_mv / 1000.0 / self.volts).clamp(0.0, FULL_SCALE - 1.0)
-                as u16,
-        }
-    }
-
-    fn stack_is_intact(&self) -> bool {
-        true
-    }
-
-    fn memory(&mut self) -> &mut Bytes {
-        &mut self.memory
-    }
-
-    fn set_led(&mut self, _: bool) {}
-
-    fn room(&self) -> u8 {
-        u8::MAX
-    }
-
-    fn writer(&mut self) -> &mut String {
-        &mut self.written
-    }
-
-    fn receive(&mut self) -> Option<u8> {
-        self.received.pop_front()
-    }
-
-    fn counters(&self) -> Counters {
-        Counters::default()
-    }
-}
 
 /// What a frame brought.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -97,49 +26,44 @@ pub struct Said {
 
 /// The core of a robot, running.
 pub struct CoreRun {
-    main: Main<Firmware>,
-    line: Line,
+    running: Running<Firmware>,
+    /// What a healthy rail of the servos leaves at its pin.
+    rail_mv: f64,
 }
 
 impl CoreRun {
     /// At power-on, with what an EEPROM holds.
     #[must_use]
-    pub fn begin(robot: Firmware, memory: Bytes) -> Self {
-        let mut line = Line {
-            ticks: 0,
-            volts: 5.0,
+    pub fn begin(robot: Firmware, memory: Eeprom) -> Self {
+        Self {
             rail_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
-            received: VecDeque::new(),
-            written: String::new(),
-            pulses: Pulses::default(),
-            memory,
-        };
-        let mut main = Main::new(robot);
-        main.begin(&mut line);
-        Self { main, line }
+            running: Running::with(robot, memory, Restart::default()),
+        }
     }
 
     /// What the EEPROM holds.
     #[must_use]
-    pub fn into_memory(self) -> Bytes {
-        self.line.memory
+    pub fn into_memory(self) -> Eeprom {
+        self.running.board.memory
     }
 
     /// One frame of 20 ms, after these bytes have come, at a supply in V.
     pub fn frame(&mut self, bytes: &[u8], volts: f64) -> Said {
-        self.line.volts = volts;
-        self.line.received.extend(bytes);
-        self.settle();
-        self.line.ticks = self.line.ticks.wrapping_add(1);
-        self.settle();
-        Said {
-            widths: self.line.pulses.0.map(|width| width.0),
-            text: std::mem::take(&mut self.line.written),
+        let parts = |volts: f64, of: f64| (FULL_SCALE * volts / of).clamp(0.0, FULL_SCALE - 1.0);
+        self.running.board.converter.set(Reading {
+            reference: parts(REFERENCE, volts).round() as u16,
+            rail: parts(self.rail_mv / 1000.0, volts) as u16,
+        });
+        // One by one, as they come over a line.
+        for byte in bytes {
+            self.running.board.send(&[*byte]);
+            self.running.settle();
         }
-    }
-
-    fn settle(&mut self) {
-        while self.main.step(&mut self.line) == Step::Worked {}
+        self.running.frame();
+        Said {
+            widths: self.running.board.submitted().0.map(|width| width.0),
+            text: std::mem::take(&mut self.running.board.transmitter.text),
+        }
     }
 }
 
@@ -163,7 +87,7 @@ mod tests {
     #[test]
     fn it_greets_walks_and_keeps_what_is_saved() {
         let robot = Robot::parse(include_str!("../../../robots/large.toml")).expect("right");
-        let mut core = CoreRun::begin(robot.firmware().clone(), Bytes::default());
+        let mut core = CoreRun::begin(robot.firmware().clone(), Eeprom::blank());
         let mut said = String::new();
         let stands = run(&mut said, &mut core, "", 200);
         assert!(said.starts_with("# lizard "), "{said}");
@@ -181,7 +105,7 @@ mod tests {
     #[test]
     fn a_low_supply_stops_it() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
-        let mut core = CoreRun::begin(robot.firmware().clone(), Bytes::default());
+        let mut core = CoreRun::begin(robot.firmware().clone(), Eeprom::blank());
         let mut said = String::new();
         run(&mut said, &mut core, "", 200);
         for _ in 0..200 {

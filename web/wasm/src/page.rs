@@ -1,7 +1,7 @@
 //! What the page is doing: a robot, a body on the floor, and perhaps the core of a
 //! robot without an image.
 
-use lizard_core::memory::Bytes;
+use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
 use lizard_robot::servo::FORWARD;
 use lizard_robot::{Place as Walked, Robot};
@@ -183,7 +183,7 @@ impl Page {
         let memory = self
             .run
             .take()
-            .map_or_else(Bytes::default, CoreRun::into_memory);
+            .map_or_else(Eeprom::default, CoreRun::into_memory);
         let robot = self.robot();
         self.run = robot.map(|robot| CoreRun::begin(robot.firmware().clone(), memory));
     }

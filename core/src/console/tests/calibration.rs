@@ -9,7 +9,7 @@ fn cal(dialogue: &mut Dialogue) -> Vec<String> {
 
 #[test]
 fn cal_prints_all_that_is_set_and_nothing_that_varies() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     let untouched = cal(&mut dialogue);
     assert_eq!(untouched.len(), 7);
     assert!(untouched[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
@@ -45,14 +45,18 @@ fn cal_prints_all_that_is_set_and_nothing_that_varies() {
 
 #[test]
 fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("trim 2 4");
     assert_eq!(dialogue.say("save"), "ok save");
     let saved = cal(&mut dialogue);
     dialogue.say("trim 2 5");
     assert_ne!(cal(&mut dialogue), saved);
-    let mut again = Dialogue::begun(Sample::odd(), dialogue.chip.clone(), Restart::default());
-    assert_eq!(again.read().len(), 1, "the banner alone");
+    let mut again = Dialogue::with(
+        Sample::odd(),
+        dialogue.board.memory.clone(),
+        Restart::default(),
+    );
+    assert_eq!(again.lines().len(), 1, "the banner alone");
     assert_eq!(cal(&mut again), saved);
     // And without power going off.
     assert_eq!(dialogue.say("load"), "ok load");
@@ -61,12 +65,12 @@ fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
 
 #[test]
 fn there_is_nothing_to_load_before_the_first_save_and_a_worn_memory_is_told() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     assert_eq!(
         dialogue.say("load"),
         "err 9 nothing is saved that could be loaded"
     );
-    dialogue.chip.worn = true;
+    dialogue.board.memory.worn = true;
     assert_eq!(
         dialogue.say("save"),
         "err 9 the memory does not keep what is written"
@@ -83,12 +87,12 @@ fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_t
         "dir 1 -",
         "dir 1 +",
     ] {
-        let mut dialogue = Dialogue::standing();
+        let mut dialogue = standing();
         dialogue.say("pose 145 50 311 224.5");
         dialogue.run(150);
         let before = widths(&mut dialogue);
         assert_eq!(dialogue.say(change), format!("ok {change}"));
-        let motion = dialogue.console.motion();
+        let motion = dialogue.motion();
         let wanted = motion
             .pose()
             .pulses(motion.calibration())
@@ -113,24 +117,24 @@ fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_t
 
 #[test]
 fn a_calibration_in_a_gait_halts_it_until_the_pulses_have_settled_and_it_goes_on() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("sway");
     dialogue.run(120);
-    let before = dialogue.console.motion().phase();
+    let before = dialogue.motion().phase();
     dialogue.say("trim 2 15");
     dialogue.run(1);
-    assert_eq!(dialogue.console.motion().phase(), before);
+    assert_eq!(dialogue.motion().phase(), before);
     dialogue.run(200);
     assert_eq!(dialogue.status("gait"), "sway");
-    assert_ne!(dialogue.console.motion().phase(), before);
-    let motion = dialogue.console.motion();
+    assert_ne!(dialogue.motion().phase(), before);
+    let motion = dialogue.motion();
     let wanted = motion.pose().pulses(motion.calibration());
     assert_eq!(motion.sent(), &wanted);
 }
 
 #[test]
 fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothing() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     let before = cal(&mut dialogue);
     for line in [
         "limit 1 140 215",
@@ -159,7 +163,7 @@ fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothi
 
 #[test]
 fn a_factory_or_a_load_that_is_refused_changes_nothing() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     for line in [
         "trim 1 10",
         "limit 1 61.37 149",
@@ -177,26 +181,26 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
             .starts_with("err 3 A1 would not reach where it is")
     );
     assert_eq!(cal(&mut dialogue), before);
-    let mut other = Dialogue::standing();
+    let mut other = standing();
     other.say("trim 3 4");
     let before = cal(&mut other);
-    other.chip.bytes[0] = 0;
+    other.board.memory.bytes_mut()[0] = 0;
     assert_eq!(
         other.say("load"),
         "err 9 nothing is saved that could be loaded"
     );
     assert_eq!(cal(&mut other), before);
     // Saved for other servos: not loaded, and what is set stays.
-    let mut chip = Dialogue::standing();
+    let mut chip = standing();
     chip.say("save");
-    other.chip = chip.chip.clone();
-    other.chip.bytes[44] ^= 1;
+    other.board.memory = chip.board.memory.clone();
+    other.board.memory.bytes_mut()[44] ^= 1;
     assert!(other.say("load").starts_with("err 9 "));
     assert_eq!(cal(&mut other), before);
     // A trim moves the travel: this pose is within it, but not within robot.toml's.
     let mut robot = Sample::odd();
     robot.calibration[0].max = crate::units::Sweep(2200);
-    let mut narrow = Dialogue::awake(robot);
+    let mut narrow = awake(robot);
     assert_eq!(narrow.say("trim 1 -5"), "ok trim 1 -5");
     assert_eq!(narrow.say("limit 1 67 149"), "ok limit 1 67 149");
     narrow.run(100);
@@ -214,7 +218,7 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
 
 #[test]
 fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
         dialogue.say(line);
     }
@@ -227,6 +231,6 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     }
     dialogue.say("stand");
     dialogue.run(200);
-    let motion = dialogue.console.motion();
+    let motion = dialogue.motion();
     assert_eq!(motion.sent(), &Pose::NEUTRAL.pulses(motion.calibration()));
 }

@@ -4,23 +4,20 @@ use super::*;
 
 #[test]
 fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     for boot in ["sway left", "rest"] {
         dialogue.say(&format!("boot {boot}"));
         assert_eq!(dialogue.say("save"), "ok save");
-        let chip = dialogue.chip.clone();
-        let mut alone = Dialogue::begun(Sample::odd(), chip.clone(), Restart::default());
+        let chip = dialogue.board.memory.clone();
+        let mut alone = Dialogue::with(Sample::odd(), chip.clone(), Restart::default());
         let said = alone.run(149);
         assert_eq!(said.len(), 1, "{said:?}");
-        assert_eq!(
-            alone.console.motion().activity(),
-            Activity::Gait(GaitId::STAND)
-        );
+        assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
         assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
         assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
-        let mut watched = Dialogue::begun(Sample::odd(), chip, Restart::default());
+        let mut watched = Dialogue::with(Sample::odd(), chip, Restart::default());
         watched.run(100);
-        watched.console.receive(b' ');
+        watched.board.send(b" ");
         watched.run(400);
         assert_eq!(watched.status("gait"), "stand");
     }
@@ -28,7 +25,7 @@ fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
 
 #[test]
 fn a_gait_ends_when_the_link_is_lost_and_says_why() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("deadman 400");
     dialogue.say("sway");
     for _ in 0..30 {
@@ -48,30 +45,25 @@ fn a_gait_ends_when_the_link_is_lost_and_says_why() {
     assert_eq!(dialogue.status("fault"), "none");
 }
 
-/// A board at so many volts, its rail at 6 V.
-fn at(volts: f64) -> Health {
-    let reading = |mv: f64| (mv / volts * 1024.0) as u16;
-    Health {
-        supply: crate::supply::Reading {
-            reference: reading(1.08),
-            rail: reading(6.0 / 3.378 * 1.08),
-        },
-        ..WELL
-    }
+/// The board's supply is at so many millivolts, its rail at 6 V.
+fn supply(dialogue: &mut Dialogue, mv: u32) {
+    let supplies = dialogue.motion().robot().supplies();
+    let truth = reading(&supplies, mv, 6_000);
+    dialogue.board.converter.set(truth);
 }
 
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothing_restarts() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("sway");
     dialogue.run(150);
     let pace = |dialogue: &mut Dialogue| {
-        let before = dialogue.console.motion().phase();
+        let before = dialogue.motion().phase();
         dialogue.run(10);
-        dialogue.console.motion().phase().wrapping_sub(before) & 0xff_ffff
+        dialogue.motion().phase().wrapping_sub(before) & 0xff_ffff
     };
     let full = pace(&mut dialogue);
-    dialogue.health = at(4.4);
+    supply(&mut dialogue, 4_400);
     let said = dialogue.run(40);
     assert!(
         said[0].starts_with("# supply: 4.") && said[0].ends_with("V, low: half speed, no saving"),
@@ -80,18 +72,18 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
     let half = f64::from(pace(&mut dialogue)) / f64::from(full);
     assert!((half - 0.5).abs() < 0.02, "{half}");
     assert_eq!(dialogue.say("save"), "err 8 the supply is too low");
-    dialogue.health = at(4.2);
+    supply(&mut dialogue, 4_200);
     let said = dialogue.run(40);
     assert_eq!(said.len(), 2);
     assert_eq!(dialogue.status("gait"), "stop");
     assert_eq!(dialogue.status("fault"), "supply");
     assert!(dialogue.say("sway").starts_with("err 8 "));
     assert!(dialogue.say(NEUTRAL).starts_with("err 8 "));
-    dialogue.health = at(4.0);
+    supply(&mut dialogue, 4_000);
     dialogue.run(40);
     assert_eq!(dialogue.status("gait"), "rest");
-    assert_eq!(dialogue.frame().0, Pulses::default());
-    dialogue.health = at(5.0);
+    assert_eq!(dialogue.frame(), Pulses::default());
+    supply(&mut dialogue, 5_000);
     let said = dialogue.run(100);
     assert!(
         said.last().is_some_and(|line| line.ends_with(" V, good")),
@@ -101,24 +93,38 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
     assert_eq!(dialogue.say("stand"), "ok stand");
 }
 
+/// Servos that were held in a pose, with the pulses of robot.toml.
+fn held(sweeps: [i16; 4]) -> Stance {
+    let pose = Pose(sweeps.map(crate::units::Sweep));
+    Stance {
+        resting: false,
+        awake: crate::motion::AWAKE,
+        brown_outs: 0,
+        pose,
+        sent: pose.pulses(&Sample::odd().calibration()),
+    }
+}
+
+fn hung(count: u8, stance: Stance) -> Restart {
+    Restart {
+        cause: Cause::Watchdog,
+        count,
+        may_be_supply: false,
+        before: Some(stance),
+    }
+}
+
 #[test]
 fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
-    let sweeps = [400, -300, 200, -100].map(crate::units::Sweep);
-    let restart = Restart {
-        cause: Cause::Watchdog,
-        count: 3,
-        pose: Some(Pose(sweeps)),
-    };
-    let mut dialogue = Dialogue::begun(Sample::odd(), Chip::blank(), restart);
+    let stance = held([400, -300, 200, -100]);
+    let mut dialogue = Dialogue::with(Sample::odd(), Eeprom::blank(), hung(3, stance));
     let said = dialogue.run(1);
     assert!(
         said.contains(&"# fault: the program hung and began anew".to_string()),
         "{said:?}"
     );
-    let motion = dialogue.console.motion();
-    let held = Pose(sweeps).pulses(motion.calibration());
     for _ in 0..400 {
-        assert_eq!(dialogue.frame().0, held, "at once, and for good");
+        assert_eq!(dialogue.frame(), stance.sent, "at once, and for good");
     }
     assert_eq!(dialogue.status("reset"), "watchdog");
     assert_eq!(dialogue.status("resets"), "3");
@@ -134,34 +140,266 @@ fn dialogue_neutral() -> String {
 }
 
 #[test]
-fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over() {
+fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over_and_the_robot_rests() {
     for sweeps in [[30_000, 0, 0, 0], [-6803, 7663, 0, 0]] {
-        let restart = Restart {
-            cause: Cause::Watchdog,
-            count: 1,
-            pose: Some(Pose(sweeps.map(crate::units::Sweep))),
-        };
-        let mut dialogue = Dialogue::begun(Sample::odd(), Chip::blank(), restart);
-        dialogue.run(30);
-        assert_eq!(dialogue.status("pose"), dialogue_neutral());
+        for cause in [Cause::Watchdog, Cause::External] {
+            let restart = Restart {
+                cause,
+                ..hung(1, held(sweeps))
+            };
+            let mut dialogue = Dialogue::with(Sample::odd(), Eeprom::blank(), restart);
+            for _ in 0..140 {
+                assert_eq!(dialogue.frame(), Pulses::default());
+            }
+            assert_eq!(dialogue.status("gait"), "rest");
+            dialogue.say("stand");
+            dialogue.run(50);
+            assert_eq!(dialogue.status("pose"), dialogue_neutral());
+        }
     }
 }
 
 #[test]
+fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
+    let mut dialogue = standing();
+    assert!(dialogue.say("limit 1 115 160").starts_with("ok "));
+    assert_eq!(dialogue.say("save"), "ok save");
+    let chip = dialogue.board.memory.clone();
+    // 132.37 deg and 30 more is safe, and beyond 160.
+    let beyond = held([5461, 0, 0, 0]);
+    let mut within = Dialogue::with(Sample::odd(), Eeprom::blank(), hung(1, beyond));
+    within.run(10);
+    assert_eq!(within.status("gait"), "stop");
+    let mut narrow = Dialogue::with(Sample::odd(), chip, hung(1, beyond));
+    narrow.run(10);
+    assert_eq!(narrow.status("gait"), "rest");
+}
+
+#[test]
+fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
+    for (setting, servo, cause) in [
+        ("trim 1 15", 0, Cause::Watchdog),
+        ("trim 4 -15", 3, Cause::External),
+        ("scale 2 12", 1, Cause::External),
+        ("dir 3 -", 2, Cause::BrownOut),
+    ] {
+        let mut dialogue = standing();
+        dialogue.say("pose 140 50 311 224.5");
+        dialogue.run(100);
+        assert!(dialogue.say(setting).starts_with("ok "), "{setting}");
+        dialogue.run(100);
+        let mut last = dialogue.frame();
+        dialogue.reset(cause);
+        let calibration = *dialogue.motion().calibration();
+        let mut moved = 0;
+        for _ in 0..200 {
+            let pulses = dialogue.frame();
+            for place in 0..4 {
+                let (pulse, before) = (pulses.0[place], &mut last.0[place]);
+                if pulse.0 == 0 {
+                    continue;
+                }
+                let most = calibration[place].slew(Sample::odd().slew.per_frame);
+                let way = pulse.0.abs_diff(before.0);
+                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", place + 1);
+                moved += usize::from(place == servo && way > 0);
+                *before = pulse;
+            }
+        }
+        assert!(moved > 3, "{setting}: it was undone");
+        assert_eq!(last, dialogue.motion().pose().pulses(&calibration));
+    }
+}
+
+#[test]
+fn a_reset_while_servos_wake_wakes_no_two_together() {
+    for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
+        for frames in 1..25 {
+            let mut dialogue = standing();
+            dialogue.say("rest");
+            dialogue.run(10);
+            dialogue.say("stand");
+            dialogue.run(frames);
+            let mut had = dialogue.frame().0.map(|width| width.0 > 0);
+            dialogue.reset(cause);
+            let known = had;
+            if cause != Cause::Watchdog {
+                had = [false; 4];
+            }
+            for _ in 0..60 {
+                let has = dialogue.frame().0.map(|width| width.0 > 0);
+                let woken = (0..4).filter(|servo| has[*servo] && !had[*servo]);
+                let unknown = woken.clone().filter(|servo| !known[*servo]).count();
+                assert!(unknown <= 1, "{cause:?} after {frames}");
+                let together = woken.count();
+                assert!(together <= 1, "{cause:?} after {frames}");
+                had = has;
+            }
+            assert_eq!(had, [true; 4]);
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
+    for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
+        let mut dialogue = standing();
+        dialogue.say("pose 140 50 311 224.5");
+        dialogue.run(150);
+        dialogue.say("rest");
+        dialogue.run(5);
+        dialogue.reset(cause);
+        for _ in 0..149 {
+            assert_eq!(dialogue.frame(), Pulses::default(), "{cause:?}");
+        }
+        // `boot` is stand, and a hang calls it off.
+        let said = dialogue.run(1);
+        let boots = said.iter().any(|line| line == "# boot: stand");
+        assert_eq!(boots, cause != Cause::Watchdog, "{said:?}");
+        assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn brown_outs_in_a_row_end_in_a_rest_that_says_why_until_somebody_orders_a_motion() {
+    for boot_loader in [false, true] {
+        let mut dialogue = standing();
+        dialogue.board.boot_loader = boot_loader;
+        dialogue.lines();
+        for brown_outs in 1..=5 {
+            dialogue.reset(Cause::BrownOut);
+            let said = dialogue.run(17);
+            let rests = dialogue.frame() == Pulses::default();
+            assert_eq!(rests, brown_outs >= 3, "{brown_outs}");
+            let why = "# fault: the supply broke down several times in a row, resting";
+            assert_eq!(said.iter().any(|line| line == why), brown_outs >= 3);
+        }
+        dialogue.run(300);
+        assert_eq!(dialogue.frame(), Pulses::default(), "boot is called off");
+        assert_eq!(dialogue.status("fault"), "brownout");
+        assert!(dialogue.say("sway").starts_with("err 7 "));
+        assert_eq!(dialogue.say("stand"), "ok stand");
+        dialogue.run(30);
+        dialogue.reset(Cause::BrownOut);
+        dialogue.run(30);
+        assert_ne!(dialogue.frame(), Pulses::default(), "the count began anew");
+    }
+}
+
+#[test]
+fn who_opens_the_port_again_and_again_and_says_something_is_no_weak_supply() {
+    let mut dialogue = standing();
+    dialogue.board.boot_loader = true;
+    for _ in 0..20 {
+        dialogue.reset(Cause::External);
+        dialogue.run(30);
+        assert_eq!(dialogue.status("fault"), "none");
+        assert_ne!(dialogue.frame(), Pulses::default());
+    }
+}
+
+#[test]
+fn brown_outs_half_a_minute_apart_are_none_in_a_row() {
+    let mut dialogue = standing();
+    for _ in 0..6 {
+        dialogue.reset(Cause::BrownOut);
+        dialogue.run(1501);
+        assert_ne!(dialogue.frame(), Pulses::default());
+    }
+}
+
+#[test]
+fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
+    let mut dialogue = standing();
+    dialogue.say("rest");
+    dialogue.run(2);
+    assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
+    let chip = dialogue.board.memory.clone();
+    let mut again = Dialogue::with(Sample::odd(), chip, Restart::NONE);
+    let writes = again.board.memory.log.len();
+    for _ in 0..60 {
+        again.lines();
+        let measured = again.main.control().safety().supply().measured();
+        if measured.is_none() {
+            assert_eq!(again.board.memory.log.len(), writes);
+        }
+        again.frame();
+    }
+    assert_eq!(again.board.memory.bytes()[128], 0xff, "it woke and stands");
+    again.say("rest");
+    again.run(10);
+    supply(&mut again, 4_400);
+    again.run(30);
+    let writes = again.board.memory.log.len();
+    assert_eq!(again.say("stand"), "ok stand");
+    again.run(50);
+    assert_eq!(again.board.memory.log.len(), writes, "a byte at 4.4 V");
+    assert_eq!(again.say("save"), "err 8 the supply is too low");
+    supply(&mut again, 5_000);
+    again.run(80);
+    assert_eq!(again.board.memory.bytes()[128], 0xff, "forgotten later");
+}
+
+#[test]
+fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
+    let mut dialogue = standing();
+    dialogue.say("deadman 1000");
+    assert_eq!(dialogue.say("save"), "ok save");
+    dialogue.say("deadman 2000");
+    dialogue.board.memory.slowness = 1;
+    dialogue.board.send(b"save\r");
+    for _ in 0..30 {
+        dialogue.main.step(&mut dialogue.board);
+    }
+    assert!(dialogue.main.control().is_writing());
+    supply(&mut dialogue, 4_400);
+    let mut said = Vec::new();
+    for _ in 0..20 {
+        // Frames alone: main has no time for the memory.
+        dialogue.board.tick();
+        dialogue.main.step(&mut dialogue.board);
+    }
+    said.extend(dialogue.lines());
+    assert!(
+        said.contains(&"err 8 the supply is too low".to_string()),
+        "{said:?}"
+    );
+    let chip = dialogue.board.memory.clone();
+    let again = Dialogue::with(Sample::odd(), chip, Restart::NONE);
+    assert_eq!(again.main.control().settings().deadman(), 1000);
+}
+
+#[test]
+fn rest_sent_again_and_again_writes_nothing_and_a_worn_cell_is_told() {
+    let mut dialogue = standing();
+    dialogue.say("rest");
+    dialogue.run(2);
+    let writes = dialogue.board.memory.log.len();
+    for _ in 0..50 {
+        assert_eq!(dialogue.say("rest"), "ok rest");
+        dialogue.run(2);
+    }
+    assert_eq!(dialogue.board.memory.log.len(), writes);
+    dialogue.say("stand");
+    dialogue.run(50);
+    dialogue.board.memory.worn = true;
+    dialogue.board.send(b"rest\r");
+    let said = dialogue.run(3);
+    let told = "# memory: does not keep the pose of this rest";
+    assert!(said.iter().any(|line| line == told), "{said:?}");
+}
+
+#[test]
 fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("pose 140 50 311 224.5");
     dialogue.run(150);
     dialogue.say("rest");
-    let chip = dialogue.chip.clone();
-    let mut again = Dialogue::begun(Sample::odd(), chip.clone(), Restart::default());
-    again.read();
+    let chip = dialogue.board.memory.clone();
+    let mut again = Dialogue::with(Sample::odd(), chip.clone(), Restart::default());
+    again.lines();
     assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
-    let there = again
-        .console
-        .motion()
-        .pose()
-        .pulses(again.console.motion().calibration());
+    let there = again.motion().pose().pulses(again.motion().calibration());
     for servo in 0..4 {
         for _ in 0..5 {
             let widths = widths(&mut again);
@@ -175,21 +413,23 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
     again.run(200);
     assert_eq!(again.status("pose"), dialogue_neutral());
     // Having moved, it has forgotten where it rested.
-    let after = Dialogue::begun(Sample::odd(), again.chip.clone(), Restart::default());
-    assert_eq!(after.console.motion().pose(), &Pose::NEUTRAL);
+    let after = Dialogue::with(
+        Sample::odd(),
+        again.board.memory.clone(),
+        Restart::default(),
+    );
+    assert_eq!(after.motion().pose(), &Pose::NEUTRAL);
 }
 
 #[test]
 fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
-    let mut dialogue = Dialogue::standing();
+    let mut dialogue = standing();
     dialogue.say("rest");
-    assert_eq!(dialogue.chip.bytes[128], 0xa5);
-    for byte in b"stand\r" {
-        dialogue.console.receive(*byte);
-    }
+    assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
+    dialogue.board.send(b"stand\r");
     // The answer goes first; then main deals with the memory, long before the first
     // servo wakes.
-    dialogue.read();
-    assert_eq!(dialogue.chip.bytes[128], 0xff);
-    assert_eq!(dialogue.frame().0, Pulses::default());
+    dialogue.lines();
+    assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
+    assert_eq!(dialogue.frame(), Pulses::default());
 }

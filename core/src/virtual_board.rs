@@ -1,0 +1,361 @@
+//! The one board for hosts: what the UNO's registers, pins and interrupts do, without
+//! any.
+//!
+//! Whoever runs the core away from the chip (tests, the fuzzer, the page in a
+//! browser, the simulation's comparison) runs [`Main::step`] on this board, so
+//! what is tried is the loop that the UNO repeats and not another one like it.
+//! [`Running`] holds the two together and speaks of them in sentences.
+//!
+//! Time is a call, [`VirtualBoard::pass`], by the millisecond. What a frame of 20 ms
+//! is made of:
+//!
+//! | ms | what |
+//! |---|---|
+//! | 0 | the tick, for which main computes a frame |
+//! | 4 | the frame that main handed over is taken over, and A1's pulse begins |
+//! | 8, 12, 16 | the pulses of A2, A3 and A4 begin |
+//!
+//! It is compact: cloned and hashed by the million.
+//!
+//! [`Main::step`]: crate::step::Main::step
+
+mod converter;
+mod eeprom;
+mod ram;
+mod running;
+mod transmitter;
+
+use std::collections::VecDeque;
+
+use crate::console::Counters;
+use crate::kept::Flags;
+use crate::pose::Pulses;
+use crate::restart::{Cause, Restart, Stance};
+use crate::step::Board;
+use crate::supply::Reading;
+use crate::units::{CYCLES_PER_US, Width};
+
+pub use converter::{Converter, reading};
+pub use eeprom::Eeprom;
+pub use ram::Ram;
+pub use running::{Running, is_final};
+pub use transmitter::Transmitter;
+
+/// Milliseconds from one tick to the next.
+pub const FRAME_MS: u8 = 20;
+
+/// Milliseconds from the tick to the hand-over, and from one servo's pulse to the
+/// next one's.
+const SLOT_MS: u8 = 4;
+
+/// Milliseconds unfed after which the watchdog interrupts the program; it resets it
+/// after as many more.
+pub const WATCHDOG_MS: u16 = 125;
+
+/// Bytes that the receiver holds for main.
+const RECEIVED: usize = 64;
+
+/// Widths that a slot has room for; any other gives no pulse.
+const WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
+
+/// A board without a chip.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct VirtualBoard {
+    /// Milliseconds since the last tick.
+    ms: u8,
+    ticks: u8,
+    submitted: Pulses,
+    /// Whether what was handed over waits to be taken over.
+    fresh: bool,
+    playing: Pulses,
+    begun: Pulses,
+    lit: bool,
+    received: VecDeque<u8>,
+    lost: u16,
+    /// Edges that came late.
+    pub late: u16,
+    /// Whether the stack has kept off the data.
+    pub stack_is_intact: bool,
+    /// The serial line's other direction.
+    pub transmitter: Transmitter,
+    /// What outlasts power.
+    pub memory: Eeprom,
+    /// What measures the supplies.
+    pub converter: Converter,
+    /// What a reset leaves.
+    pub ram: Ram,
+    /// Whether a boot loader hides what the chip knows of a reset.
+    pub boot_loader: bool,
+    restart: Restart,
+    /// Milliseconds since the watchdog was fed.
+    unfed: u16,
+    hushed: bool,
+}
+
+impl Default for VirtualBoard {
+    fn default() -> Self {
+        Self::new(Eeprom::default())
+    }
+}
+
+impl VirtualBoard {
+    /// At power-on, with what its memory holds; the supplies cannot be measured.
+    #[must_use]
+    pub fn new(memory: Eeprom) -> Self {
+        Self {
+            ms: FRAME_MS - 1,
+            ticks: 0,
+            submitted: Pulses::default(),
+            fresh: false,
+            playing: Pulses::default(),
+            begun: Pulses::default(),
+            lit: false,
+            received: VecDeque::new(),
+            lost: 0,
+            late: 0,
+            stack_is_intact: true,
+            transmitter: Transmitter::default(),
+            memory,
+            converter: Converter::default(),
+            ram: Ram::default(),
+            boot_loader: false,
+            restart: Restart::NONE,
+            unfed: 0,
+            hushed: false,
+        }
+    }
+
+    /// The same board, the program about to begin for this reason.
+    #[must_use]
+    pub fn restarted(self, restart: Restart) -> Self {
+        if let Some(stance) = &restart.before {
+            self.ram.keep(stance);
+        }
+        Self { restart, ..self }
+    }
+
+    /// The same board, its next tick the one after this.
+    #[must_use]
+    pub fn at_tick(self, ticks: u8) -> Self {
+        Self { ticks, ..self }
+    }
+
+    /// Time passes, until the watchdog resets the processor if main does not feed it.
+    /// Returns whether it does; then [`VirtualBoard::reset`] has to follow.
+    pub fn pass(&mut self, ms: u16) -> bool {
+        for _ in 0..ms {
+            self.unfed = self.unfed.saturating_add(1);
+            if self.unfed == WATCHDOG_MS {
+                self.hushed = true;
+                self.ram.mark_hung();
+            }
+            if self.unfed >= 2 * WATCHDOG_MS {
+                return true;
+            }
+            self.millisecond();
+        }
+        false
+    }
+
+    fn millisecond(&mut self) {
+        self.transmitter.pass(1);
+        self.memory.settle();
+        self.ms += 1;
+        if self.ms == FRAME_MS {
+            self.ms = 0;
+            self.tick();
+        } else if self.ms.is_multiple_of(SLOT_MS) {
+            let servo = usize::from(self.ms / SLOT_MS - 1);
+            if servo == 0 {
+                self.take_over();
+            }
+            let width = self.playing.0[servo];
+            if !self.hushed && WIDTHS.contains(&width.0) {
+                self.begun.0[servo] = width;
+            }
+        }
+    }
+
+    /// A tick, however soon after the last one.
+    pub fn tick(&mut self) {
+        self.ticks = self.ticks.wrapping_add(1);
+    }
+
+    fn take_over(&mut self) {
+        if self.fresh {
+            self.playing = self.submitted;
+            self.fresh = false;
+        }
+        self.begun = Pulses([Width(0); 4]);
+    }
+
+    /// Milliseconds until the next tick.
+    #[must_use]
+    pub const fn until_tick(&self) -> u16 {
+        (FRAME_MS - self.ms) as u16
+    }
+
+    /// The program begins anew: what a reset takes is gone, and main has to begin.
+    pub fn reset(&mut self, cause: Cause) {
+        let power_on = cause == Cause::Power;
+        let told = !self.boot_loader;
+        let flags = Flags {
+            power_on: power_on && told,
+            external: cause == Cause::External && told,
+            brown_out: cause == Cause::BrownOut && told,
+            watchdog: cause == Cause::Watchdog && told,
+        };
+        let ram = core::mem::take(&mut self.ram);
+        let mut memory = core::mem::take(&mut self.memory);
+        // Whoever starts the program takes longer than that.
+        memory.settle();
+        *self = Self {
+            transmitter: core::mem::take(&mut self.transmitter).reset(),
+            converter: core::mem::take(&mut self.converter).reset(),
+            boot_loader: self.boot_loader,
+            restart: ram.begin(flags),
+            ram,
+            ..Self::new(memory)
+        };
+        if power_on {
+            self.ram = Ram::default();
+            self.restart = Restart::NONE;
+        }
+    }
+
+    /// Power is lost and comes back. A byte that was being written to the memory may
+    /// then hold anything, hence `torn`.
+    pub fn lose_power(&mut self, torn: Option<u8>) {
+        if let Some(byte) = torn {
+            self.memory.tear(byte);
+        }
+        self.reset(Cause::Power);
+    }
+
+    /// Bytes come over the serial line. What the receiver has no room for is lost.
+    pub fn send(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            if self.received.len() < RECEIVED {
+                self.received.push_back(*byte);
+            } else {
+                self.lost = self.lost.saturating_add(1);
+            }
+        }
+    }
+
+    /// Bytes that main has not taken yet.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.received.len()
+    }
+
+    /// Counts bytes as lost that were never there.
+    pub const fn lose(&mut self, bytes: u16) {
+        self.lost = self.lost.saturating_add(bytes);
+    }
+
+    /// What main handed over last.
+    #[must_use]
+    pub const fn submitted(&self) -> Pulses {
+        self.submitted
+    }
+
+    /// Whether that still waits to be taken over.
+    #[must_use]
+    pub const fn is_fresh(&self) -> bool {
+        self.fresh
+    }
+
+    /// The pulses that have begun since the last hand-over.
+    #[must_use]
+    pub const fn begun(&self) -> Pulses {
+        self.begun
+    }
+
+    /// Whether the LED is lit.
+    #[must_use]
+    pub const fn is_lit(&self) -> bool {
+        self.lit
+    }
+
+    /// What a reset would leave of what the servos do.
+    #[must_use]
+    pub fn kept(&self) -> Option<Stance> {
+        self.ram.found(Flags::default()).before
+    }
+
+    /// Whether the watchdog has ended the pulses.
+    #[must_use]
+    pub const fn is_hushed(&self) -> bool {
+        self.hushed
+    }
+}
+
+impl Board for VirtualBoard {
+    type Writer = Transmitter;
+    type Memory = Eeprom;
+
+    const ROOM: u8 = u8::MAX;
+    const CYCLES_PER_US: u16 = CYCLES_PER_US;
+
+    fn ticks(&self) -> u8 {
+        self.ticks
+    }
+
+    fn submit(&mut self, pulses: Pulses) -> bool {
+        let taken = !self.fresh;
+        self.submitted = pulses;
+        self.fresh = true;
+        taken
+    }
+
+    fn feed(&mut self) {
+        self.unfed = 0;
+    }
+
+    fn keep(&mut self, stance: &Stance) {
+        self.ram.keep(stance);
+    }
+
+    fn restart(&self) -> &Restart {
+        &self.restart
+    }
+
+    fn supply(&mut self) -> Reading {
+        self.converter.next()
+    }
+
+    fn stack_is_intact(&self) -> bool {
+        self.stack_is_intact
+    }
+
+    fn memory(&mut self) -> &mut Eeprom {
+        &mut self.memory
+    }
+
+    fn set_led(&mut self, on: bool) {
+        self.lit = on;
+    }
+
+    fn room(&self) -> u8 {
+        self.transmitter.room()
+    }
+
+    fn writer(&mut self) -> &mut Transmitter {
+        &mut self.transmitter
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        self.received.pop_front()
+    }
+
+    fn counters(&self) -> Counters {
+        Counters {
+            late: self.late,
+            rx_lost: self.lost,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

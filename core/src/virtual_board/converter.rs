@@ -1,0 +1,78 @@
+//! The analogue converter: what it reads, and when it has read all of it.
+
+use crate::supply::{Reading, Supplies};
+
+/// What measures the supplies, a part of them in every second frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Converter {
+    /// What the supplies are.
+    truth: Reading,
+    /// Whether the servos' rail is measured, too.
+    rail: bool,
+    read: Reading,
+    /// Frames since power-on, up to a whole measurement; then which part is under way.
+    frames: u8,
+    complete: bool,
+}
+
+impl Converter {
+    /// Of supplies as they are, with the servos' rail or without.
+    #[must_use]
+    pub fn new(truth: Reading, rail: bool) -> Self {
+        Self {
+            truth,
+            rail,
+            ..Self::default()
+        }
+    }
+
+    /// The supplies are different from now on.
+    pub const fn set(&mut self, truth: Reading) {
+        self.truth = truth;
+    }
+
+    /// What the supplies are.
+    #[must_use]
+    pub const fn truth(&self) -> Reading {
+        self.truth
+    }
+
+    pub(super) fn reset(self) -> Self {
+        Self::new(self.truth, self.rail)
+    }
+
+    /// What was read last, all of it or nothing; begins the next part.
+    pub(super) fn next(&mut self) -> Reading {
+        match self.frames {
+            1 => {
+                self.read.reference = self.truth.reference;
+                self.complete |= !self.rail;
+            }
+            3 => {
+                self.read.rail = self.truth.rail;
+                self.complete = true;
+            }
+            _ => {}
+        }
+        let period = if self.rail { 4 } else { 2 };
+        self.frames = (self.frames + 1) % period;
+        if self.complete {
+            self.read
+        } else {
+            Reading::default()
+        }
+    }
+}
+
+/// What the converter reads of a supply, and of a rail behind its divider, mV.
+#[must_use]
+pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
+    let parts = |mv: u32| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
+    let reference = u32::from(supplies.reference);
+    Reading {
+        reference: parts(reference),
+        rail: supplies.rail.map_or(0, |divider| {
+            parts(rail * reference / u32::from(divider.reference).max(1))
+        }),
+    }
+}

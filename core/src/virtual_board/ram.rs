@@ -1,0 +1,64 @@
+//! The bytes of RAM that a reset leaves alone.
+
+use core::cell::Cell;
+use core::hash::{Hash, Hasher};
+
+use crate::kept::{self, CELLS, Cells, Flags};
+use crate::restart::{Restart, Stance};
+
+/// Those bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ram(Cell<[u8; CELLS]>);
+
+impl Default for Ram {
+    /// Power has just come on, and the program has begun.
+    fn default() -> Self {
+        let ram = Self(Cell::new([0; CELLS]));
+        ram.begin(Flags {
+            power_on: true,
+            ..Flags::default()
+        });
+        ram
+    }
+}
+
+impl Hash for Ram {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.get().hash(state);
+    }
+}
+
+impl Cells for Ram {
+    fn get(&self, at: usize) -> u8 {
+        self.0.get()[at]
+    }
+
+    fn set(&self, at: usize, byte: u8) {
+        let mut bytes = self.0.get();
+        bytes[at] = byte;
+        self.0.set(bytes);
+    }
+}
+
+impl Ram {
+    /// What a program that begins now would find.
+    #[must_use]
+    pub fn found(&self, flags: Flags) -> Restart {
+        kept::begin(&self.clone(), flags)
+    }
+
+    /// A program begins.
+    pub fn begin(&self, flags: Flags) -> Restart {
+        kept::begin(self, flags)
+    }
+
+    /// What the servos do is kept.
+    pub fn keep(&self, stance: &Stance) {
+        kept::keep(self, stance);
+    }
+
+    /// The program has hung.
+    pub fn mark_hung(&self) {
+        kept::mark_hung(self);
+    }
+}

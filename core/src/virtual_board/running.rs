@@ -1,0 +1,200 @@
+//! A robot that runs on a virtual board, with somebody at the other end of its line.
+
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::{Converter, Eeprom, FRAME_MS, VirtualBoard, reading};
+use crate::console::LONGEST_LINE;
+use crate::motion::Motion;
+use crate::pose::Pulses;
+use crate::restart::{Cause, Restart};
+use crate::robot::Robot;
+use crate::step::{Main, Step};
+
+/// The firmware's main and its board.
+#[derive(Clone, Debug)]
+pub struct Running<R> {
+    /// The robot.
+    pub main: Main<R>,
+    /// What it runs on.
+    pub board: VirtualBoard,
+}
+
+impl<R: Robot> Running<R> {
+    /// At power-on, with supplies in good order and nothing saved.
+    pub fn power_on(robot: R) -> Self {
+        Self::with(robot, Eeprom::blank(), Restart::default())
+    }
+
+    /// The same with what a memory holds and why the program begins.
+    pub fn with(robot: R, memory: Eeprom, restart: Restart) -> Self {
+        let supplies = robot.supplies();
+        let truth = reading(&supplies, 5_000, 6_000);
+        let board = VirtualBoard {
+            converter: Converter::new(truth, supplies.rail.is_some()),
+            ..VirtualBoard::new(memory).restarted(restart)
+        };
+        Self::on(robot, board)
+    }
+
+    /// On a board as it is.
+    pub fn on(robot: R, mut board: VirtualBoard) -> Self {
+        let mut main = Main::new(robot);
+        main.begin(&mut board);
+        Self { main, board }
+    }
+
+    /// The motion of the robot.
+    pub const fn motion(&self) -> &Motion<R> {
+        self.main.control().motion()
+    }
+
+    /// True while there is something to write.
+    pub const fn has_output(&self) -> bool {
+        self.main.console().has_output(self.main.control())
+    }
+
+    /// Steps until there is nothing to do.
+    ///
+    /// # Panics
+    /// If that never comes.
+    pub fn settle(&mut self) {
+        if self.board.is_hushed() {
+            return;
+        }
+        for _ in 0..1_000_000 {
+            if self.main.step(&mut self.board) != Step::Worked {
+                return;
+            }
+        }
+        panic!("it never rests");
+    }
+
+    /// A frame: main computes it for the next tick, and its pulses begin. Returns
+    /// those.
+    pub fn frame(&mut self) -> Pulses {
+        self.settle();
+        self.board.pass(self.board.until_tick());
+        self.settle();
+        self.board.pass(u16::from(FRAME_MS) - 1);
+        self.board.begun()
+    }
+
+    /// Frames, and what is said in them.
+    pub fn run(&mut self, frames: u32) -> Vec<String> {
+        let mut said = Vec::new();
+        for _ in 0..frames {
+            self.frame();
+            said.extend(self.lines());
+        }
+        said
+    }
+
+    /// Frames in which nobody takes what there is to say.
+    pub fn run_unheard(&mut self, frames: u32) {
+        self.board.transmitter.held = true;
+        for _ in 0..frames {
+            self.frame();
+        }
+        self.board.transmitter.held = false;
+    }
+
+    /// Every line that waits, each checked for its form.
+    ///
+    /// # Panics
+    /// If a line is not as lines are.
+    pub fn lines(&mut self) -> Vec<String> {
+        self.settle();
+        let text = core::mem::take(&mut self.board.transmitter.text);
+        let mut lines = Vec::new();
+        for line in text.split_inclusive("\r\n") {
+            assert!(line.len() <= usize::from(LONGEST_LINE), "{line}");
+            let line = line.strip_suffix("\r\n").expect("a whole line");
+            let plain = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
+            assert!(line.bytes().all(plain), "{line:?}");
+            assert!(line.starts_with("# ") || is_final(line), "{line:?}");
+            lines.push(line.to_string());
+        }
+        lines
+    }
+
+    /// Sends bytes, each after what there was to say, and returns all that is said.
+    pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
+        let mut lines = self.lines();
+        for byte in bytes {
+            self.board.send(&[*byte]);
+            lines.extend(self.lines());
+        }
+        lines
+    }
+
+    /// Sends a line and returns its final line, the only one and the last.
+    ///
+    /// # Panics
+    /// If it is not.
+    pub fn say(&mut self, line: &str) -> String {
+        self.lines();
+        let mut said = self.send(line.as_bytes());
+        said.extend(self.send(b"\r"));
+        let (last, before) = said.split_last().expect("an answer");
+        assert!(is_final(last), "{last}");
+        assert!(before.iter().all(|line| line.starts_with("# ")), "{said:?}");
+        last.clone()
+    }
+
+    /// A value of the status line.
+    ///
+    /// # Panics
+    /// If it has no such key.
+    pub fn status(&mut self, key: &str) -> String {
+        let line = self.say("status");
+        let pairs = line.split(' ').filter_map(|word| word.split_once('='));
+        let value = pairs.into_iter().find(|(name, _)| *name == key);
+        value.expect("a key of status").1.to_string()
+    }
+}
+
+impl<R: Robot + Clone> Running<R> {
+    /// Time passes in which main does nothing. Once the watchdog has ended the pulses,
+    /// main does not go on and the reset is waited for. Returns whether it comes.
+    pub fn stall(&mut self, ms: u16) -> bool {
+        let mut bites = self.board.pass(ms);
+        while self.board.is_hushed() && !bites {
+            bites = self.board.pass(1);
+        }
+        if bites {
+            self.reset(Cause::Watchdog);
+        }
+        bites
+    }
+
+    /// The processor is reset, for this reason.
+    pub fn reset(&mut self, cause: Cause) {
+        self.board.reset(cause);
+        self.begin_anew();
+    }
+
+    /// Power is lost and comes back; see [`VirtualBoard::lose_power`].
+    pub fn lose_power(&mut self, torn: Option<u8>) {
+        self.board.lose_power(torn);
+        self.begin_anew();
+    }
+
+    fn begin_anew(&mut self) {
+        self.main = Main::new(self.motion().robot().clone());
+        self.main.begin(&mut self.board);
+    }
+}
+
+/// True for the one line that ends an answer.
+#[must_use]
+pub fn is_final(line: &str) -> bool {
+    let code = line
+        .strip_prefix("err ")
+        .and_then(|rest| rest.split_once(' '));
+    line.starts_with("ok ")
+        || code.is_some_and(|(code, reason)| {
+            matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9")
+                && !reason.is_empty()
+        })
+}

@@ -1,0 +1,130 @@
+//! The board does what the UNO's does.
+
+use super::*;
+use crate::memory::{ERASED, Memory};
+use crate::sample::Sample;
+use crate::step::{Main, Step};
+
+/// A robot that stands.
+fn standing() -> Running<Sample> {
+    let mut running = Running::power_on(Sample::odd());
+    running.run(30);
+    running
+}
+
+const NONE: Pulses = Pulses([Width(0); 4]);
+
+#[test]
+fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
+    let mut board = VirtualBoard::default();
+    let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(Width));
+    board.submit(pulses);
+    assert_eq!(board.begun(), NONE);
+    board.pass(1 + 3);
+    assert_eq!(board.begun(), NONE, "the tick, and not yet the hand-over");
+    board.pass(1);
+    assert_eq!(board.begun().0.map(|width| width.0), [1_000, 0, 0, 0]);
+    for _ in 0..4 {
+        board.pass(19);
+        assert_eq!(board.begun(), pulses);
+        board.pass(1);
+    }
+    board.submit(Pulses([0, 999, 63_001, 1_000].map(Width)));
+    board.pass(20 + 19);
+    assert_eq!(board.begun().0.map(|width| width.0), [0, 0, 0, 1_000]);
+}
+
+#[test]
+fn a_stall_below_125_ms_is_borne_and_a_longer_one_begins_the_program_anew() {
+    let mut short = standing();
+    assert!(!short.stall(WATCHDOG_MS - 20));
+    assert!(!short.board.is_hushed());
+    assert_ne!(short.frame(), NONE);
+    let mut long = standing();
+    assert!(!long.board.pass(WATCHDOG_MS + 20));
+    assert!(long.board.is_hushed());
+    assert_eq!(long.board.begun(), NONE, "no pulse begins any more");
+    let (pose, frames) = (*long.motion().pose(), long.motion().frames());
+    long.settle();
+    assert_eq!(long.motion().frames(), frames, "main does not go on");
+    assert!(long.stall(1), "and the reset comes");
+    assert!(!long.board.is_hushed());
+    assert_eq!(long.board.restart().cause, Cause::Watchdog);
+    assert_eq!(long.board.restart().count, 1);
+    assert_eq!(
+        long.board.restart().before.map(|stance| stance.pose),
+        Some(pose)
+    );
+}
+
+#[test]
+fn a_reset_leaves_the_pose_and_power_takes_it() {
+    let mut running = standing();
+    running.say("sway");
+    running.run(60);
+    let pose = *running.motion().pose();
+    running.board.send(b"stand\r");
+    running.reset(Cause::External);
+    assert_eq!(
+        running.board.restart().before.map(|stance| stance.pose),
+        Some(pose)
+    );
+    assert_eq!(running.board.waiting(), 0, "what main had not read is lost");
+    running.lose_power(None);
+    assert_eq!(running.board.restart(), &Restart::NONE);
+}
+
+#[test]
+fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
+    let mut board = VirtualBoard::default();
+    board.memory.write(17, 0x35);
+    assert_eq!(board.memory.under_way(), Some(17));
+    let mut whole = board.clone();
+    board.lose_power(Some(0xb7));
+    assert_eq!(board.memory.bytes()[17], 0xb7);
+    whole.pass(4);
+    whole.lose_power(Some(0xb7));
+    assert_eq!(whole.memory.bytes()[17], 0x35, "it had time to end");
+    let others = |at: &usize| *at != 17;
+    let erased = |at: usize| board.memory.bytes()[at] == ERASED;
+    assert!((0..1024).filter(others).all(erased));
+}
+
+#[test]
+fn a_slow_listener_leaves_less_room_until_time_passes() {
+    let mut transmitter = Transmitter::new(16_000, 255);
+    transmitter.fill(200);
+    assert_eq!(transmitter.room(), 55);
+    transmitter.pass(10);
+    assert_eq!(transmitter.room(), 65);
+    transmitter.held = true;
+    assert_eq!(transmitter.room(), 0);
+    assert_eq!(Transmitter::default().room(), 255);
+}
+
+#[test]
+fn nothing_is_measured_before_a_whole_measurement_and_each_part_in_its_turn() {
+    let truth = Reading {
+        reference: 221,
+        rail: 393,
+    };
+    for (rail, first) in [(false, 2), (true, 4)] {
+        let mut converter = Converter::new(truth, rail);
+        for frame in 1..40 {
+            let read = converter.next();
+            assert_eq!(read.reference == 221, frame >= first, "{rail} {frame}");
+            assert_eq!(read.rail == 393, rail && frame >= first, "{rail} {frame}");
+        }
+    }
+}
+
+#[test]
+fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
+    let mut board = VirtualBoard::default();
+    board.send(&[b'x'; RECEIVED + 5]);
+    assert_eq!((board.waiting(), board.counters().rx_lost), (RECEIVED, 5));
+    let mut main = Main::new(Sample::odd());
+    main.begin(&mut board);
+    while main.step(&mut board) == Step::Worked {}
+    assert_eq!(board.waiting(), 0);
+}

@@ -1,0 +1,110 @@
+//! What the robot says, and a listener who takes his time over it.
+
+use core::convert::Infallible;
+use core::hash::{Hash, Hasher};
+use std::string::String;
+
+use ufmt::uWrite;
+
+/// CPU cycles of a millisecond.
+const MS: u64 = 16_000;
+
+/// Bytes that wait to be sent, and all that was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Transmitter {
+    /// All that was written and not taken yet.
+    pub text: String,
+    /// Whether nobody takes anything.
+    pub held: bool,
+    /// CPU cycles for a byte; 0 for a line that takes all at once.
+    per_byte: u64,
+    /// Bytes that it takes before a writer has to wait.
+    capacity: u64,
+    /// The cycle of the moment.
+    now: u64,
+    /// The cycle at which all that was written is through the line.
+    free: u64,
+}
+
+impl Default for Transmitter {
+    /// A line that takes all at once.
+    fn default() -> Self {
+        Self::new(0, 255)
+    }
+}
+
+impl Hash for Transmitter {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.text.hash(state);
+        self.held.hash(state);
+        self.left().hash(state);
+    }
+}
+
+impl Transmitter {
+    /// A line that takes so many cycles for a byte, with room for so many bytes.
+    #[must_use]
+    pub const fn new(per_byte: u64, capacity: u64) -> Self {
+        Self {
+            text: String::new(),
+            held: false,
+            per_byte,
+            capacity,
+            now: 0,
+            free: 0,
+        }
+    }
+
+    /// Time passes.
+    pub(super) const fn pass(&mut self, ms: u64) {
+        self.now += ms * MS;
+    }
+
+    /// It is this cycle now.
+    pub const fn at(&mut self, cycle: u64) {
+        self.now = cycle;
+    }
+
+    /// The cycle at which all that was written is through the line.
+    #[must_use]
+    pub const fn free(&self) -> u64 {
+        self.free
+    }
+
+    /// As many bytes as that are still to be sent, from before.
+    pub const fn fill(&mut self, bytes: u64) {
+        self.free = self.now + bytes * self.per_byte;
+    }
+
+    /// Bytes that it takes without waiting, at most 255.
+    #[must_use]
+    pub fn room(&self) -> u8 {
+        if self.held {
+            return 0;
+        }
+        let queued = self.left().div_ceil(self.per_byte.max(1));
+        self.capacity.saturating_sub(queued).min(255) as u8
+    }
+
+    fn left(&self) -> u64 {
+        self.free.saturating_sub(self.now)
+    }
+
+    pub(super) fn reset(self) -> Self {
+        Self {
+            free: self.now,
+            ..self
+        }
+    }
+}
+
+impl uWrite for Transmitter {
+    type Error = Infallible;
+
+    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
+        let bytes = text.len() as u64;
+        self.text.push_str(text);
+        self.free = self.free.max(self.now) + bytes * self.per_byte;
+        Ok(())
+    }
+}
