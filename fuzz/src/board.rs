@@ -1,6 +1,7 @@
 //! The core on a board without time: what it says and does is checked at every byte
 //! and every frame.
 
+use lizard_core::line::GARBLED;
 use lizard_core::memory::Memory;
 use lizard_core::record::{self, Outcome, RESTED};
 use lizard_core::restart::Restart;
@@ -73,6 +74,8 @@ impl Board {
                 self.overlong = false;
             }
             0x08 | 0x7f => _ = self.line.pop(),
+            // What stands for a garbled byte: its line is answered, whatever else it is.
+            GARBLED => self.overlong = true,
             _ if self.line.len() == 63 => self.overlong = true,
             _ => self.line.push(byte),
         }

@@ -69,7 +69,7 @@ impl<R: Robot> Twin<R> {
     /// When lines and bytes that wait for room are written and taken.
     fn retry(&self) -> Option<u64> {
         let board = &self.running.board;
-        let waits = board.waiting() > 0 || self.running.main.console().has_output();
+        let waits = board.waiting() > 0 || self.running.has_output();
         waits.then(|| board.transmitter.free().saturating_sub(QUEUED * BYTE))
     }
 }
