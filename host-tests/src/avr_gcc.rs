@@ -5,6 +5,7 @@
 
 use std::process::Command;
 
+use lizard_time_limit::LIMIT;
 use simulated_uno::Image;
 
 /// Compiles C (or, inside `asm`, assembler) with avr-gcc for the UNO's chip.
@@ -43,13 +44,13 @@ fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
     let input = folder.path().join(format!("program.{extension}"));
     let output = folder.path().join("program.elf");
     std::fs::write(&input, source).expect("the source is written");
-    let result = Command::new("avr-gcc")
-        .args(["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Wall"])
+    let mut gcc = Command::new("avr-gcc");
+    gcc.args(["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Wall"])
         .args(flags)
         .arg("-o")
-        .args([&output, &input])
-        .output()
-        .expect("avr-gcc starts (Debian package gcc-avr)");
+        .args([&output, &input]);
+    let result = LIMIT.output(&mut gcc, b"");
+    let result = result.expect("avr-gcc runs (Debian package gcc-avr)");
     let errors = String::from_utf8_lossy(&result.stderr);
     assert!(
         result.status.success(),

@@ -6,12 +6,13 @@
 //! what they say of it is compared: every pulse of every pin, every byte.
 
 use std::fmt;
-use std::io::{ErrorKind, Write as _};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 
 use lizard_host::sim::supplies;
 use lizard_robot::Robot;
+use lizard_time_limit::LIMIT;
 use simulated_uno::{Edge, Pin, SerialByte};
 
 use crate::robots::root;
@@ -157,7 +158,8 @@ fn node() -> Result<Command, String> {
 /// What a program prints when it is given `input`.
 fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let output = run(command, input).map_err(|error| match error.kind() {
+    let output = LIMIT.output(command, input.as_bytes());
+    let output = output.map_err(|error| match error.kind() {
         ErrorKind::NotFound => format!(
             "{program} is missing: scripts/setup and scripts/setup-judge install it \
              (Debian package {debian})"
@@ -170,24 +172,6 @@ fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, Stri
     }
     let complaint = String::from_utf8_lossy(&output.stderr);
     Err(format!("{program} fails: {}\n{said}", complaint.trim()))
-}
-
-fn run(command: &mut Command, input: &str) -> std::io::Result<Output> {
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()?;
-    // A program that fails before it has read everything says why on its stderr.
-    let written = child
-        .stdin
-        .take()
-        .map_or(Ok(()), |mut stdin| stdin.write_all(input.as_bytes()));
-    let output = child.wait_with_output()?;
-    if output.status.success() {
-        written?;
-    }
-    Ok(output)
 }
 
 /// Reads what judge/run.js prints; its head explains the lines.

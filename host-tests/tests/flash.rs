@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use lizard_host::sim::frame::{frames, servo_pins};
 use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot, root};
+use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 
@@ -18,8 +19,6 @@ use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 const BOOT: usize = 0x7e00;
 /// The servos wake one after another; later than this all four are held.
 const AWAKE_FRAMES: u64 = 60;
-/// More than a slow machine needs to write, to verify and to boot.
-const PATIENCE: Duration = Duration::from_secs(120);
 
 fn boot_loader() -> Image {
     let elf: PathBuf = root().join("target/flash-test/optiboot.elf");
@@ -49,31 +48,31 @@ impl Desk {
 
     /// Lets the board live until the condition holds. False if it never does.
     fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
-        let end = std::time::Instant::now() + PATIENCE;
-        while !done(&mut self.uno) {
-            if std::time::Instant::now() > end {
-                return false;
-            }
+        LIMIT.comes(|| {
             let step = Duration::from_millis(10);
             self.port
                 .serve(&mut self.uno, step)
                 .expect("the port is well");
             self.edges.extend(self.uno.take_edges());
-        }
-        true
+            done(&mut self.uno)
+        })
     }
 
     /// Lets a number of frames pass.
     fn pass(&mut self, count: u64) {
         let end = self.uno.cycle() + count * FRAME;
-        assert!(self.until(|uno| uno.cycle() > end));
+        let passed = self.until(|uno| uno.cycle() > end);
+        assert!(passed, "waited {LIMIT} for {count} frames");
     }
 
     /// Waits until `text` is on the screen; the test fails if it never is.
     fn see(&mut self, shell: &Shell, text: &str) {
         let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = shell.screen();
-        assert!(seen && screen.contains(text), "no {text:?} in\n{screen}");
+        assert!(
+            seen && screen.contains(text),
+            "waited up to {LIMIT} for {text:?} in\n{screen}"
+        );
     }
 }
 
@@ -161,7 +160,6 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
         desk.see(&shell, &format!("ok {line}"));
     }
     shell.interrupt();
-    assert!(desk.until(|_| shell.has_ended()));
     let mut shell = desk.make_flash();
     desk.see(&shell, "# lizard");
     shell.say("cal");
@@ -186,7 +184,8 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
         shell.has_ended()
     });
     let screen = shell.screen();
-    assert!(ended && worn, "{screen}");
+    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+    assert!(worn, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: it did not work"), "{screen}");
     assert!(!screen.contains("# lizard"), "no console:\n{screen}");
@@ -200,7 +199,7 @@ fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let shell = desk.make_flash();
     let ended = desk.until(|_| shell.has_ended());
     let screen = shell.screen();
-    assert!(ended, "{screen}");
+    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
     assert!(screen.contains("the board does not answer"), "{screen}");
     assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use lizard_host_tests::root;
+use lizard_time_limit::LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
 
@@ -22,7 +23,7 @@ fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) 
     if let Some(port) = port {
         command.env("RAVEDUDE_PORT", port);
     }
-    let output = command.output().expect("the script starts");
+    let output = LIMIT.output(&mut command, b"").expect("the script ends");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     (said, output.status.success())
 }
@@ -42,15 +43,13 @@ fn folder() -> TempDir {
 /// The scripts where another user can read them, too.
 fn scripts() -> TempDir {
     let copy = folder();
-    let status = Command::new("cp")
+    let mut command = Command::new("cp");
+    command
         .arg("-r")
         .arg(root().join("scripts"))
-        .arg(copy.path())
-        .status();
-    assert!(
-        status.is_ok_and(|status| status.success()),
-        "the scripts are copied"
-    );
+        .arg(copy.path());
+    let output = LIMIT.output(&mut command, b"").expect("cp ends");
+    assert!(output.status.success(), "the scripts are copied");
     copy
 }
 
@@ -118,8 +117,10 @@ fn without_permission_it_says_which_group_to_join() {
     File::create(&port).expect("a file");
     fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("it is ours");
     let as_nobody = ["setpriv", "--reuid=nobody", "--clear-groups"];
-    let dialout = Command::new("chgrp").arg("dialout").arg(&port).status();
-    if !dialout.is_ok_and(|status| status.success()) {
+    let mut dialout = Command::new("chgrp");
+    dialout.arg("dialout").arg(&port);
+    let dialout = LIMIT.output(&mut dialout, b"").expect("chgrp ends");
+    if !dialout.status.success() {
         eprintln!("left out: only root can make a port that another user may not open");
         return;
     }
@@ -146,7 +147,8 @@ fn a_missing_avrdude_says_what_to_install() {
     let script = scripts.path().join("scripts/setup-flash");
     let mut command = Command::new("/usr/bin/setpriv");
     command.args(["--reuid=nobody", "--clear-groups", "/usr/bin/bash"]);
-    let output = command.arg(script).env("PATH", bin.path()).output();
+    command.arg(script).env("PATH", bin.path());
+    let output = LIMIT.output(&mut command, b"");
     let output = output.expect("setpriv starts (Debian package util-linux)");
     let said = String::from_utf8_lossy(&output.stdout);
     if !said.contains("setup:") {

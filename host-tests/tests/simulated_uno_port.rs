@@ -1,15 +1,19 @@
 //! The simulated UNO behind a serial port, as another program meets it.
 //!
-//! A program of its own: a compiler that another test starts holds a copy of every open
-//! port for a moment, and a port that is not quite closed is not opened anew.
+//! A program of its own, in which nothing is started while a port is open: a compiler that
+//! another test starts has a copy of every open file between `fork` and `exec`. A port
+//! closed then is still open in that copy, so that the next opening is not the first and
+//! resets nothing, as with a board on USB.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 use std::path::Path;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use lizard_host_tests::avr_gcc;
-use simulated_uno::{Background, FREQUENCY, Fidelity, Pin, Port, Uno};
+use lizard_time_limit::LIMIT;
+use simulated_uno::{Background, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
 
 /// Says `<r` at reset, then sends every byte back, plus one. D9 is high from
 /// reset on. GPIOR0 counts resets through a variable that reset does not clear.
@@ -34,15 +38,23 @@ const ECHO: &str = r#"
         }
     }"#;
 
+/// Compiled once, and before any test has a port: each begins with an [`echo`].
+static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::c(ECHO));
+
 fn echo() -> Uno {
-    Uno::with_image(avr_gcc::c(ECHO), Fidelity::DataSheet)
+    Uno::with_image(IMAGE.clone(), Fidelity::DataSheet)
 }
 
 fn served() -> Background {
-    let port = Port::new().expect("a pseudo terminal");
     let mut uno = echo();
     uno.run_ms(1);
+    let port = Port::new().expect("a pseudo terminal");
     port.in_background(uno, |_| {}).expect("a thread")
+}
+
+fn stopped(board: Background) -> Uno {
+    let uno = LIMIT.within("the end of the port's thread", || board.stop());
+    uno.expect("the port was well")
 }
 
 fn open(path: &Path) -> File {
@@ -50,10 +62,24 @@ fn open(path: &Path) -> File {
     options.read(true).write(true).open(path).expect("it opens")
 }
 
-fn read(port: &mut File, count: usize) -> String {
-    let mut bytes = vec![0; count];
-    port.read_exact(&mut bytes).expect("bytes come");
-    String::from_utf8_lossy(&bytes).into_owned()
+fn read(port: &File, count: usize) -> String {
+    let mut port = port.try_clone().expect("another of it");
+    let what = format!("{count} bytes from the chip");
+    LIMIT.within(&what, move || {
+        let mut bytes = vec![0; count];
+        port.read_exact(&mut bytes).expect("bytes come");
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}
+
+/// Lets the chip live for so long by its own time, however slow the machine.
+fn serve(port: &mut Port, uno: &mut Uno, ms: u64) {
+    let end = uno.cycle() + ms * CYCLES_PER_MS;
+    LIMIT.until("the chip's time to pass", || {
+        let step = Duration::from_millis(5);
+        port.serve(uno, step).expect("it is served");
+        uno.cycle() >= end
+    });
 }
 
 fn marks(uno: &Uno) -> Vec<u8> {
@@ -64,23 +90,23 @@ fn marks(uno: &Uno) -> Vec<u8> {
 fn bytes_pass_both_ways_as_they_are() {
     let board = served();
     let mut port = open(board.path());
-    assert_eq!(read(&mut port, 2), "<r");
+    assert_eq!(read(&port, 2), "<r");
     // What a terminal would swallow or change: CR, LF, interrupt, end of file.
     port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
-    assert_eq!(read(&mut port, 5), "\x0e\x0b\x04\x05\u{fffd}");
+    assert_eq!(read(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
-    board.stop().expect("the port was well");
+    stopped(board);
 }
 
 #[test]
 fn every_opening_resets_the_chip_however_short_the_pause_before() {
     let board = served();
     for _ in 0..5 {
-        let mut port = open(board.path());
-        assert_eq!(read(&mut port, 2), "<r");
+        let port = open(board.path());
+        assert_eq!(read(&port, 2), "<r");
         drop(port);
     }
-    let uno = board.stop().expect("the port was well");
+    let uno = stopped(board);
     assert_eq!(marks(&uno), [1, 2, 3, 4, 5, 6], "power-on and five resets");
 }
 
@@ -88,13 +114,13 @@ fn every_opening_resets_the_chip_however_short_the_pause_before() {
 fn a_second_program_does_not_reset_the_chip() {
     let board = served();
     let mut port = open(board.path());
-    assert_eq!(read(&mut port, 2), "<r");
+    assert_eq!(read(&port, 2), "<r");
     let second = open(board.path());
     std::thread::sleep(Duration::from_millis(10));
     drop(second);
     port.write_all(b"a").expect("it takes bytes");
-    assert_eq!(read(&mut port, 1), "b");
-    let uno = board.stop().expect("the port was well");
+    assert_eq!(read(&port, 1), "b");
+    let uno = stopped(board);
     assert_eq!(marks(&uno), [1, 2]);
 }
 
@@ -102,33 +128,34 @@ fn a_second_program_does_not_reset_the_chip() {
 fn what_the_chip_says_while_the_port_is_closed_is_lost() {
     let mut uno = echo();
     let mut port = Port::new().expect("a pseudo terminal");
-    let time = Duration::from_millis(20);
-    port.serve(&mut uno, time).expect("it is served");
+    serve(&mut port, &mut uno, 20);
     let mut other = open(port.path());
-    port.serve(&mut uno, time).expect("it is served");
+    serve(&mut port, &mut uno, 20);
     assert!(port.is_open());
-    assert_eq!(read(&mut other, 2), "<r", "of the reset alone");
+    assert_eq!(read(&other, 2), "<r", "of the reset alone");
     other.write_all(b"a").expect("it takes bytes");
-    port.serve(&mut uno, time).expect("it is served");
-    assert_eq!(read(&mut other, 1), "b", "and nothing before it");
+    serve(&mut port, &mut uno, 20);
+    assert_eq!(read(&other, 1), "b", "and nothing before it");
     drop(other);
-    port.serve(&mut uno, time).expect("it is served");
+    serve(&mut port, &mut uno, 20);
     assert!(!port.is_open());
 }
 
 #[test]
 fn what_a_program_leaves_unread_is_not_there_for_the_next() {
-    let board = served();
-    let mut first = open(board.path());
-    assert_eq!(read(&mut first, 2), "<r");
+    let mut uno = echo();
+    let mut port = Port::new().expect("a pseudo terminal");
+    serve(&mut port, &mut uno, 20);
+    let mut first = open(port.path());
+    serve(&mut port, &mut uno, 20);
+    assert_eq!(read(&first, 2), "<r");
     first.write_all(b"abc").expect("it takes bytes");
-    std::thread::sleep(Duration::from_millis(50));
+    serve(&mut port, &mut uno, 20);
     drop(first);
-    std::thread::sleep(Duration::from_millis(50));
-    let mut second = open(board.path());
-    assert_eq!(read(&mut second, 2), "<r", "not bcd, the echo of abc");
-    drop(second);
-    board.stop().expect("the port was well");
+    serve(&mut port, &mut uno, 20);
+    let second = open(port.path());
+    serve(&mut port, &mut uno, 20);
+    assert_eq!(read(&second, 2), "<r", "not bcd, the echo of abc");
 }
 
 #[test]
@@ -136,14 +163,12 @@ fn the_chip_keeps_time_with_the_wall_clock() {
     let mut uno = echo();
     let mut port = Port::new().expect("a pseudo terminal");
     let begin = Instant::now();
-    port.serve(&mut uno, Duration::from_millis(200))
-        .expect("it is served");
+    serve(&mut port, &mut uno, 100);
     let wall = begin.elapsed().as_secs_f64();
     let chip = uno.cycle() as f64 / FREQUENCY as f64;
-    // Never ahead by more than the slice under way; behind only where this test was
-    // held up.
+    // Never ahead by more than the slice under way. It is behind where this test was held
+    // up, nobody knows how far.
     assert!(chip <= wall + 0.01, "{chip} s in {wall} s");
-    assert!(chip > 0.05, "{chip} s in {wall} s");
 }
 
 #[test]
@@ -157,26 +182,4 @@ fn a_reset_lets_go_of_the_pins_and_keeps_time_and_memory() {
     uno.run_ms(1);
     assert!(uno.is_high(Pin::d(9)));
     assert_eq!(marks(&uno), [1, 2]);
-}
-
-#[test]
-fn a_reset_wakes_a_chip_that_sleeps_for_ever() {
-    let halted = "int main(void) { asm(\"cli\\n sleep\"); for (;;) {} }";
-    let mut uno = Uno::with_image(avr_gcc::c(halted), Fidelity::DataSheet);
-    uno.run_ms(1);
-    assert_eq!(*uno.state(), simulated_uno::State::Halted);
-    uno.reset();
-    assert_eq!(*uno.state(), simulated_uno::State::Alive);
-}
-
-#[test]
-fn after_a_reset_a_board_as_sold_starts_in_its_boot_loader() {
-    let loader = avr_gcc::assembler_at(0x7e00, "ldi r16, 7\n out GPIOR0, r16\n loop: rjmp loop");
-    let mut uno = Uno::with_boot_loader(loader, Fidelity::DataSheet);
-    uno.run_ms(1);
-    uno.reset();
-    uno.run_ms(1);
-    assert_eq!(marks(&uno), [7, 7]);
-    assert_eq!(uno.flash()[0], 0xff);
-    assert_eq!(uno.flash()[0x7e00..0x7e02], [0x07, 0xe0]);
 }

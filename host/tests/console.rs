@@ -7,9 +7,10 @@ use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
+use std::time::Duration;
 
+use lizard_time_limit::LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
@@ -17,9 +18,6 @@ const ELF: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../target/avr-atmega328p/release/lizard.elf"
 );
-
-/// The longest wait for anything that a program should do at once.
-const PATIENCE: Duration = Duration::from_secs(20);
 
 fn lizard(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
@@ -33,21 +31,13 @@ fn lizard(folder: &Path, arguments: &[&str]) -> Command {
 
 /// Standard output, standard error, exit code.
 fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
-    let mut child = lizard(folder, arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    let mut stdin = child.stdin.take().expect("it has an input");
-    // A program that refuses its arguments reads nothing.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
     let Output {
         status,
         stdout,
         stderr,
-    } = child.wait_with_output().expect("it ends");
+    } = LIMIT
+        .output(&mut lizard(folder, arguments), input.as_bytes())
+        .expect("the program ends");
     let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
     (text(stdout), text(stderr), status.code())
 }
@@ -66,23 +56,27 @@ impl Uno {
             .stdout(Stdio::null())
             .spawn()
             .expect("the program starts");
-        let begin = Instant::now();
-        while !link.exists() {
-            assert!(begin.elapsed() < PATIENCE, "no board, run `make firmware`");
-            std::thread::sleep(Duration::from_millis(10));
-        }
-        Self { child, link }
+        let mut uno = Self { child, link };
+        LIMIT.until("a board of `lizard sim --pty`, or its end", || {
+            uno.link.exists() || uno.has_ended()
+        });
+        assert!(!uno.has_ended(), "no board, run `make firmware`");
+        uno
     }
 
     fn port(&self) -> String {
         self.link.display().to_string()
+    }
+
+    fn has_ended(&mut self) -> bool {
+        self.child.try_wait().expect("it is ours").is_some()
     }
 }
 
 impl Drop for Uno {
     fn drop(&mut self) {
         let _ = self.child.kill();
-        let _ = self.child.wait();
+        let _ = LIMIT.end_of(&mut self.child);
         let _ = fs::remove_file(&self.link);
     }
 }
@@ -151,22 +145,25 @@ impl AtTerminal {
 
     /// Waits until the screen has shown this, after what was waited for before.
     fn wait_for(&mut self, words: &str) {
-        let end = Instant::now() + PATIENCE;
-        loop {
-            if let Some(at) = self.text.find(words) {
-                self.text.drain(..at + words.len());
-                return;
-            }
-            let left = end.saturating_duration_since(Instant::now());
-            match self.seen.recv_timeout(left) {
-                Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
-                Err(_) => panic!("never `{words}`, but {:?}", self.text),
-            }
-        }
+        let (mut found, mut ended) = (None, false);
+        LIMIT.comes(|| {
+            ended = loop {
+                match self.seen.try_recv() {
+                    Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
+                    Err(reason) => break reason == TryRecvError::Disconnected,
+                }
+            };
+            found = self.text.find(words);
+            found.is_some() || ended
+        });
+        let Some(at) = found else {
+            panic!("waited up to {LIMIT} for `{words}`, but {:?}", self.text);
+        };
+        self.text.drain(..at + words.len());
     }
 
     fn exit_code(mut self) -> Option<i32> {
-        self.child.wait().expect("it ends").code()
+        LIMIT.end_of(&mut self.child).expect("it ends").code()
     }
 }
 
@@ -284,9 +281,13 @@ fn a_kept_session_is_drawn_and_summed_up() {
         .expect("the program starts");
     let mut stdin = child.stdin.take().expect("it has an input");
     stdin.write_all(b"speed 50\nfly\n").expect("it is read");
-    std::thread::sleep(Duration::from_millis(1500));
+    let file = here.join("a.jsonl");
+    LIMIT.until("a refusal and a second of poses in the file", || {
+        let kept = fs::read_to_string(&file).unwrap_or_default();
+        kept.contains(r#""answer":"err "#) && kept.matches(r#""pose":"#).count() > 50
+    });
     drop(stdin);
-    assert!(child.wait().expect("it ends").success());
+    assert!(LIMIT.end_of(&mut child).expect("it ends").success());
 
     let (out, error, code) = run(here, &["replay", "a.jsonl", "--svg", "a.svg"], "");
     assert_eq!(code, Some(0), "{error}");
@@ -343,7 +344,9 @@ fn what_is_no_lizard_is_named_by_what_it_says() {
     let port = path.display().to_string();
     let (_, error, code) = run(folder.path(), &["backup", "a.toml", &port], "");
     drop(heard);
-    talks.join().expect("it has ended");
+    LIMIT
+        .within("the end of what talks", || talks.join())
+        .expect("it has ended");
     assert_eq!(code, Some(1), "{error}");
     let words = "this is no lizard: it says `Grbl 1.1h ['$' for help]`";
     assert!(error.contains(words), "{error}");

@@ -4,13 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use lizard_time_limit::LIMIT;
+
 fn lizard(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lizard"))
-        .arg("parts")
-        .arg(folder)
-        .args(arguments)
-        .output()
-        .expect("lizard runs")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.arg("parts").arg(folder).args(arguments);
+    LIMIT.output(&mut command, b"").expect("lizard runs")
 }
 
 fn robots(name: &str) -> String {

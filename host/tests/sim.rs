@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use lizard_time_limit::LIMIT;
+
 /// The paper's robot: what these tests say of gaits and of the picture is its.
 const PAPER: &str = concat!(
     "--robot=",
@@ -12,11 +14,9 @@ const PAPER: &str = concat!(
 
 fn lizard(arguments: &[&str]) -> Output {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    Command::new(env!("CARGO_BIN_EXE_lizard"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the program starts")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(arguments).current_dir(folder);
+    LIMIT.output(&mut command, b"").expect("the program runs")
 }
 
 /// What the user sees of a failure, and the exit code.

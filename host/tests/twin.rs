@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use lizard_time_limit::LIMIT;
+
 /// The paper's robot: what these tests say is its.
 const PAPER: &str = concat!(
     "--robot=",
@@ -11,12 +13,10 @@ const PAPER: &str = concat!(
 );
 
 fn lizard(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lizard"))
-        .args(arguments)
-        .arg(PAPER)
-        .current_dir(Path::new(env!("CARGO_TARGET_TMPDIR")))
-        .output()
-        .expect("the program starts")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(arguments).arg(PAPER);
+    command.current_dir(Path::new(env!("CARGO_TARGET_TMPDIR")));
+    LIMIT.output(&mut command, b"").expect("the program runs")
 }
 
 fn complaint(arguments: &[&str]) -> String {

@@ -5,12 +5,18 @@
 //! wants to know of an opening has to watch the file. The speed that a program
 //! sets has no effect. And what a program leaves unread waits for the next that
 //! opens it, where the driver of a cable forgets it; so it is thrown away here.
+//!
+//! To do that this program opens the port itself for a moment. A program that another
+//! thread starts just then has a copy of all that is open, until it is executed, and
+//! nothing is closed as long as there is a copy. So our own closing is waited for.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
@@ -20,6 +26,8 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 
 /// The speed that `stty` shows until somebody sets another.
 const BAUD: u32 = 115_200;
+/// The longest time from the start of a program to its execution, on a busy machine.
+const MOST_BEFORE_EXECUTION: Duration = Duration::from_secs(10);
 
 /// What programs have done with the port since the last look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +54,8 @@ impl Pty {
     /// A new pseudo terminal that passes bytes on as they are.
     ///
     /// # Errors
-    /// The system has none left, or no /dev/pts.
+    /// The system has none left, or no /dev/pts. Or [`ErrorKind::TimedOut`]: a program
+    /// that was started meanwhile keeps it open.
     pub(crate) fn new() -> io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         unlockpt(&ours)?;
@@ -55,17 +64,23 @@ impl Pty {
         let path = PathBuf::from(name.to_string_lossy().into_owned());
         // Opened once and closed: only from then on does the system say that
         // nobody has it open. The settings outlive the closing.
-        let theirs = other_end(&path)?;
+        let theirs = other_end(&path, OFlags::RDWR)?;
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
         settings.set_speed(BAUD)?;
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
         drop(theirs);
+        let ours = File::from(ours);
+        // Nobody else knows its name yet.
+        if !comes(|| Ok(!is_open(&ours)?))? {
+            let words = "a program that was started meanwhile keeps the new port open";
+            return Err(io::Error::new(ErrorKind::TimedOut, words));
+        }
         let opens = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         let of_interest = WatchFlags::OPEN | WatchFlags::CLOSE;
         inotify::add_watch(&opens, &path, of_interest)?;
         Ok(Self {
-            ours: File::from(ours),
+            ours,
             opens,
             path,
             was_open: false,
@@ -114,9 +129,7 @@ impl Pty {
     /// # Errors
     /// Only those of a system that is out of memory.
     pub(crate) fn is_open(&self) -> io::Result<bool> {
-        let mut fds = [PollFd::new(&self.ours, PollFlags::IN)];
-        poll(&mut fds, Some(&Timespec::default()))?;
-        Ok(!fds[0].revents().contains(PollFlags::HUP))
+        is_open(&self.ours)
     }
 
     fn events(&self, mut tell: impl FnMut(ReadFlags)) -> io::Result<()> {
@@ -135,10 +148,19 @@ impl Pty {
     fn throw_away_unread(&self) -> io::Result<()> {
         // It cannot be opened while a program has it for itself alone; then that
         // program has thrown away what it found.
-        if let Ok(theirs) = other_end(&self.path) {
-            tcflush(&theirs, QueueSelector::IFlush)?;
-        }
-        self.events(|_our_own| {})
+        let Ok(theirs) = other_end(&self.path, OFlags::RDONLY) else {
+            return self.events(|_anything| {});
+        };
+        tcflush(&theirs, QueueSelector::IFlush)?;
+        drop(theirs);
+        // Who opens a port to write is told from us by how it is closed. If it is open
+        // in the end, another program has opened it.
+        let mut closed = false;
+        comes(|| {
+            self.events(|event| closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
+            Ok(closed || !self.is_open()?)
+        })?;
+        self.events(|_rest| {})
     }
 
     /// Reads what programs have written, 0 bytes if there is nothing.
@@ -162,8 +184,26 @@ impl Pty {
     }
 }
 
-fn other_end(path: &Path) -> rustix::io::Result<OwnedFd> {
-    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
+fn is_open(ours: &File) -> io::Result<bool> {
+    let mut fds = [PollFd::new(ours, PollFlags::IN)];
+    poll(&mut fds, Some(&Timespec::default()))?;
+    Ok(!fds[0].revents().contains(PollFlags::HUP))
+}
+
+/// Waits as long as a program may take to be executed. False if that is not enough.
+fn comes(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
+    let end = Instant::now() + MOST_BEFORE_EXECUTION;
+    while !condition()? {
+        if Instant::now() > end {
+            return Ok(false);
+        }
+        thread::sleep(Duration::from_micros(100));
+    }
+    Ok(true)
+}
+
+fn other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
+    let flags = access | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
     rustix::fs::open(path, flags, Mode::empty())
 }
 

@@ -1,16 +1,26 @@
 //! A command in the root of the repository, as a person types it: its screen can
 //! be read while it runs, lines can be typed, Ctrl-C ends it.
+//!
+//! A program takes over from its parent which signals it ignores, and a shell without
+//! job control lets what it starts with `&` ignore Ctrl-C. Where these tests run so, a
+//! command would, too, until it sets a handler of its own. A person's does not.
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use lizard_host_tests::root;
+use lizard_time_limit::LIMIT;
 use rustix::process::{Pid, Signal, kill_process_group};
 
+/// How long a person waits before Ctrl-C is pressed again.
+const AGAIN: Duration = Duration::from_secs(1);
+
 pub struct Shell {
+    line: String,
     child: Mutex<Child>,
     keyboard: ChildStdin,
     screen: Arc<Mutex<Vec<u8>>>,
@@ -18,7 +28,8 @@ pub struct Shell {
 
 impl Shell {
     pub fn start(program: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Self {
-        let mut command = Command::new(program);
+        let mut command = Command::new("env");
+        command.args(["--default-signal=INT,QUIT", program]);
         command.args(arguments).current_dir(root());
         // A person's shell knows nothing of the cargo and make around this test.
         for (name, _) in std::env::vars() {
@@ -39,6 +50,7 @@ impl Shell {
         let keyboard = child.stdin.take().expect("it is piped");
         let child = Mutex::new(child);
         Self {
+            line: [&[program], arguments].concat().join(" "),
             child,
             keyboard,
             screen,
@@ -60,20 +72,41 @@ impl Shell {
         child.try_wait().expect("it is our child").is_some()
     }
 
-    /// Presses Ctrl-C.
+    /// Presses Ctrl-C, again and again until the command ends; the test fails if it
+    /// never does.
     pub fn interrupt(&mut self) {
-        let child = self.child.get_mut().expect("nobody panics with it");
-        if let Ok(None) = child.try_wait() {
-            let group = Pid::from_child(child);
-            kill_process_group(group, Signal::INT).expect("it is our child");
-            child.wait().expect("it is our child");
-        }
+        let mut pressed: Option<Instant> = None;
+        let ended = LIMIT.comes(|| {
+            if self.has_ended() {
+                return true;
+            }
+            if pressed.is_none_or(|then| then.elapsed() > AGAIN) {
+                self.signal(Signal::INT);
+                pressed = Some(Instant::now());
+            }
+            false
+        });
+        let (line, screen) = (&self.line, self.screen());
+        assert!(
+            ended,
+            "waited {LIMIT} for the end of `{line}` by Ctrl-C:\n{screen}"
+        );
+    }
+
+    /// To the command and all that it has started.
+    fn signal(&self, signal: Signal) {
+        let child = self.child.lock().expect("nobody panics with it");
+        // What has ended meanwhile needs none.
+        let _ = kill_process_group(Pid::from_child(&child), signal);
     }
 }
 
 impl Drop for Shell {
     fn drop(&mut self) {
-        self.interrupt();
+        if !self.has_ended() {
+            self.signal(Signal::KILL);
+            let _ = LIMIT.end_of(self.child.get_mut().expect("nobody panics with it"));
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Resets of the simulated UNO against the data sheet, chapter 11.
 
-use lizard_host_tests::avr_gcc::{assembler, c};
+use lizard_host_tests::avr_gcc::{assembler, assembler_at, c};
 use simulated_uno::{
     CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, Pulse, ResetCause, SRAM_END, SRAM_START, State,
     Uno,
@@ -286,4 +286,26 @@ fn a_boot_loader_set_before_the_first_cycle_may_be_taken_back() {
     uno.run_ms(1);
     assert_eq!(marks(&uno), [1]);
     assert_eq!(causes(&uno), [ResetCause::PowerOn]);
+}
+
+#[test]
+fn a_reset_wakes_a_chip_that_sleeps_for_ever() {
+    let halted = "int main(void) { asm(\"cli\\n sleep\"); for (;;) {} }";
+    let mut uno = Uno::with_image(c(halted), Fidelity::DataSheet);
+    uno.run_ms(1);
+    assert_eq!(*uno.state(), State::Halted);
+    uno.reset();
+    assert_eq!(*uno.state(), State::Alive);
+}
+
+#[test]
+fn after_a_reset_a_board_as_sold_starts_in_its_boot_loader() {
+    let loader = assembler_at(0x7e00, "ldi r16, 7\n out GPIOR0, r16\n loop: rjmp loop");
+    let mut uno = Uno::with_boot_loader(loader, Fidelity::DataSheet);
+    uno.run_ms(1);
+    uno.reset();
+    uno.run_ms(1);
+    assert_eq!(marks(&uno), [7, 7]);
+    assert_eq!(uno.flash()[0], 0xff);
+    assert_eq!(uno.flash()[0x7e00..0x7e02], [0x07, 0xe0]);
 }

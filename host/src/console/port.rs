@@ -143,6 +143,9 @@ fn is_no_terminal(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #[cfg(target_os = "linux")]
+    use lizard_time_limit::LIMIT;
+
     use super::*;
 
     fn refusal(name: &str) -> PortError {
@@ -173,7 +176,7 @@ mod tests {
             .spawn()
             .expect("it starts");
         let words = refusal(&name).to_string();
-        other.wait().expect("it ends");
+        LIMIT.end_of(&mut other).expect("it ends");
         assert_eq!(words, format!("{name} is no serial port"));
     }
 
@@ -189,7 +192,7 @@ mod tests {
             .expect("it starts");
         let words = refusal(&name).to_string();
         other.kill().expect("it ends");
-        other.wait().expect("it ends");
+        LIMIT.end_of(&mut other).expect("it ends");
         let id = other.id();
         assert_eq!(
             words,

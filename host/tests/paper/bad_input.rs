@@ -1,5 +1,7 @@
 //! Bad input: each case its message, its exit code, and nothing half written.
 
+use lizard_time_limit::LIMIT;
+
 use crate::program::{lizard, paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
@@ -205,10 +207,8 @@ fn a_pipe_that_closes_is_no_failure() {
         env!("CARGO_BIN_EXE_lizard"),
         std::env::temp_dir().display()
     );
-    let output = std::process::Command::new("bash")
-        .args(["-c", &script])
-        .output()
-        .unwrap();
+    let mut bash = std::process::Command::new("bash");
+    let output = LIMIT.output(bash.args(["-c", &script]), b"").unwrap();
     assert!(
         output.status.success(),
         "{}",

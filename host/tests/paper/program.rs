@@ -1,7 +1,8 @@
 //! Runs `lizard`.
 
-use std::io::Write;
-use std::process::{Command, Stdio};
+use std::process::Command;
+
+use lizard_time_limit::LIMIT;
 
 /// What a run left behind.
 pub struct Outcome {
@@ -59,20 +60,13 @@ impl Drop for RobotFile {
 
 /// Runs the program in the repository's root with this standard input.
 pub fn lizard(args: &str, input: impl AsRef<[u8]>) -> Outcome {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lizard"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command
         .args(args.split_whitespace())
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("lizard starts");
-    let mut stdin = child.stdin.take().expect("piped");
-    let input = input.as_ref().to_vec();
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     // A program that stops at bad input closes its end; that is no failure here.
-    let feeder = std::thread::spawn(move || stdin.write_all(&input).is_ok());
-    let output = child.wait_with_output().expect("lizard ends");
-    let _ = feeder.join();
+    let output = LIMIT.output(&mut command, input.as_ref());
+    let output = output.expect("lizard ends");
     Outcome {
         code: output.status.code().expect("no signal"),
         out: String::from_utf8(output.stdout).expect("UTF-8"),

@@ -1,0 +1,121 @@
+//! Waits that hang must fail, with their sentence; those that do not must not.
+#![cfg(unix)] // by the programs that are everywhere there
+
+use std::io::ErrorKind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::Command;
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use lizard_time_limit::{LIMIT, TimeLimit};
+
+const SHORT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
+
+/// The sentence with which this fails.
+fn sentence<T>(wait: impl FnOnce() -> T) -> String {
+    let panic = catch_unwind(AssertUnwindSafe(wait))
+        .err()
+        .expect("it fails");
+    match panic.downcast::<String>() {
+        Ok(words) => *words,
+        Err(panic) => (*panic.downcast::<&str>().expect("it fails with words")).to_owned(),
+    }
+}
+
+fn shell(script: &str) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", script]);
+    command
+}
+
+#[test]
+fn a_condition_that_never_holds_fails_with_what_was_waited_for() {
+    let words = sentence(|| SHORT.until("the cows", || false));
+    assert_eq!(words, "waited 100ms for the cows");
+    assert!(!SHORT.comes(|| false));
+}
+
+#[test]
+fn a_condition_is_asked_until_it_holds() {
+    let begin = Instant::now();
+    let mut asked = 0;
+    LIMIT.until("the third time", || {
+        asked += 1;
+        asked == 3
+    });
+    assert_eq!(asked, 3);
+    assert!(LIMIT.comes(|| begin.elapsed() > Duration::from_millis(20)));
+}
+
+#[test]
+fn work_that_blocks_fails_with_what_was_waited_for() {
+    let (_send, receive) = mpsc::channel::<()>();
+    let words = sentence(|| SHORT.within("a word of nobody", move || receive.recv()));
+    assert_eq!(words, "waited 100ms for a word of nobody");
+}
+
+#[test]
+fn work_that_ends_gives_its_result_or_its_own_failure() {
+    assert_eq!(LIMIT.within("a sum", || 2 + 2), 4);
+    let words = sentence(|| LIMIT.within("a sum", || panic!("no sum")));
+    assert_eq!(words, "no sum");
+}
+
+#[test]
+fn a_program_that_does_not_end_is_killed() {
+    let mut child = Command::new("sleep").arg("60").spawn().expect("it starts");
+    let error = SHORT.end_of(&mut child).expect_err("it sleeps");
+    assert_eq!(error.kind(), ErrorKind::TimedOut);
+    let id = child.id();
+    assert_eq!(
+        error.to_string(),
+        format!("waited 100ms for the end of process {id}")
+    );
+    let status = child.try_wait().expect("it is ours").expect("it has ended");
+    assert_eq!(status.code(), None, "by a signal");
+}
+
+#[test]
+fn a_program_that_ends_tells_how() {
+    let mut child = shell("exit 3").spawn().expect("it starts");
+    let status = LIMIT.end_of(&mut child).expect("it ends");
+    assert_eq!(status.code(), Some(3));
+}
+
+#[test]
+fn a_program_gets_its_input_and_both_its_outputs_are_read() {
+    // More than a pipe holds, both ways.
+    let input = vec![b'x'; 1 << 20];
+    let output = LIMIT
+        .output(&mut shell("tee /dev/stderr; exit 3"), &input)
+        .expect("it ends");
+    assert!(output.stdout == input && output.stderr == input);
+    assert_eq!(output.status.code(), Some(3));
+}
+
+#[test]
+fn a_program_that_prints_for_ever_fails_with_its_name() {
+    let error = SHORT.output(&mut Command::new("yes"), b"");
+    let error = error.expect_err("it never ends");
+    assert_eq!(error.kind(), ErrorKind::TimedOut);
+    assert_eq!(error.to_string(), "waited 100ms for the end of `yes`");
+}
+
+#[test]
+fn what_a_program_has_left_running_is_not_waited_for_without_end() {
+    let error = SHORT.output(&mut shell("sleep 2 &"), b"");
+    let words = error.expect_err("it may still print").to_string();
+    assert_eq!(
+        words,
+        "waited 100ms for the end of what was started by `sh`"
+    );
+}
+
+#[test]
+fn a_program_that_is_missing_is_an_error_of_the_system() {
+    let error = LIMIT.output(&mut Command::new("no-such-program"), b"");
+    assert_eq!(
+        error.expect_err("it is not there").kind(),
+        ErrorKind::NotFound
+    );
+}
