@@ -1,6 +1,6 @@
 //! The whole robot: every body, and where each is at a pose.
 
-use lizard_kinematics::{End, Real, Side, Solution, Vector};
+use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::body::{Body, Mount, at_end};
@@ -150,33 +150,4 @@ impl Assembly {
             }
         }
     }
-}
-
-/// What the servos, their links and their legs are called.
-pub(crate) fn names(servo: usize) -> (&'static str, &'static str) {
-    (
-        lizard_robot::servo::NAMES[servo],
-        lizard_robot::servo::LEGS[servo],
-    )
-}
-
-/// The name of the coupler on a servo's crank.
-pub(crate) fn coupler(servo: usize) -> String {
-    format!("coupler {}", names(servo).0)
-}
-
-/// The shortest and the longest that a slider may be from pin to pin, mm.
-pub(crate) fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
-    let (slider, limits) = (robot.lizard().side(side), robot.limits());
-    [
-        slider.nominal + limits.stroke_min,
-        slider.nominal + limits.stroke_max,
-    ]
-}
-
-/// Length of the coupler on a servo's crank, mm.
-pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
-    let (end, hand): (End, usize) = at_end(servo);
-    let bars = robot.lizard().end(end);
-    [bars.coupler_left, bars.coupler_right][hand]
 }

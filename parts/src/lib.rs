@@ -58,6 +58,7 @@ mod layout;
 mod legs;
 mod links;
 mod mesh;
+mod names;
 mod outline;
 mod part;
 mod picture;

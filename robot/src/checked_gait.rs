@@ -5,8 +5,9 @@ use lizard_kinematics::Pose;
 use crate::accuracy::{self, TableError};
 use crate::audit::Audit;
 use crate::gait::Stride;
-use crate::ground::{Ground, Prediction, Travel};
+use crate::ground::Ground;
 use crate::tabled_gait::TabledGait;
+use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
 /// A gait of robot.toml whose every sample has been checked: in floating point,

@@ -12,7 +12,7 @@ use crate::define;
 use crate::error::{Checked, Error, Fault, Problem};
 use crate::file;
 use crate::firmware::Firmware;
-use crate::ground::{Ground, Prediction, Travel};
+use crate::ground::Ground;
 use crate::legs::LegPlan;
 use crate::measure::Measures;
 use crate::numbers::Numbers;
@@ -23,6 +23,7 @@ use crate::servo::{self, FORWARD, Pace, Servo};
 use crate::supply::Supplies;
 use crate::table::{Tables, Unfit};
 use crate::tabled_gait::TabledGait;
+use crate::travel::{Prediction, Travel};
 
 /// A robot whose every value and gait has been checked.
 #[derive(Debug, Clone, PartialEq)]

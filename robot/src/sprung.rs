@@ -2,7 +2,8 @@
 //! rigid legs is left.
 
 use crate::checked_gait::CheckedGait;
-use crate::ground::{Ground, Prediction};
+use crate::ground::Ground;
+use crate::travel::Prediction;
 
 /// A gait on springs beside the same gait on rigid legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
