@@ -8,12 +8,12 @@ use lizard_core::restart::Restart;
 use lizard_core::safety::Health;
 use lizard_core::settings::Settings;
 use lizard_core::supply::Reading;
-use lizard_robot::{Firmware, Robot};
+use lizard_robot::{CoreRobot, Robot};
 
 /// The core on a board without time.
 pub struct Board {
     robot: &'static Robot,
-    console: Console<&'static Firmware>,
+    console: Console<&'static CoreRobot>,
     memory: Bytes,
     health: Health,
     said: String,

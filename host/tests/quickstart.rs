@@ -7,7 +7,7 @@ use lizard_core::memory::Bytes;
 use lizard_core::restart::Restart;
 use lizard_core::safety::Health;
 use lizard_core::supply::Reading;
-use lizard_robot::{Firmware, Robot};
+use lizard_robot::{CoreRobot, Robot};
 
 fn read(path: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -16,7 +16,7 @@ fn read(path: &str) -> String {
 
 /// The paper's robot with an EEPROM that was never written, on 5 V.
 struct Board {
-    console: Console<Firmware>,
+    console: Console<CoreRobot>,
     memory: Bytes,
 }
 

@@ -7,7 +7,7 @@ use crate::body::{Body, Mount, at_end};
 use crate::builder::Builder;
 use crate::joints::Joints;
 use crate::layout::Layout;
-use crate::place::Place;
+use crate::placement::Placement;
 use crate::stack::Stack;
 use crate::{chassis, ends, legs, links, sliders, struts};
 
@@ -92,36 +92,36 @@ impl Assembly {
 
     /// Where a mount's frame is at a pose, legs without lag.
     #[must_use]
-    pub fn place(&self, mount: Mount, pose: &Solution) -> Place {
+    pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
         self.place_on(mount, pose)
     }
 
     /// The same for joints in any kind of number.
-    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Place<T> {
+    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
-        let turned = |servo: usize, at: Vector| Place {
+        let turned = |servo: usize, at: Vector| Placement {
             at: vector(at),
             turn: joints.crank(servo),
         };
         let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
         match mount {
-            Mount::Chassis => Place {
-                at: vector(Place::CHASSIS.at),
-                turn: vector(Place::CHASSIS.turn),
+            Mount::Chassis => Placement {
+                at: vector(Placement::CHASSIS.at),
+                turn: vector(Placement::CHASSIS.turn),
             },
             Mount::Link(servo) => link(servo),
             Mount::Crank(servo) => turned(servo, self.layout.legs[servo].driven),
             Mount::Follower(servo) => turned(servo, self.layout.legs[servo].idle),
             Mount::Foot(servo) => {
                 let leg = &self.layout.legs[servo];
-                Place {
+                Placement {
                     at: turned(servo, leg.driven).map(leg.joint),
                     turn: vector(leg.along),
                 }
             }
             Mount::Strut(servo) => {
                 let leg = &self.layout.legs[servo];
-                Place {
+                Placement {
                     at: link(servo).map(leg.anchor),
                     turn: vector(leg.strut),
                 }
@@ -131,7 +131,7 @@ impl Assembly {
                 let bars = joints.end(end);
                 let tip = [bars.left_tip, bars.right_tip][hand];
                 let along = [bars.left_coupler, bars.right_coupler][hand];
-                Place {
+                Placement {
                     at: self.robot.lizard().to_chassis(end, tip),
                     turn: end.mirror(along),
                 }
@@ -143,7 +143,7 @@ impl Assembly {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,
                 };
-                Place {
+                Placement {
                     at: rear + tip,
                     turn: slider.span.scaled(T::of(1.0) / slider.d),
                 }

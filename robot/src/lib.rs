@@ -4,8 +4,13 @@
 //! [`Robot::load`] reads the file and checks everything in it, every sample of
 //! every gait included, so a `Robot` that exists is one that can walk. From it
 //! come the gaits in floating point beside the tables that the firmware reads
-//! ([`CheckedGait`]), the robot as the firmware has it ([`Firmware`]) and the Rust
-//! source that carries it ([`Firmware::source`]).
+//! ([`CheckedGait`]), the robot in the integers of the core ([`CoreRobot`]) and the Rust
+//! source that carries these into an image ([`CoreRobot::source`]).
+//!
+//! Inside, a file becomes `Measures`, all of it but the gaits; these and the gaits'
+//! `Tables` become `Numbers`, the integers; a [`Robot`] holds all of them, and a
+//! [`CoreRobot`] is the numbers as the core reads them. docs/firmware.md says how the
+//! types of other crates that are a robot differ from these.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
@@ -14,11 +19,11 @@ mod accuracy;
 mod audit;
 mod checked_gait;
 mod coil;
+mod core_robot;
 mod define;
 mod error;
 mod feet;
 mod file;
-mod firmware;
 mod friction;
 mod gait;
 mod generate;
@@ -57,10 +62,10 @@ pub use accuracy::TableError;
 pub use audit::{Audit, Least, Peak};
 pub use checked_gait::{CheckedGait, Walked};
 pub use coil::Coil;
+pub use core_robot::CoreRobot;
 pub use error::{Error, Hint, Problem};
 pub use feet::{Body, Feet, GRAVITY};
 pub use file::LONGEST;
-pub use firmware::Firmware;
 pub use gait::Stride;
 pub use ground::{DEFAULT_FRICTION, Ground};
 pub use harmonic::Harmonic;

@@ -48,10 +48,10 @@ impl Uneven {
     /// Takes the servos to these sweeps while the even pads move by `twists`.
     fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
         let (mut part, differs) = (twists.iter(), &mut self.differs);
-        self.walker.parts(sweeps, |_, motion| {
+        self.walker.parts(sweeps, |_, displacement| {
             let even = part.next().copied().unwrap_or_default();
             for i in 0..3 {
-                differs[i] += (motion.twist[i] - even[i]).abs();
+                differs[i] += (displacement.twist[i] - even[i]).abs();
             }
         });
     }
@@ -81,11 +81,11 @@ impl Ground {
         let mut twists = Vec::new();
         for next in sweeps {
             twists.clear();
-            even.parts(next, |_, motion| {
-                let [forward, left, turn] = motion.twist;
+            even.parts(next, |_, displacement| {
+                let [forward, left, turn] = displacement.twist;
                 length += forward.hypot(left);
                 turned += turn.abs();
-                twists.push(motion.twist);
+                twists.push(displacement.twist);
             });
             for way in &mut uneven {
                 way.follow(next, &twists);

@@ -8,10 +8,10 @@ use toml::de::DeTable;
 
 use crate::audit;
 use crate::checked_gait::CheckedGait;
+use crate::core_robot::CoreRobot;
 use crate::define;
 use crate::error::{Checked, Error, Fault, Problem};
 use crate::file;
-use crate::firmware::Firmware;
 use crate::ground::Ground;
 use crate::legs::LegPlan;
 use crate::measure::Measures;
@@ -30,7 +30,7 @@ use crate::travel::{Prediction, Travel};
 pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
-    firmware: Firmware,
+    firmware: CoreRobot,
 }
 
 impl Robot {
@@ -116,7 +116,7 @@ impl Robot {
             }
             .at(key(&gaits[gait].name))
         })?;
-        let firmware = Firmware::new(Numbers::new(&measures, tables));
+        let firmware = CoreRobot::new(Numbers::new(&measures, tables));
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
             let gait = TabledGait::new(gait, index, firmware.tables());
             match audit::check(&gait, &measures, &firmware) {
@@ -187,8 +187,8 @@ impl Robot {
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// The robot as the firmware has it.
-    pub fn firmware(&self) -> &Firmware {
+    /// The robot as the core reads it, in its firmware and on a host.
+    pub fn firmware(&self) -> &CoreRobot {
         &self.firmware
     }
 

@@ -12,7 +12,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::safety::Health;
 use lizard_core::units::CYCLE;
 use lizard_host_tests::Named;
-use lizard_robot::{CheckedGait, Firmware, Robot};
+use lizard_robot::{CheckedGait, CoreRobot, Robot};
 
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
@@ -80,7 +80,7 @@ pub fn long_enough(robot: &Robot) -> u32 {
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
-    console: Console<&'a Firmware>,
+    console: Console<&'a CoreRobot>,
     memory: Bytes,
     /// Degrees a second of each servo in the last frame.
     speeds: [f64; 4],
@@ -120,7 +120,7 @@ impl<'a> Walker<'a> {
         walker
     }
 
-    pub fn motion(&self) -> &Motion<&'a Firmware> {
+    pub fn motion(&self) -> &Motion<&'a CoreRobot> {
         self.console.motion()
     }
 

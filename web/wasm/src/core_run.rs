@@ -13,7 +13,7 @@ use lizard_core::restart::Restart;
 use lizard_core::robot::Robot as _;
 use lizard_core::step::{Board, Main, Step};
 use lizard_core::supply::Reading;
-use lizard_robot::{Firmware, healthy_rail_mv};
+use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;
 
 /// Steps of the analogue converter, and the reference on the chip in V.
@@ -97,14 +97,14 @@ pub struct Said {
 
 /// The core of a robot, running.
 pub struct CoreRun {
-    main: Main<Firmware>,
+    main: Main<CoreRobot>,
     line: Line,
 }
 
 impl CoreRun {
     /// At power-on, with what an EEPROM holds.
     #[must_use]
-    pub fn begin(robot: Firmware, memory: Bytes) -> Self {
+    pub fn begin(robot: CoreRobot, memory: Bytes) -> Self {
         let mut line = Line {
             ticks: 0,
             volts: 5.0,
