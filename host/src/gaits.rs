@@ -98,7 +98,7 @@ struct GaitLine<'a> {
     /// mm from nominal, smallest and largest
     stroke: [f64; 2],
     /// Displacement of one cycle: mm and deg, counter-clockwise; null is
-    /// what hangs on a tie of two feet against two
+    /// what depends on a tie of two feet against two
     predicted: Predicted,
 }
 

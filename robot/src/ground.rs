@@ -34,7 +34,7 @@ pub struct Ground {
 pub const DEFAULT_FRICTION: f64 = 0.7;
 
 impl Ground {
-    /// The same with legs that do not lag: where a step leads then hangs on nothing
+    /// The same with legs that do not lag: where a step leads then depends on nothing
     /// before it.
     #[must_use]
     pub fn rigid(&self) -> Self {

@@ -2,14 +2,14 @@
 //!
 //! Two feet against two are a tie: every twist between the two pairs costs the
 //! same, and the smallest difference between the pads decides. The model cannot
-//! know it, so it predicts nothing where the way hangs on ties.
+//! know it, so it predicts nothing where the way depends on ties.
 
 use crate::friction::Twist;
 use crate::ground::Ground;
 use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
-/// By how much pads are made uneven to see whether a way hangs on a tie. No
+/// By how much pads are made uneven to see whether a way depends on a tie. No
 /// print and no floor is more even than that.
 const UNEVEN: f64 = 0.01;
 /// A way that then differs by less than this share of its length is decided.
@@ -60,7 +60,7 @@ impl Uneven {
 impl Ground {
     /// Where the robot gets to when its legs take these sweeps (deg, foot
     /// forward positive, servo order) one after another, as far as that does not
-    /// hang on ties.
+    /// depend on ties.
     ///
     /// The same sweeps are followed on pads made uneven by a hundredth, each pad
     /// in turn and all of them backward against forward. Where two feet agree
@@ -112,7 +112,7 @@ impl Ground {
         }
     }
 
-    /// Where the model leads, whether or not that hangs on ties: then by the
+    /// Where the model leads, whether or not that depends on ties: then by the
     /// twist in the middle between the two pairs of feet.
     pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         let mut sweeps = sweeps.into_iter();

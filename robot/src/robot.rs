@@ -206,7 +206,7 @@ impl Robot {
 
     /// Where the robot gets to when its servos take these angles (deg, chassis
     /// frame, servo order) one after another, by the contact model with rigid legs,
-    /// whether or not that hangs on ties.
+    /// whether or not that depends on ties.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .rigid()

@@ -14,7 +14,7 @@ pub struct Sprung {
     pub lag: f64,
     /// Its way in a cycle over that of rigid legs: ahead, or the turn of a gait that
     /// turns in place, or the smaller of both. None where rigid legs get nowhere or
-    /// their way hangs on ties.
+    /// their way depends on ties.
     pub share: Option<f64>,
 }
 

@@ -12,7 +12,7 @@ pub struct Travel {
 }
 
 /// What is known of a way in advance, seen from where it started. None is what
-/// hangs on a tie.
+/// depends on a tie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// mm.
@@ -24,7 +24,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// True if nothing hangs on a tie.
+    /// True if nothing depends on a tie.
     pub fn is_decided(&self) -> bool {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
