@@ -3,7 +3,7 @@
 //!
 //! The boot loader of the UNO clears the register that says why the chip was reset,
 //! and passes it on nowhere. But RAM keeps its contents as long as there is power. So
-//! these bytes say, by a mark and a check sum, which random bytes match once in 32 768 times,
+//! these bytes say, by a mark and a check sum that chance makes once in 32 768 times,
 //! that power was not lost; and they hold what the program did until then. Where no
 //! boot loader is in the way, the register itself tells.
 
