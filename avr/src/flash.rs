@@ -12,6 +12,7 @@
 //! wants a nightly compiler on the host, too, and panics on a bad index.)
 
 use core::marker::PhantomData;
+#[cfg(target_arch = "avr")]
 use core::mem::{MaybeUninit, transmute_copy};
 
 /// Where a constant lies in flash; on any other machine, an ordinary reference.
@@ -38,8 +39,8 @@ impl<T: ?Sized> Flash<'_, T> {
     /// Made by [`flash!`](crate::flash!) alone.
     ///
     /// # Safety
-    /// `at` must be valid for reads for the lifetime, in the flash of an AVR and
-    /// in ordinary memory elsewhere.
+    /// A value of `T` must be at `at` for the lifetime, aligned and never written: in
+    /// the flash of an AVR, and in ordinary memory elsewhere.
     #[doc(hidden)]
     pub const unsafe fn new(at: *const T) -> Self {
         Self {
@@ -61,6 +62,15 @@ impl<'a, T: ?Sized> From<&'a T> for Flash<'a, T> {
 
 impl<T: Copy> Flash<'_, T> {
     /// Fetches the constant.
+    #[cfg(not(target_arch = "avr"))]
+    #[inline]
+    pub fn load(self) -> T {
+        // SAFETY: `new` vouches for a value at `self.at`, and it is `Copy`.
+        unsafe { self.at.read() }
+    }
+
+    /// Fetches the constant.
+    #[cfg(target_arch = "avr")]
     #[inline]
     pub fn load(self) -> T {
         // One and two bytes go through registers, the rest through memory.
@@ -173,27 +183,6 @@ unsafe fn fetch(from: *const u8, to: *mut u8, count: usize) {
             from = from.add(1);
         }
     }
-}
-
-#[cfg(not(target_arch = "avr"))]
-#[inline]
-unsafe fn fetch_byte(from: *const u8) -> u8 {
-    // SAFETY: the caller vouches for the byte.
-    unsafe { from.read() }
-}
-
-#[cfg(not(target_arch = "avr"))]
-#[inline]
-unsafe fn fetch_word(from: *const u8) -> u16 {
-    // SAFETY: the caller vouches for the two bytes.
-    unsafe { from.cast::<u16>().read_unaligned() }
-}
-
-#[cfg(not(target_arch = "avr"))]
-#[inline]
-unsafe fn fetch(from: *const u8, to: *mut u8, count: usize) {
-    // SAFETY: the caller vouches for `count` bytes at either place.
-    unsafe { core::ptr::copy_nonoverlapping(from, to, count) }
 }
 
 /// Declares constants that stay in flash.

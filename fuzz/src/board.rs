@@ -7,12 +7,12 @@ use lizard_core::record::{self, Outcome, RESTED};
 use lizard_core::restart::Restart;
 use lizard_core::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, Running};
-use lizard_robot::{Firmware, Robot};
+use lizard_robot::{CoreRobot, Robot};
 
 /// The core on a board without time.
 pub struct Board {
     robot: &'static Robot,
-    running: Running<&'static Firmware>,
+    running: Running<&'static CoreRobot>,
     said: String,
     /// The line under way as another reader of lines has it.
     line: Vec<u8>,

@@ -2,20 +2,20 @@
 //!
 //! Tests on the running firmware should read as what a person does with a
 //! board: `boot`, `say("walk")`, wait some frames, look at the pulses. This is
-//! [`Board`] with the robot under test, where a failure ends the test.
+//! [`SimulatedBoard`] with the robot under test, where a failure ends the test.
 
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use lizard_host::board::{Board, BoardError};
+use lizard_host::board::{BoardError, SimulatedBoard};
 use lizard_host::sim::frame::Frame;
 use simulated_uno::{Call, Fidelity, Uno};
 
 use crate::robots::{robot, root};
 
 /// A simulated UNO with the firmware in flash and a person at its console.
-pub struct FirmwareBench(Board);
+pub struct FirmwareBench(SimulatedBoard);
 
 impl FirmwareBench {
     /// The firmware that `make firmware` leaves, or what `LIZARD_ELF` names.
@@ -48,7 +48,7 @@ impl FirmwareBench {
     /// See [`FirmwareBench::boot`].
     #[must_use]
     pub fn boot_with(fidelity: Fidelity) -> Self {
-        let board = Board::boot(&Self::elf(), fidelity, robot());
+        let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
         Self(done(board))
     }
 
@@ -58,17 +58,17 @@ impl FirmwareBench {
     /// If there is no firmware.
     #[must_use]
     pub fn power_on(fidelity: Fidelity) -> Self {
-        let board = Board::power_on(&Self::elf(), fidelity, robot());
+        let board = SimulatedBoard::power_on(&Self::elf(), fidelity, robot());
         Self(done(board))
     }
 
     /// A bench around any board, for programs other than the firmware.
     #[must_use]
-    pub fn with_board(board: Board) -> Self {
+    pub fn with_board(board: SimulatedBoard) -> Self {
         Self(board)
     }
 
-    /// See [`Board::say`].
+    /// See [`SimulatedBoard::say`].
     ///
     /// # Panics
     /// Without an answer.
@@ -76,7 +76,7 @@ impl FirmwareBench {
         done(self.0.say(line))
     }
 
-    /// See [`Board::ask`].
+    /// See [`SimulatedBoard::ask`].
     ///
     /// # Panics
     /// Without an answer.
@@ -84,7 +84,7 @@ impl FirmwareBench {
         done(self.0.ask(line))
     }
 
-    /// See [`Board::run_ms`].
+    /// See [`SimulatedBoard::run_ms`].
     ///
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
@@ -92,7 +92,7 @@ impl FirmwareBench {
         done(self.0.run_ms(ms));
     }
 
-    /// See [`Board::time_calls`].
+    /// See [`SimulatedBoard::time_calls`].
     ///
     /// # Panics
     /// If the ELF has no such function, or more than one.
@@ -100,7 +100,7 @@ impl FirmwareBench {
         done(self.0.time_calls(function, ms))
     }
 
-    /// See [`Board::run_for_frames`].
+    /// See [`SimulatedBoard::run_for_frames`].
     ///
     /// # Panics
     /// If the firmware crashes, halts or is reset meanwhile.
@@ -110,15 +110,15 @@ impl FirmwareBench {
 }
 
 impl Deref for FirmwareBench {
-    type Target = Board;
+    type Target = SimulatedBoard;
 
-    fn deref(&self) -> &Board {
+    fn deref(&self) -> &SimulatedBoard {
         &self.0
     }
 }
 
 impl DerefMut for FirmwareBench {
-    fn deref_mut(&mut self) -> &mut Board {
+    fn deref_mut(&mut self) -> &mut SimulatedBoard {
         &mut self.0
     }
 }
@@ -130,7 +130,7 @@ fn done<T>(result: Result<T, BoardError>) -> T {
 /// Ends the test run if the firmware's banner names other tables than the robot
 /// under test has: every test would fail for that one reason.
 fn is_of_this_robot(elf: &Path) {
-    let mut board = done(Board::boot(elf, Fidelity::Stock, robot()));
+    let mut board = done(SimulatedBoard::boot(elf, Fidelity::Stock, robot()));
     let hash = format!("tables {:08x}", robot().firmware().hash());
     let banner = board.lines()[0].text.clone();
     assert!(
@@ -146,5 +146,5 @@ fn is_of_this_robot(elf: &Path) {
 #[must_use]
 pub fn bench_of(uno: Uno) -> FirmwareBench {
     let pins = [9, 10, 11, 3].map(simulated_uno::Pin::d);
-    FirmwareBench::with_board(Board::with_uno(uno, pins))
+    FirmwareBench::with_board(SimulatedBoard::with_uno(uno, pins))
 }

@@ -46,7 +46,7 @@ fn ten_million_random_bytes_do_no_harm_to_the_core() {
     in_parts(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
         for n in 0..count {
-            // Line ends more often than by chance.
+            // Line ends more often than random bytes have them.
             let byte = if rng.u8(..32) == 0 { b'\n' } else { rng.u8(..) };
             board.take(byte);
             if n % 64 == 0 {

@@ -1,6 +1,9 @@
-//! docs/faults.md names tests that exist.
+//! Pages name what exists: tests, items of the code, and every crate that is free of
+//! libsimavr.
 
+use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
 use lizard_host_tests::root;
 
@@ -28,4 +31,73 @@ fn every_fault_in_the_documentation_has_a_test_that_exists() {
         count += 1;
     }
     assert!(count > 20, "{count}");
+}
+
+/// What is said of crates and items is held by their names.
+fn words(text: &str) -> BTreeSet<&str> {
+    let apart = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
+    text.split(apart).collect()
+}
+
+#[test]
+fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
+    let license = fs::read_to_string(root().join("LICENSE")).expect("the file");
+    let (_, said) = license.split_once("therefore licensed").expect("libsimavr");
+    let (with, without) = said.split_once("The firmware").expect("both sides");
+    let (with, without) = (words(with), words(without));
+    let workspace = fs::read_to_string(root().join("host/Cargo.toml")).expect("the workspace");
+    let (_, members) = workspace.split_once("members = [").expect("its members");
+    let (members, _) = members.split_once(']').expect("their end");
+    let folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
+    assert!(folders.len() > 9, "{folders:?}");
+    for folder in folders {
+        let name = folder.strip_prefix("../").unwrap_or("host");
+        let manifest = fs::read_to_string(root().join(name).join("Cargo.toml")).expect(name);
+        let has = name == "simulated-uno" || manifest.contains("\nsimulated-uno = ");
+        let word = &*format!("{name}/");
+        let said = [
+            with.contains(word) || name == "simulated-uno",
+            without.contains(word),
+        ];
+        assert_eq!(said, [has, !has], "LICENSE and {name}/Cargo.toml");
+    }
+}
+
+#[test]
+fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
+    let mut count = 0;
+    let pages = fs::read_dir(root().join("docs")).expect("docs/");
+    let pages = pages.map(|page| page.expect("a page").path());
+    for page in pages.filter(|page| page.extension().is_some_and(|end| end == "md")) {
+        let text = fs::read_to_string(&page).expect("a page");
+        for path in text.split('`').filter(|span| span.starts_with("lizard_")) {
+            let Some((of, item)) = path
+                .strip_prefix("lizard_")
+                .and_then(|path| path.split_once("::"))
+            else {
+                continue;
+            };
+            let sources = sources(&root().join(of).join("src"));
+            for name in item.split("::") {
+                let declared = ["fn", "mod", "struct", "enum", "trait", "const", "type"]
+                    .iter()
+                    .any(|kind| sources.contains(&format!("{kind} {name}")));
+                assert!(declared, "{}: {path} has no {name}", page.display());
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 0, "no page names an item");
+}
+
+/// All Rust files of a folder and of those within it.
+fn sources(folder: &Path) -> String {
+    let entries = fs::read_dir(folder).expect("a folder of sources");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths
+        .map(|path| match path.is_dir() {
+            true => sources(&path),
+            false => fs::read_to_string(path).expect("a file"),
+        })
+        .collect()
 }

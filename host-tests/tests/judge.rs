@@ -33,7 +33,7 @@ enum Apart {
     /// that a byte of a flood is there.
     Turn,
     /// They are not compared: which bytes of a flood are lost while long answers are
-    /// sent hangs on single cycles, in which two simulators may differ.
+    /// sent depends on single cycles, in which two simulators may differ.
     Any,
 }
 

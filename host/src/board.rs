@@ -79,20 +79,20 @@ impl From<BoardError> for Failure {
 }
 
 /// A simulated UNO with a firmware in its flash.
-pub struct Board {
+pub struct SimulatedBoard {
     /// The UNO. Take its transmitted bytes through the board only.
     pub uno: Uno,
     pins: [Pin; 4],
     reader: LineReader,
     bytes: Vec<SerialByte>,
     lines: Vec<Line>,
-    /// Number of lines that [`Board::next_line`] has returned.
+    /// Number of lines that [`SimulatedBoard::next_line`] has returned.
     returned: usize,
     /// Start of a frame: where the others are counted from.
     anchor: Option<u64>,
 }
 
-impl Board {
+impl SimulatedBoard {
     /// Powers a robot's board on, its supplies in good order; not a cycle has passed.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl Board {
     /// Powers a board on and waits for the lizard's banner.
     ///
     /// # Errors
-    /// See [`Board::power_on`]; another first line, or none within 500 ms.
+    /// See [`SimulatedBoard::power_on`]; another first line, or none within 500 ms.
     pub fn boot(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
         let mut board = Self::power_on(elf, fidelity, robot)?;
         match board.next_line(BANNER_MS) {
@@ -143,7 +143,7 @@ impl Board {
     }
 
     /// Sends a line and returns its answer, the first line that is not
-    /// information. What came before is in [`Board::lines`].
+    /// information. What came before is in [`SimulatedBoard::lines`].
     ///
     /// # Errors
     /// No answer within 200 ms after the line has been sent.
@@ -154,7 +154,7 @@ impl Board {
     /// Sends a line; returns the `#` lines that came first, and the answer.
     ///
     /// # Errors
-    /// See [`Board::say`].
+    /// See [`SimulatedBoard::say`].
     pub fn ask(&mut self, line: &str) -> Result<(Vec<String>, String), BoardError> {
         self.returned = self.lines().len();
         self.send(line);
@@ -215,7 +215,7 @@ impl Board {
     /// A counter of `status`.
     ///
     /// # Errors
-    /// See [`Board::say`]; `status` does not list it.
+    /// See [`SimulatedBoard::say`]; `status` does not list it.
     pub fn count(&mut self, key: &str) -> Result<u64, BoardError> {
         let status = self.say("status")?;
         let value = status.split(' ').find_map(|pair| {
@@ -283,7 +283,7 @@ impl Board {
     /// there has been one, from now. Edges recorded before are dropped.
     ///
     /// # Errors
-    /// See [`Board::run_ms`].
+    /// See [`SimulatedBoard::run_ms`].
     pub fn run_for_frames(&mut self, count: u64) -> Result<Vec<Frame>, BoardError> {
         let now = self.uno.cycle();
         self.anchor = latest_start(&self.uno.edges(), self.pins).or(self.anchor);

@@ -55,7 +55,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
         None if args.json => {
             for row in &Report::of(&robot).rows {
-                json::line(&mut out, &Record::new(row))?;
+                json::line(&mut out, &GaitLine::new(row))?;
             }
         }
         None => write!(out, "{}", Report::of(&robot))?,
@@ -82,7 +82,7 @@ fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
 
 /// A gait's figures under the names of `--json`.
 #[derive(Serialize)]
-struct Record<'a> {
+struct GaitLine<'a> {
     gait: &'a str,
     /// s
     period: f64,
@@ -98,7 +98,7 @@ struct Record<'a> {
     /// mm from nominal, smallest and largest
     stroke: [f64; 2],
     /// Displacement of one cycle: mm and deg, counter-clockwise; null is
-    /// what hangs on a tie of two feet against two
+    /// what depends on a tie of two feet against two
     predicted: Predicted,
 }
 
@@ -116,7 +116,7 @@ struct Predicted {
     turn: Option<f64>,
 }
 
-impl<'a> Record<'a> {
+impl<'a> GaitLine<'a> {
     fn new(row: &'a Row) -> Self {
         let least = |least: lizard_robot::Least| Least {
             margin: least.value,

@@ -9,8 +9,6 @@ pub mod absent;
 pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
-#[cfg(feature = "simulator")]
-mod chance;
 #[cfg(feature = "console")]
 pub mod console;
 pub mod draw;
@@ -32,6 +30,8 @@ pub mod spring;
 pub mod tune;
 #[cfg(feature = "simulator")]
 pub mod twin;
+#[cfg(feature = "simulator")]
+mod variation;
 
 pub use failure::Failure;
 pub use pose_args::PoseArgs;

@@ -78,7 +78,7 @@ impl FiveBarPose {
 mod tests {
     use proptest::prelude::*;
 
-    use crate::motion::Drive;
+    use crate::derivatives::Drive;
     use crate::reference::{any_lizard, any_pose};
 
     proptest! {
@@ -96,7 +96,7 @@ mod tests {
             let solved = solved.unwrap();
             prop_assume!(solved.head.type2 > 1e-3);
             let drive = Drive { rate: [rate[0], rate[1], 0.0, 0.0], ..Drive::default() };
-            let truth = solved.motion(&drive).head.rate;
+            let truth = solved.derivatives(&drive).head.rate;
             let j = solved.head.jacobian();
             let ours = j.left * rate[0].to_radians() + j.right * rate[1].to_radians();
             prop_assert!((truth - ours).length() < 1e-9 * (1.0 + truth.length()) / solved.head.type2);

@@ -1,13 +1,13 @@
 //! The whole robot: every body, and where each is at a pose.
 
-use lizard_kinematics::{End, Real, Side, Solution, Vector};
+use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::body::{Body, Mount, at_end};
 use crate::builder::Builder;
 use crate::joints::Joints;
 use crate::layout::Layout;
-use crate::place::Place;
+use crate::placement::Placement;
 use crate::stack::Stack;
 use crate::{chassis, ends, legs, links, sliders, struts};
 
@@ -92,36 +92,36 @@ impl Assembly {
 
     /// Where a mount's frame is at a pose, legs without lag.
     #[must_use]
-    pub fn place(&self, mount: Mount, pose: &Solution) -> Place {
+    pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
         self.place_on(mount, pose)
     }
 
     /// The same for joints in any kind of number.
-    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Place<T> {
+    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
-        let turned = |servo: usize, at: Vector| Place {
+        let turned = |servo: usize, at: Vector| Placement {
             at: vector(at),
             turn: joints.crank(servo),
         };
         let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
         match mount {
-            Mount::Chassis => Place {
-                at: vector(Place::CHASSIS.at),
-                turn: vector(Place::CHASSIS.turn),
+            Mount::Chassis => Placement {
+                at: vector(Placement::CHASSIS.at),
+                turn: vector(Placement::CHASSIS.turn),
             },
             Mount::Link(servo) => link(servo),
             Mount::Crank(servo) => turned(servo, self.layout.legs[servo].driven),
             Mount::Follower(servo) => turned(servo, self.layout.legs[servo].idle),
             Mount::Foot(servo) => {
                 let leg = &self.layout.legs[servo];
-                Place {
+                Placement {
                     at: turned(servo, leg.driven).map(leg.joint),
                     turn: vector(leg.along),
                 }
             }
             Mount::Strut(servo) => {
                 let leg = &self.layout.legs[servo];
-                Place {
+                Placement {
                     at: link(servo).map(leg.anchor),
                     turn: vector(leg.strut),
                 }
@@ -131,7 +131,7 @@ impl Assembly {
                 let bars = joints.end(end);
                 let tip = [bars.left_tip, bars.right_tip][hand];
                 let along = [bars.left_coupler, bars.right_coupler][hand];
-                Place {
+                Placement {
                     at: self.robot.lizard().to_chassis(end, tip),
                     turn: end.mirror(along),
                 }
@@ -143,40 +143,11 @@ impl Assembly {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,
                 };
-                Place {
+                Placement {
                     at: rear + tip,
                     turn: slider.span.scaled(T::of(1.0) / slider.d),
                 }
             }
         }
     }
-}
-
-/// What the servos, their links and their legs are called.
-pub(crate) fn names(servo: usize) -> (&'static str, &'static str) {
-    (
-        lizard_robot::servo::NAMES[servo],
-        lizard_robot::servo::LEGS[servo],
-    )
-}
-
-/// The name of the coupler on a servo's crank.
-pub(crate) fn coupler(servo: usize) -> String {
-    format!("coupler {}", names(servo).0)
-}
-
-/// The shortest and the longest that a slider may be from pin to pin, mm.
-pub(crate) fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
-    let (slider, limits) = (robot.lizard().side(side), robot.limits());
-    [
-        slider.nominal + limits.stroke_min,
-        slider.nominal + limits.stroke_max,
-    ]
-}
-
-/// Length of the coupler on a servo's crank, mm.
-pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
-    let (end, hand): (End, usize) = at_end(servo);
-    let bars = robot.lizard().end(end);
-    [bars.coupler_left, bars.coupler_right][hand]
 }

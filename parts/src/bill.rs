@@ -295,6 +295,7 @@ impl Bill {
         let more = [
             (1, "converter to 5 V, 3 A, for the servos"),
             (1, "capacitor 1000 uF, 10 V, across their supply"),
+            (4, "resistor 10 kOhm, from each servo's signal to ground"),
             (
                 8,
                 "small self-tapping screws, 1.6 to 2 mm thick, 5 mm long, for the horns",

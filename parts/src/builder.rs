@@ -5,9 +5,9 @@ use lizard_robot::{Parts, Robot};
 
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::layout::Layout;
+use crate::names;
 use crate::shape::Shape;
 use crate::stack::{HEX, PLAY, Span, Stack, screw_length};
-use crate::struts;
 
 /// Which way a screw points.
 #[derive(Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ impl<'a> Builder<'a> {
 
     /// The name of a leg's strut.
     pub fn strut(&self, leg: &str) -> String {
-        struts::name(self.parts.strut, leg)
+        names::strut(self.parts.strut, leg)
     }
 
     /// A hole through which a screw turns.

@@ -2,9 +2,9 @@
 
 use lizard_kinematics::{End, Vector};
 
-use crate::assembly::names;
 use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
+use crate::names::names;
 use crate::shape::Shape;
 
 /// Where the standoffs are, mm: to the right, forward.

@@ -10,7 +10,7 @@ use lizard_robot::Parts;
 use crate::body::Prism;
 use crate::links::{POCKET, arm};
 use crate::part::Part;
-use crate::place::Place;
+use crate::placement::Placement;
 use crate::shape::Shape;
 use crate::sliders::ROD;
 
@@ -50,7 +50,7 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         floor.extend(through.iter().cloned());
         below.extend(through);
         floor.push(Shape::disc(at(x, pocket), horn.hub / 2.0 + fit));
-        let upright = Place {
+        let upright = Placement {
             at: at(x, pocket),
             turn: at(0.0, 1.0),
         };

@@ -1,10 +1,11 @@
 //! Head and tail: two couplers each, the left one below the right one.
 
 use lizard_kinematics::{End, Vector};
+use lizard_robot::Robot;
 
-use crate::assembly::{coupler, coupler_length, names};
-use crate::body::{Kind, Mount, Prism};
+use crate::body::{Kind, Mount, Prism, at_end};
 use crate::builder::Builder;
+use crate::names::{coupler, names};
 use crate::shape::Shape;
 use crate::stack::Span;
 
@@ -62,4 +63,11 @@ fn bar(builder: &mut Builder, servo: usize, z: Span) {
         Mount::Coupler(servo),
         vec![bar],
     );
+}
+
+/// Length of the coupler on a servo's crank, mm.
+fn coupler_length(robot: &Robot, servo: usize) -> f64 {
+    let (end, hand) = at_end(servo);
+    let bars = robot.lizard().end(end);
+    [bars.coupler_left, bars.coupler_right][hand]
 }

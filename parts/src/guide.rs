@@ -6,10 +6,11 @@ use std::fmt::Write;
 
 use lizard_kinematics::Solution;
 
-use crate::assembly::{Assembly, names};
+use crate::assembly::Assembly;
 use crate::bill::Bill;
 use crate::body::{Body, Kind};
 use crate::files::File;
+use crate::names::names;
 use crate::picture::{Drawn, View, picture, whole};
 use crate::reach::Aside;
 use crate::steps::steps;

@@ -6,10 +6,10 @@
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
 
-use crate::assembly::names;
 use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
 use crate::chassis::SPLINE;
+use crate::names::names;
 use crate::shape::Shape;
 use crate::stack::{PLAY, Span};
 

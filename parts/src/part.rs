@@ -5,7 +5,7 @@ use lizard_kinematics::Vector;
 use crate::assembly::Assembly;
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::placement::Placement;
 use crate::shape::Shape;
 
 /// Rings are known by their length, not by where they are.
@@ -136,9 +136,9 @@ fn lying(body: &Body) -> (Vec<Prism>, bool) {
 }
 
 /// The frame in which a part is drawn.
-fn home(body: &Body) -> Place {
+fn home(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
-        return Place::CHASSIS;
+        return Placement::CHASSIS;
     }
     let shapes = || body.prisms.iter().flat_map(|prism| &prism.add);
     let at = shapes()
@@ -148,9 +148,9 @@ fn home(body: &Body) -> Place {
         [from, to, ..] => Some(to - from),
         _ => None,
     });
-    Place {
+    Placement {
         at,
-        turn: bar.map_or(Place::CHASSIS.turn, |bar| bar * (1.0 / bar.length())),
+        turn: bar.map_or(Placement::CHASSIS.turn, |bar| bar * (1.0 / bar.length())),
     }
 }
 

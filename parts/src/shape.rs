@@ -8,7 +8,7 @@
 
 use lizard_kinematics::Vector;
 
-use crate::place::Place;
+use crate::placement::Placement;
 
 /// The convex hull of some points, grown by a radius; mm.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,7 +116,7 @@ impl Shape {
 
     /// The same shape elsewhere.
     #[must_use]
-    pub fn placed(&self, place: &Place) -> Self {
+    pub fn placed(&self, place: &Placement) -> Self {
         Self {
             points: self.points.iter().map(|&point| place.map(point)).collect(),
             radius: self.radius,

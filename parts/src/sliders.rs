@@ -4,10 +4,11 @@
 //! lie beside them, the sleeve begins at the rear pin, and the rod passes it.
 
 use lizard_kinematics::{Side, Vector};
+use lizard_robot::Robot;
 
-use crate::assembly::{names, slider_range};
 use crate::body::{Kind, Mount, Prism};
 use crate::builder::Builder;
+use crate::names::names;
 use crate::shape::Shape;
 use crate::stack::Span;
 
@@ -152,4 +153,13 @@ fn pins(builder: &mut Builder, side: Side) {
         stack.rod[1],
         &[&rod],
     );
+}
+
+/// The shortest and the longest that a slider may be from pin to pin, mm.
+pub fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
+    let (slider, limits) = (robot.lizard().side(side), robot.limits());
+    [
+        slider.nominal + limits.stroke_min,
+        slider.nominal + limits.stroke_max,
+    ]
 }

@@ -12,9 +12,9 @@
 use lizard_kinematics::Vector;
 use lizard_robot::Strut;
 
-use crate::assembly::names;
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::builder::Builder;
+use crate::names::{self, names};
 use crate::shape::Shape;
 
 /// Free way of the leg's screw in the strut's slot, mm.
@@ -39,18 +39,10 @@ pub fn instead(builder: &Builder) -> Vec<Body> {
     (0..4).map(|servo| body(builder, servo, other)).collect()
 }
 
-/// The name of a leg's strut.
-pub fn name(strut: Strut, leg: &str) -> String {
-    match strut {
-        Strut::Spring => format!("strut {leg}"),
-        Strut::Rigid => format!("rigid strut {leg}"),
-    }
-}
-
 fn body(builder: &Builder, servo: usize, strut: Strut) -> Body {
     let (_, leg) = names(servo);
     Body {
-        name: name(strut, leg),
+        name: names::strut(strut, leg),
         kind: Kind::Printed,
         mount: Mount::Strut(servo),
         prisms: match strut {

@@ -7,6 +7,7 @@ use crate::body::{Body, Kind, Prism};
 use crate::proof::Clash;
 use crate::reach::Blocked;
 use crate::shape::Shape;
+use crate::sliders::slider_range;
 use crate::steps::steps;
 
 /// What does not fit, in the sentence that the user sees.
@@ -144,7 +145,7 @@ impl Assembly {
             }
         }
         for side in lizard_kinematics::Side::ALL {
-            let range = crate::assembly::slider_range(self.robot(), side);
+            let range = slider_range(self.robot(), side);
             let lengths = crate::SliderLengths::new(side, range);
             if lengths.sleeve < SLEEVE {
                 return Err(Unfit::Slider {

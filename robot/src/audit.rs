@@ -11,8 +11,8 @@ use lizard_core::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::accuracy::{self, ALL_PHASES};
+use crate::core_robot::CoreRobot;
 use crate::error::Problem;
-use crate::firmware::Firmware;
 use crate::gait::Gait;
 use crate::measure::Measures;
 use crate::servo::NAMES;
@@ -72,7 +72,7 @@ pub struct Audit {
 pub(crate) fn check(
     gait: &TabledGait,
     robot: &Measures,
-    firmware: &Firmware,
+    firmware: &CoreRobot,
 ) -> Result<Audit, Problem> {
     let peak = fastest(gait.gait());
     let mut found: Option<Audit> = None;

@@ -5,8 +5,9 @@ use lizard_kinematics::Pose;
 use crate::accuracy::{self, TableError};
 use crate::audit::Audit;
 use crate::gait::Stride;
-use crate::ground::{Ground, Prediction, Travel};
+use crate::ground::Ground;
 use crate::tabled_gait::TabledGait;
+use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
 /// A gait of robot.toml whose every sample has been checked: in floating point,
@@ -117,13 +118,13 @@ impl CheckedGait {
     /// that starts at phase 0, by the contact model. With springs it is the second
     /// cycle, which all later ones repeat.
     ///
-    /// Whether it hangs on ties is asked of rigid legs: ties are between pads.
+    /// Whether it depends on ties is asked of rigid legs: ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
         known.known_of(self.walked(ground).travel)
     }
 
-    /// What one cycle does on this ground, whether or not it hangs on ties; with
+    /// What one cycle does on this ground, whether or not it depends on ties; with
     /// springs the second cycle.
     pub fn walked(&self, ground: &Ground) -> Walked {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
@@ -157,7 +158,7 @@ const STEPS: usize = 1000;
 /// Steps in a cycle of legs on springs, which take longer; four times as many change no
 /// result by 0.05 mm.
 const SPRUNG: usize = 250;
-/// Enough to tell what hangs on a tie, which takes longer.
+/// Enough to tell what depends on a tie, which takes longer.
 const COARSE: usize = 250;
 
 /// A cycle that was followed.

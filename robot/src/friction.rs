@@ -64,7 +64,7 @@ pub(crate) struct Give {
 
 /// What the pads do.
 #[derive(Clone, Copy)]
-pub(crate) struct Motion {
+pub(crate) struct Displacement {
     /// How the body moves.
     pub twist: Twist,
     /// How far each leg lags behind its servo after it, rad; 0 where legs are rigid.
@@ -73,7 +73,7 @@ pub(crate) struct Motion {
     pub change: [f64; 4],
 }
 
-/// The rounded cost of a motion around it. A leg's lag touches no other leg, so
+/// The rounded cost of a displacement around it. A leg's lag touches no other leg, so
 /// its row of the Hessian is eliminated at once.
 struct Expansion {
     cost: f64,
@@ -99,14 +99,14 @@ struct Scale {
 }
 
 impl Pads {
-    /// The motion of the body and the legs that drags the pads over the floor at
+    /// The displacement of the body and the legs that drags the pads over the floor at
     /// least cost.
-    pub fn least(&self) -> Motion {
+    pub fn least(&self) -> Displacement {
         self.least_from(None)
     }
 
-    /// The same, with a motion to begin with that is nearly the answer.
-    pub fn least_from(&self, guess: Option<&Motion>) -> Motion {
+    /// The same, with a displacement to begin with that is nearly the answer.
+    pub fn least_from(&self, guess: Option<&Displacement>) -> Displacement {
         let size = largest(&self.swing).max(self.springs_back());
         if size == 0.0 {
             return self.moved([0.0; 3], [0.0; 4]);
@@ -120,13 +120,17 @@ impl Pads {
                 .map_or([0.0; 4], |give| give.along.map(|[x, y]| size / x.hypot(y))),
         };
         let (mut x, mut z, first) = match guess {
-            Some(motion) => (scale.of_twist(motion), scale.of_lag(motion), NEARLY),
+            Some(displacement) => (
+                scale.of_twist(displacement),
+                scale.of_lag(displacement),
+                NEARLY,
+            ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
         for stage in first..=STAGES {
             let eps = size * SMALLEST.powf(f64::from(stage) / f64::from(STAGES));
             for _ in 0..STEPS {
-                let here = self.expand(&scale.motion(self, x, z), eps, &scale);
+                let here = self.expand(&scale.displacement(self, x, z), eps, &scale);
                 let steep = here.gradient.into_iter();
                 let steep = steep.chain(here.legs.map(|leg| leg.slope));
                 if steep.map(f64::abs).all(|g| g < BALANCED * size) {
@@ -147,7 +151,8 @@ impl Pads {
                 let mut share = 1.0;
                 let falls = |share: f64| {
                     let (x, z) = at(share);
-                    self.expand(&scale.motion(self, x, z), eps, &scale).cost
+                    self.expand(&scale.displacement(self, x, z), eps, &scale)
+                        .cost
                         <= here.cost * (1.0 + 1e-14) - 1e-4 * share * slope
                 };
                 while share > 1e-9 && !falls(share) {
@@ -159,13 +164,13 @@ impl Pads {
                 (x, z) = at(share);
             }
         }
-        scale.motion(self, x, z)
+        scale.displacement(self, x, z)
     }
 
-    /// The motion with this twist, and with lags that change by so much.
-    fn moved(&self, twist: Twist, change: [f64; 4]) -> Motion {
+    /// The displacement with this twist, and with lags that change by so much.
+    fn moved(&self, twist: Twist, change: [f64; 4]) -> Displacement {
         let before = self.give.map_or([0.0; 4], |give| give.before);
-        Motion {
+        Displacement {
             twist,
             lag: std::array::from_fn(|i| before[i] + change[i]),
             change,
@@ -189,12 +194,12 @@ impl Pads {
     }
 
     /// The slide of each pad over the floor.
-    pub fn slides(&self, motion: &Motion) -> [Point; 4] {
-        let [forward, left, turn] = motion.twist;
+    pub fn slides(&self, displacement: &Displacement) -> [Point; 4] {
+        let [forward, left, turn] = displacement.twist;
         std::array::from_fn(|i| {
             let ([x, y], [dx, dy]) = (self.at[i], self.swing[i]);
             let [bx, by] = self.give.map_or([0.0; 2], |give| give.along[i]);
-            let back = motion.change[i];
+            let back = displacement.change[i];
             [
                 forward - turn * y + dx - back * bx,
                 left + turn * x + dy - back * by,
@@ -207,12 +212,12 @@ impl Pads {
         [if slide[0] < 0.0 { self.ratio } else { 1.0 }, 1.0]
     }
 
-    /// The rounded cost of a motion, its gradient and its Hessian by the scaled
+    /// The rounded cost of a displacement, its gradient and its Hessian by the scaled
     /// unknowns.
-    fn expand(&self, motion: &Motion, eps: f64, scale: &Scale) -> Expansion {
+    fn expand(&self, displacement: &Displacement, eps: f64, scale: &Scale) -> Expansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut legs = [Row::default(); 4];
-        for (i, slide) in self.slides(motion).into_iter().enumerate() {
+        for (i, slide) in self.slides(displacement).into_iter().enumerate() {
             let ([x, y], load) = (self.at[i], self.load[i]);
             let [wx, wy] = self.weight(slide);
             let [ux, uy] = [wx * slide[0], wy * slide[1]];
@@ -238,8 +243,9 @@ impl Pads {
             let [bx, by] = give.along[i];
             let row = [-wx * bx * unit, -wy * by * unit];
             let back = slope(row);
-            let (energy, torque, stiffness) =
-                give.spring.expand(motion.lag[i], eps / scale.size * unit);
+            let (energy, torque, stiffness) = give
+                .spring
+                .expand(displacement.lag[i], eps / scale.size * unit);
             cost += energy;
             let leg = Row {
                 slope: load * back + torque * unit,
@@ -267,24 +273,24 @@ impl Pads {
 }
 
 impl Scale {
-    /// A motion in its own units.
-    fn motion(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Motion {
+    /// A displacement in its own units.
+    fn displacement(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Displacement {
         pads.moved(
             std::array::from_fn(|i| x[i] * self.twist[i]),
             std::array::from_fn(|i| z[i] * self.lag[i]),
         )
     }
 
-    /// The twist of a motion in these units.
-    fn of_twist(&self, motion: &Motion) -> [f64; 3] {
-        std::array::from_fn(|i| motion.twist[i] / self.twist[i])
+    /// The twist of a displacement in these units.
+    fn of_twist(&self, displacement: &Displacement) -> [f64; 3] {
+        std::array::from_fn(|i| displacement.twist[i] / self.twist[i])
     }
 
-    /// The lags of a motion in these units, as changes.
-    fn of_lag(&self, motion: &Motion) -> [f64; 4] {
+    /// The lags of a displacement in these units, as changes.
+    fn of_lag(&self, displacement: &Displacement) -> [f64; 4] {
         std::array::from_fn(|i| match self.lag[i] {
             0.0 => 0.0,
-            unit => motion.change[i] / unit,
+            unit => displacement.change[i] / unit,
         })
     }
 }
@@ -328,15 +334,15 @@ mod tests {
     const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
     /// The friction's work and the springs' energy.
-    fn cost(pads: &Pads, motion: &Motion) -> f64 {
+    fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
         let length = |slide: Point| {
             let w = pads.weight(slide);
             (w[0] * slide[0]).hypot(w[1] * slide[1])
         };
-        let slides = pads.slides(motion).into_iter().zip(pads.load);
+        let slides = pads.slides(displacement).into_iter().zip(pads.load);
         let friction: f64 = slides.map(|(slide, load)| load * length(slide)).sum();
         let energy = |give: Give| -> f64 {
-            let each = motion.lag.iter();
+            let each = displacement.lag.iter();
             each.map(|lag| give.spring.expand(*lag, 0.0).0).sum()
         };
         friction + pads.give.map_or(0.0, energy)
@@ -344,13 +350,13 @@ mod tests {
 
     /// The lower bound of duality: forces within the pads' friction that balance
     /// each other do at least `sum f . swing` of work, whatever the body does, less
-    /// what their torques can gain on the springs. The forces at a motion, if they
+    /// what their torques can gain on the springs. The forces at a displacement, if they
     /// balance, prove how far its cost is from the least. Returns their imbalance
     /// and that distance.
-    fn certificate(pads: &Pads, motion: &Motion) -> ([f64; 3], f64) {
+    fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
         let eps = largest(&pads.swing) * SMALLEST;
         let (mut work, mut net) = (0.0, [0.0; 3]);
-        for (i, slide) in pads.slides(motion).into_iter().enumerate() {
+        for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
             let w = pads.weight(slide);
             let length = (w[0] * slide[0]).hypot(w[1] * slide[1]).hypot(eps);
             let force = [w[0] * w[0] * slide[0] / length, w[1] * slide[1] / length];
@@ -369,7 +375,7 @@ mod tests {
             net[1] += force[1];
             net[2] += (pads.at[i][0] * force[1] - pads.at[i][1] * force[0]) / 100.0;
         }
-        (net, cost(pads, motion) - work)
+        (net, cost(pads, displacement) - work)
     }
 
     fn assert_least(pads: &Pads) {
@@ -489,7 +495,7 @@ mod tests {
             let least = pads.least();
             let (twist, scale) = (least.twist, 10f64.powi(size));
             let other = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
-            let other = Motion { twist: other, ..least };
+            let other = Displacement { twist: other, ..least };
             prop_assert!(cost(&pads, &least) <= cost(&pads, &other) + 1e-6);
         }
 

@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn hips_follow_from_the_pivots_and_the_foot() {
-        // Exactly: nothing that the papers robot does may hang on a last digit.
+        // Exactly: nothing that the papers robot does may depend on a last digit.
         assert_eq!(hips("", ""), (55.0, [35.0; 2]));
         assert_eq!(hips("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
         assert_eq!(hips("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));

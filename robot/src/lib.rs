@@ -4,8 +4,13 @@
 //! [`Robot::load`] reads the file and checks everything in it, every sample of
 //! every gait included, so a `Robot` that exists is one that can walk. From it
 //! come the gaits in floating point beside the tables that the firmware reads
-//! ([`CheckedGait`]), the robot as the firmware has it ([`Firmware`]) and the Rust
-//! source that carries it ([`Firmware::source`]).
+//! ([`CheckedGait`]), the robot in the integers of the core ([`CoreRobot`]) and the Rust
+//! source that carries these into an image ([`CoreRobot::source`]).
+//!
+//! Inside, a file becomes `Measures`, all of it but the gaits; these and the gaits'
+//! `Tables` become `Numbers`, the integers; a [`Robot`] holds all of them, and a
+//! [`CoreRobot`] is the numbers as the core reads them. docs/firmware.md says how the
+//! types of other crates that are a robot differ from these.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
@@ -14,11 +19,11 @@ mod accuracy;
 mod audit;
 mod checked_gait;
 mod coil;
+mod core_robot;
 mod define;
 mod error;
 mod feet;
 mod file;
-mod firmware;
 mod friction;
 mod gait;
 mod generate;
@@ -34,6 +39,7 @@ mod path;
 mod path_leg;
 mod place;
 mod plate;
+mod prediction;
 mod reader;
 mod report;
 mod robot;
@@ -47,6 +53,7 @@ mod table;
 mod tabled_gait;
 #[cfg(test)]
 mod testing;
+mod travel;
 mod units;
 mod walker;
 mod waveform;
@@ -55,12 +62,12 @@ pub use accuracy::TableError;
 pub use audit::{Audit, Least, Peak};
 pub use checked_gait::{CheckedGait, Walked};
 pub use coil::Coil;
+pub use core_robot::CoreRobot;
 pub use error::{Error, Hint, Problem};
 pub use feet::{Body, Feet, GRAVITY};
 pub use file::LONGEST;
-pub use firmware::Firmware;
 pub use gait::Stride;
-pub use ground::{DEFAULT_FRICTION, Ground, Prediction, Travel};
+pub use ground::{DEFAULT_FRICTION, Ground};
 pub use harmonic::Harmonic;
 pub use legs::{LegPlace, LegPlan};
 pub use parts::{Horn, Parts, Screw, ServoBody, Strut};
@@ -75,6 +82,7 @@ pub use servo::{Pace, Servo};
 pub use spring::Spring;
 pub use sprung::Sprung;
 pub use supply::{Rail, Supplies, healthy_rail_mv};
+pub use travel::{Prediction, Travel};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 pub use walker::{Slip, Walker};
 pub use waveform::Waveform;

@@ -11,7 +11,7 @@ use crate::legs::LegPlan;
 use crate::parts::Parts;
 use crate::reader::Section;
 use crate::scale::{self, LONGEST_BAR};
-use crate::servo::{LEGS, NAMES, Pace, Servo};
+use crate::servo::{LEGS, NAMES, Pace, Servo, pin};
 use crate::spring::Spring;
 use crate::supply::Supplies;
 
@@ -273,37 +273,9 @@ fn servo(section: &Section) -> Checked<Servo> {
         min_us: width("min_us")?,
         max_us: width("max_us")?,
     };
-    less(
-        section,
-        "min_us",
-        servo.min_us,
-        "neutral_us",
-        servo.neutral_us,
-    )?;
-    less(
-        section,
-        "neutral_us",
-        servo.neutral_us,
-        "max_us",
-        servo.max_us,
-    )?;
+    section.less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
+    section.less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
     Ok(servo)
-}
-
-/// The Arduino number of a pin by its name on the board: D2 to D12, A0 to A5
-/// (14 to 19).
-pub(crate) fn pin(name: &str) -> Option<u8> {
-    let (letter, number) = name.split_at_checked(1)?;
-    // "+5" and "05" parse, but are no names.
-    let number: u8 = number
-        .parse()
-        .ok()
-        .filter(|n: &u8| n.to_string() == number)?;
-    match letter {
-        "D" if (2..=12).contains(&number) => Some(number),
-        "A" if number <= 5 => Some(14 + number),
-        _ => None,
-    }
 }
 
 /// What a pose must keep clear of, and how fast a servo may turn.
@@ -328,8 +300,7 @@ fn limits(root: &Section) -> Checked<(Limits, Pace)> {
         stroke_min: section.number("stroke_min", -LONGEST_BAR, LONGEST_BAR, "mm")?,
         stroke_max: section.number("stroke_max", -LONGEST_BAR, LONGEST_BAR, "mm")?,
     };
-    less(
-        &section,
+    section.less(
         "stroke_min",
         limits.stroke_min,
         "stroke_max",
@@ -376,24 +347,6 @@ fn equal(
         }
         .at(key))
     }
-}
-
-pub(crate) fn less(
-    section: &Section,
-    name: &str,
-    value: f64,
-    other: &'static str,
-    other_value: f64,
-) -> Checked<()> {
-    if value < other_value {
-        return Ok(());
-    }
-    Err(Problem::NotLess {
-        value,
-        other,
-        other_value,
-    }
-    .at(section.path(name)))
 }
 
 #[cfg(test)]

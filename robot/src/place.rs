@@ -1,7 +1,7 @@
 //! Where the body is on the floor.
 
 use crate::friction::Twist;
-use crate::ground::Travel;
+use crate::travel::Travel;
 
 /// Position and heading of the body on the floor, seen from where it started.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -106,6 +106,25 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Refuses a number that is not less than another of this table.
+    pub fn less(
+        &self,
+        name: &str,
+        value: f64,
+        other: &'static str,
+        other_value: f64,
+    ) -> Checked<()> {
+        if value < other_value {
+            return Ok(());
+        }
+        Err(Problem::NotLess {
+            value,
+            other,
+            other_value,
+        }
+        .at(self.path(name)))
+    }
+
     /// A string.
     pub fn text(&self, name: &str) -> Checked<&'a str> {
         let value = self.value(name, "a string")?;

@@ -9,10 +9,10 @@ use lizard_core::robot::Robot as _;
 use crate::accuracy::TableError;
 use crate::audit::Audit;
 use crate::checked_gait::CheckedGait;
-use crate::ground::Prediction;
 use crate::robot::Robot;
 use crate::servo::NAMES;
 use crate::sprung::Sprung;
+use crate::travel::Prediction;
 
 /// One gait's figures.
 #[derive(Debug, Clone, PartialEq)]

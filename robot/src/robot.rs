@@ -8,11 +8,11 @@ use toml::de::DeTable;
 
 use crate::audit;
 use crate::checked_gait::CheckedGait;
+use crate::core_robot::CoreRobot;
 use crate::define;
 use crate::error::{Checked, Error, Fault, Problem};
 use crate::file;
-use crate::firmware::Firmware;
-use crate::ground::{Ground, Prediction, Travel};
+use crate::ground::Ground;
 use crate::legs::LegPlan;
 use crate::measure::Measures;
 use crate::numbers::Numbers;
@@ -23,13 +23,14 @@ use crate::servo::{self, FORWARD, Pace, Servo};
 use crate::supply::Supplies;
 use crate::table::{Tables, Unfit};
 use crate::tabled_gait::TabledGait;
+use crate::travel::{Prediction, Travel};
 
 /// A robot whose every value and gait has been checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
-    firmware: Firmware,
+    firmware: CoreRobot,
 }
 
 impl Robot {
@@ -115,7 +116,7 @@ impl Robot {
             }
             .at(key(&gaits[gait].name))
         })?;
-        let firmware = Firmware::new(Numbers::new(&measures, tables));
+        let firmware = CoreRobot::new(Numbers::new(&measures, tables));
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
             let gait = TabledGait::new(gait, index, firmware.tables());
             match audit::check(&gait, &measures, &firmware) {
@@ -186,8 +187,8 @@ impl Robot {
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// The robot as the firmware has it.
-    pub fn firmware(&self) -> &Firmware {
+    /// The robot as the core reads it, in its firmware and on a host.
+    pub fn firmware(&self) -> &CoreRobot {
         &self.firmware
     }
 
@@ -216,7 +217,7 @@ impl Robot {
 
     /// Where the robot gets to when its servos take these angles (deg, chassis
     /// frame, servo order) one after another, by the contact model with rigid legs,
-    /// whether or not that hangs on ties.
+    /// whether or not that depends on ties.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .rigid()

@@ -4,9 +4,10 @@
 use std::fmt;
 
 use crate::feet::Feet;
-use crate::ground::{Ground, Prediction};
+use crate::ground::Ground;
 use crate::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
+use crate::travel::Prediction;
 
 /// Friction backward over forward: even pads, pads that grip when pushed back,
 /// and pads that are on the wrong way round.

@@ -82,6 +82,22 @@ pub struct Pace {
     pub gait_slew: f64,
 }
 
+/// The Arduino number of a pin by its name on the board: D2 to D12, A0 to A5
+/// (14 to 19).
+pub(crate) fn pin(name: &str) -> Option<u8> {
+    let (letter, number) = name.split_at_checked(1)?;
+    // "+5" and "05" parse, but are no names.
+    let number: u8 = number
+        .parse()
+        .ok()
+        .filter(|n: &u8| n.to_string() == number)?;
+    match letter {
+        "D" if (2..=12).contains(&number) => Some(number),
+        "A" if number <= 5 => Some(14 + number),
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

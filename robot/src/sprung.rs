@@ -2,7 +2,8 @@
 //! rigid legs is left.
 
 use crate::checked_gait::CheckedGait;
-use crate::ground::{Ground, Prediction};
+use crate::ground::Ground;
+use crate::travel::Prediction;
 
 /// A gait on springs beside the same gait on rigid legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +14,7 @@ pub struct Sprung {
     pub lag: f64,
     /// Its way in a cycle over that of rigid legs: ahead, or the turn of a gait that
     /// turns in place, or the smaller of both. None where rigid legs get nowhere or
-    /// their way hangs on ties.
+    /// their way depends on ties.
     pub share: Option<f64>,
 }
 

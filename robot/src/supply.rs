@@ -3,9 +3,8 @@
 use lizard_core::supply::{Rail as CoreRail, Supplies as CoreSupplies, Thresholds};
 
 use crate::error::{Checked, Problem};
-use crate::measure::{less, pin};
 use crate::reader::Section;
-use crate::servo::{NAMES, Servo};
+use crate::servo::{NAMES, Servo, pin};
 
 /// The reference of an ATmega328P, V: data sheet, section 29.8.
 const REFERENCE: f64 = 1.1;
@@ -134,8 +133,8 @@ fn thresholds(
         voltage("stop", stop)?,
         voltage("rest", rest)?,
     ];
-    less(section, "rest", rest, "stop", stop)?;
-    less(section, "stop", stop, "slow", slow)?;
+    section.less("rest", rest, "stop", stop)?;
+    section.less("stop", stop, "slow", slow)?;
     Ok([slow, stop, rest])
 }
 

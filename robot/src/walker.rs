@@ -6,7 +6,7 @@
 //! place on the floor.
 
 use crate::feet::Feet;
-use crate::friction::{Give, Motion, Pads, Point};
+use crate::friction::{Displacement, Give, Pads, Point};
 use crate::ground::Ground;
 use crate::place::Place;
 
@@ -112,12 +112,12 @@ impl Walker {
             turned: 0.0,
             loads: [1.0; 4],
         };
-        self.parts(sweeps, |pads, motion| {
-            let [forward, left, turn] = motion.twist;
+        self.parts(sweeps, |pads, displacement| {
+            let [forward, left, turn] = displacement.twist;
             slip.way += forward.hypot(left);
             slip.turned += turn.abs().to_degrees();
             slip.loads = pads.load;
-            for (sum, [x, y]) in slip.feet.iter_mut().zip(pads.slides(motion)) {
+            for (sum, [x, y]) in slip.feet.iter_mut().zip(pads.slides(displacement)) {
                 *sum += x.hypot(y);
             }
         });
@@ -125,38 +125,40 @@ impl Walker {
     }
 
     /// Takes the servos to these sweeps and hands each small step to `visit`.
-    pub(crate) fn parts(&mut self, sweeps: [f64; 4], mut visit: impl FnMut(&Pads, &Motion)) {
+    pub(crate) fn parts(&mut self, sweeps: [f64; 4], mut visit: impl FnMut(&Pads, &Displacement)) {
         let here = self.servos;
         let furthest = (0..4).fold(0.0f64, |most, i| most.max((sweeps[i] - here[i]).abs()));
         let parts = (furthest / PART).ceil().max(1.0) as usize;
         for part in 1..=parts {
             let share = part as f64 / parts as f64;
             let next = std::array::from_fn(|i| here[i] + share * (sweeps[i] - here[i]));
-            let (pads, motion) = self.part(next);
-            self.place = self.place.moved(motion.twist);
+            let (pads, displacement) = self.part(next);
+            self.place = self.place.moved(displacement.twist);
             self.servos = next;
-            self.lag = motion.lag.map(f64::to_degrees);
-            visit(&pads, &motion);
+            self.lag = displacement.lag.map(f64::to_degrees);
+            visit(&pads, &displacement);
         }
     }
 
     /// A small step: what the pads do while the servos go to these sweeps.
-    fn part(&self, servos: [f64; 4]) -> (Pads, Motion) {
+    fn part(&self, servos: [f64; 4]) -> (Pads, Displacement) {
         let feet = &self.ground.feet;
         let from = feet.at(self.legs());
         let mut lag = self.lag.map(f64::to_radians);
         let mut pads = self.pads(feet, from, servos, lag);
-        let mut motion = pads.least();
+        let mut displacement = pads.least();
         for _ in 1..ROUNDS {
-            let off = (0..4).fold(0.0f64, |off, i| off.max((motion.lag[i] - lag[i]).abs()));
+            let off = (0..4).fold(0.0f64, |off, i| {
+                off.max((displacement.lag[i] - lag[i]).abs())
+            });
             if off < KNOWN {
                 break;
             }
-            lag = motion.lag;
+            lag = displacement.lag;
             pads = self.pads(feet, from, servos, lag);
-            motion = pads.least_from(Some(&motion));
+            displacement = pads.least_from(Some(&displacement));
         }
-        (pads, motion)
+        (pads, displacement)
     }
 
     /// The pads of a small step, as far as they are known before it: the legs end

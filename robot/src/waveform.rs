@@ -1,5 +1,5 @@
-//! One leg's sweep over one cycle. Feet are never lifted: a pad drags, and what
-//! walks is that three feet hold while one returns. So a waveform is a slow
+//! One leg's sweep over one cycle. Feet are never lifted: a pad drags, and the
+//! robot walks because three feet hold while one returns. So a waveform is a slow
 //! stance, in which the foot goes back, and a fast swing forward; where the swing
 //! is long enough, the two meet without a kink in speed.
 //!

@@ -34,9 +34,9 @@ mod pin;
 mod port;
 #[cfg(target_os = "linux")]
 mod pty;
-mod record;
 mod reset;
 mod supply;
+mod traces;
 mod uno;
 
 pub use eeprom::{EEPROM_SIZE, EepromMode, EepromOperation, PowerCut};
@@ -44,8 +44,8 @@ pub use image::{FLASH_SIZE, Image, LoadError, SRAM_END, SRAM_START, Symbol};
 pub use pin::{Edge, Pin, Pulse, most_pins_high, pulses};
 #[cfg(target_os = "linux")]
 pub use port::{Background, Port};
-pub use record::{Call, Mark, SerialByte, VectorUse, vector_name};
 pub use reset::{Reset, ResetCause};
+pub use traces::{Call, Mark, SerialByte, VectorUse, vector_name};
 pub use uno::{Fidelity, State, Uno};
 
 /// CPU cycles in a second.

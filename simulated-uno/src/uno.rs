@@ -6,7 +6,7 @@ use std::sync::Once;
 
 use crate::ffi::{self, RawByte, RawCall, RawEdge, RawList, RawUno};
 use crate::image::{Image, LoadError, SRAM_END};
-use crate::record::{Call, Mark, SerialByte, VectorUse};
+use crate::traces::{Call, Mark, SerialByte, VectorUse};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 
 /// How faithful the simulation is.

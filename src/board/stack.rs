@@ -8,7 +8,7 @@ use core::arch::global_asm;
 
 use super::shared::Byte;
 
-/// What nobody would push by chance.
+/// What is hardly ever pushed by accident.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
 // The last of the data: the section comes after all others. The start-up code does

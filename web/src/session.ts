@@ -17,7 +17,7 @@ import {
   type Robot,
 } from './robot';
 import { type Status, status, watched } from './status';
-import { Board, FREQUENCY } from './uno/board';
+import { SimulatedBoard, FREQUENCY } from './uno/board';
 
 /** How often a board on USB says where it is, in frames of 20 ms. */
 const WATCH = 2;
@@ -141,7 +141,7 @@ export class Session {
     const pins = this.description.servos.map(({ pin }) => pin);
     if (this.image !== null) {
       this.bootLoader ??= await files.bootLoader();
-      const board = new Board(this.image, this.bootLoader, this.description.rail);
+      const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail);
       const events = {
         frame: (widths: Four<number>) => this.widths(widths),
         pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),

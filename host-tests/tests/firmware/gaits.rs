@@ -92,7 +92,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         let gait = robot().gait(name).expect("it is in robot.toml");
         let meant = gait.predict(&robot().ground().rigid());
         let (Some(forward), Some(turn)) = (meant.forward, meant.turn) else {
-            println!("{name:<10} hangs on a tie");
+            println!("{name:<10} depends on a tie");
             return;
         };
         let frames = decoded(gait, Fidelity::DataSheet);
@@ -123,7 +123,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
             way.turn / f64::from(cycles),
         );
         println!("{name:<10} {ahead:7.2} mm {turned:7.2} deg");
-        // Which foot holds may hang on a tenth of a degree.
+        // Which foot holds may depend on a tenth of a degree.
         let size = robot().lizard().links.l10 / 135.0;
         let most = (0.3 * size).max(forward.abs() * 0.02);
         assert!((ahead - forward).abs() <= most, "{name}: {way:?}");

@@ -3,7 +3,7 @@
 //!
 //! Every claim about pulses and the serial line is tested twice, on stock simavr
 //! and on one corrected by the data sheet: they differ in interrupt latency and
-//! in the receiver, and what holds in both does not hang on either.
+//! in the receiver, and what holds in both does not depend on either.
 //!
 //! The ELF is the one that `make firmware` leaves. One that is older than the
 //! sources differs from the core that these tests are built with, and fails.

@@ -9,7 +9,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::units::CYCLE;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::Named;
-use lizard_robot::{CheckedGait, Firmware, Robot};
+use lizard_robot::{CheckedGait, CoreRobot, Robot};
 
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
@@ -77,7 +77,7 @@ pub fn long_enough(robot: &Robot) -> u32 {
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
-    running: Running<&'a Firmware>,
+    running: Running<&'a CoreRobot>,
     /// Degrees a second of each servo in the last frame.
     speeds: [f64; 4],
     /// True if the next frame may stop dead.
@@ -110,7 +110,7 @@ impl<'a> Walker<'a> {
         walker
     }
 
-    pub fn motion(&self) -> &Motion<&'a Firmware> {
+    pub fn motion(&self) -> &Motion<&'a CoreRobot> {
         self.running.motion()
     }
 

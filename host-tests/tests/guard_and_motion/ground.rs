@@ -88,7 +88,7 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
                 seen += 1;
                 let meant = gait.predict(&named.robot.ground().rigid());
                 let whom = format!("{}: {} at {percent} %", named.name, gait.name());
-                // Without symmetry, which foot holds may hang on a tenth of a degree.
+                // Without symmetry, which foot holds may depend on a tenth of a degree.
                 let most = 0.01 * named.robot.lizard().links.l10;
                 check(&whom, travel, most, meant.forward, meant.turn);
             }

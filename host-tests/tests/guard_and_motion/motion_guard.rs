@@ -8,7 +8,7 @@ use lizard_core::pose::Pose;
 use lizard_core::robot::Robot as _;
 use lizard_core::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
-use lizard_robot::{Firmware, Robot};
+use lizard_robot::{CoreRobot, Robot};
 
 use crate::frames::{Walker, long_enough, words};
 use crate::truth::{Verdict, angles, is_safe, pose_within};
@@ -119,7 +119,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
 
 /// True if the condition that a hazard names is broken on the way that is left.
 fn lies_ahead(
-    firmware: &Firmware,
+    firmware: &CoreRobot,
     from: Pose,
     to: Pose,
     held: Pose,

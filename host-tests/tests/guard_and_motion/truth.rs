@@ -13,7 +13,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::units::{Angle, Scale, Sine, Sweep};
 use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
-use lizard_robot::{Firmware, Robot};
+use lizard_robot::{CoreRobot, Robot};
 
 /// What the guard's arithmetic may add to a margin, a sine; the rounding of lengths
 /// comes on top.
@@ -55,7 +55,7 @@ pub fn per_mm(scale: Scale) -> f64 {
 }
 
 /// The chassis angles of a pose in degrees, exactly what the core means by it.
-pub fn angles(firmware: &Firmware, pose: &Pose) -> [f64; 4] {
+pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral()).map(degrees)
 }
 
@@ -263,7 +263,7 @@ pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) ->
 }
 
 /// A pose that the guard lets pass.
-pub fn safe_pose(rng: &mut Rng, firmware: &Firmware) -> Pose {
+pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
     let calibration = firmware.calibration();
     (0..1_000_000)
         .map(|n| pose_within(rng, &calibration, if n % 2 == 0 { 1.0 } else { 0.4 }))
@@ -272,6 +272,6 @@ pub fn safe_pose(rng: &mut Rng, firmware: &Firmware) -> Pose {
 }
 
 /// The guard's decision.
-pub fn is_safe(firmware: &Firmware, pose: &Pose) -> bool {
+pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
     Clearance::of(firmware, pose).hazard(firmware).is_none()
 }

@@ -2,9 +2,9 @@
 
 use simulated_uno::most_pins_high;
 
-use lizard_robot::Firmware;
+use lizard_robot::CoreRobot;
 
-use crate::board::{Board, BoardError};
+use crate::board::{BoardError, SimulatedBoard};
 use crate::sim::frame::{FRAME, frames, opens};
 use crate::sim::twin;
 
@@ -28,7 +28,11 @@ impl Exactness {
     ///
     /// # Errors
     /// The board has sent no pulse.
-    pub fn of(board: &mut Board, robot: &Firmware, commands: usize) -> Result<Self, BoardError> {
+    pub fn of(
+        board: &mut SimulatedBoard,
+        robot: &CoreRobot,
+        commands: usize,
+    ) -> Result<Self, BoardError> {
         let banner = board.lines().first().map(|line| line.text.clone());
         let first = board.first_pulse()?;
         let pins = board.pins();

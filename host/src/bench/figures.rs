@@ -9,7 +9,7 @@ use simulated_uno::{Call, Fidelity, Image};
 use super::exactness::Exactness;
 use super::stack::StackDepth;
 use crate::Failure;
-use crate::board::{Board, BoardError};
+use crate::board::{BoardError, SimulatedBoard};
 use crate::sim::frame::FRAME;
 use crate::sim::tour;
 
@@ -96,8 +96,8 @@ impl Figures {
         let gait = gaits.first().map_or("stand", String::as_str);
         let turn = gaits.last().map_or("stand", String::as_str);
         let moves = !gaits.is_empty();
-        let awake = || -> Result<Board, BoardError> {
-            let mut board = Board::power_on(elf, Fidelity::DataSheet, robot)?;
+        let awake = || -> Result<SimulatedBoard, BoardError> {
+            let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
             board.run_ms(1000)?;
             Ok(board)
         };
@@ -169,7 +169,7 @@ fn command(gait: &str) -> String {
 /// A board that has done the same for a time on an idle line, and the cycles that
 /// took.
 struct Steady {
-    board: Board,
+    board: SimulatedBoard,
     cycles: u64,
     awake: u64,
     in_handlers: u64,
@@ -177,10 +177,10 @@ struct Steady {
 }
 
 impl Steady {
-    fn of(mut board: Board, line: &str, ms: u64) -> Result<Self, BoardError> {
+    fn of(mut board: SimulatedBoard, line: &str, ms: u64) -> Result<Self, BoardError> {
         board.say(line)?;
         board.run_ms(1000)?;
-        let counts = |board: &Board| {
+        let counts = |board: &SimulatedBoard| {
             [
                 board.uno.cycle(),
                 board.uno.awake_cycles(),
@@ -205,7 +205,7 @@ impl Steady {
 /// Twenty seconds of commands that move nothing, as fast as they go through the
 /// line, while the robot turns, and as many bytes back. Also returns how many
 /// bytes came before.
-fn flood(mut board: Board, gait: &str) -> Result<(Board, usize), BoardError> {
+fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
     let before = saturate(&mut board, gait)?;
     board.run_ms(20_000)?;
     board.uno.flood(b"");
@@ -217,7 +217,7 @@ fn flood(mut board: Board, gait: &str) -> Result<(Board, usize), BoardError> {
 }
 
 /// Returns how many bytes came before the flood.
-fn saturate(board: &mut Board, gait: &str) -> Result<usize, BoardError> {
+fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError> {
     board.say("watch 1")?;
     board.say(gait)?;
     let before = board.uno.received_by_uno().len();
@@ -245,7 +245,7 @@ fn pose(robot: &Robot, turns: [f64; 4]) -> String {
 
 /// Every command with a report of every frame, each sent when the one before has
 /// been answered.
-fn session(mut board: Board, robot: &Robot) -> Result<Board, BoardError> {
+fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, BoardError> {
     board.say("watch 1")?;
     let mut lines = motions(robot);
     lines.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
@@ -266,7 +266,7 @@ fn session(mut board: Board, robot: &Robot) -> Result<Board, BoardError> {
 
 /// Times a function while the robot does one thing after the other.
 fn times(
-    mut board: Board,
+    mut board: SimulatedBoard,
     function: &str,
     lines: &[impl AsRef<str>],
 ) -> Result<Vec<Call>, BoardError> {
@@ -285,7 +285,7 @@ fn mean(calls: &[Call]) -> f64 {
 
 /// The longest time from a tick to the return of the function that computes its
 /// frame, on a saturated line.
-fn latency(mut board: Board, gait: &str) -> Result<u64, BoardError> {
+fn latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
     saturate(&mut board, gait)?;
     let calls = board.time_calls(TICK, 5000)?;
     // The tick comes a slot before A1's pulse.
@@ -296,7 +296,7 @@ fn latency(mut board: Board, gait: &str) -> Result<u64, BoardError> {
 
 /// The longest of the serial interrupts on a saturated line, with their entry.
 fn longest_serial(
-    awake: impl Fn() -> Result<Board, BoardError>,
+    awake: impl Fn() -> Result<SimulatedBoard, BoardError>,
     gait: &str,
 ) -> Result<u64, BoardError> {
     let mut longest = 0;

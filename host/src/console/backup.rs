@@ -38,8 +38,8 @@ pub struct RestoreArgs {
 /// # Errors
 /// No board, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
-    let place = args.connect.place("backup FILE")?;
-    let (mut board, _) = place.meet()?;
+    let finder = args.connect.finder("backup FILE")?;
+    let (mut board, _) = finder.meet()?;
     let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
     file::write(&args.file, &file::text(&set))?;
     println!(
@@ -56,8 +56,8 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
 /// A wrong file, no board, or a robot that refuses.
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let set = file::read(&args.file)?;
-    let place = args.connect.place("restore FILE")?;
-    let (mut board, _) = place.meet()?;
+    let finder = args.connect.finder("restore FILE")?;
+    let (mut board, _) = finder.meet()?;
     give(&set, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
     println!(

@@ -30,7 +30,7 @@ pub struct Connect {
 /// Where the board is looked for, each time anew: a board that is plugged in
 /// again may get another port.
 #[derive(Debug)]
-pub struct Place {
+pub struct Finder {
     port: Option<String>,
     command: &'static str,
     #[cfg(all(feature = "simulator", target_os = "linux"))]
@@ -38,7 +38,7 @@ pub struct Place {
 }
 
 /// An open port with a board at it.
-pub struct Board {
+pub struct Connection {
     /// The connection.
     pub link: Link<Box<dyn SerialPort>>,
     /// What the user is told where the board is.
@@ -50,12 +50,12 @@ impl Connect {
     ///
     /// # Errors
     /// No firmware for it, or no pseudo terminal.
-    pub fn place(self, command: &'static str) -> Result<Place, Failure> {
+    pub fn finder(self, command: &'static str) -> Result<Finder, Failure> {
         if self.sim {
             let robot = RobotFile::at(self.robot);
             return simulated(self.elf.as_deref(), &robot, command);
         }
-        Ok(Place {
+        Ok(Finder {
             port: self.port,
             command,
             #[cfg(all(feature = "simulator", target_os = "linux"))]
@@ -69,7 +69,7 @@ fn simulated(
     elf: Option<&std::path::Path>,
     robot: &RobotFile,
     command: &'static str,
-) -> Result<Place, Failure> {
+) -> Result<Finder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
     let robot = robot.load()?;
     let elf = crate::sim::elf(elf)?;
@@ -83,7 +83,7 @@ fn simulated(
         uno.take_edges();
         uno.take_marks();
     })?;
-    Ok(Place {
+    Ok(Finder {
         port: Some(board.path().display().to_string()),
         command,
         simulated: Some(board),
@@ -95,19 +95,19 @@ fn simulated(
     _: Option<&std::path::Path>,
     _: &RobotFile,
     _: &'static str,
-) -> Result<Place, Failure> {
+) -> Result<Finder, Failure> {
     Err(Failure::Input(
         "--sim is missing: this program was built without the simulator, or not for Linux"
             .to_owned(),
     ))
 }
 
-impl Place {
+impl Finder {
     /// Opens the port, which resets the board. To be greeted next.
     ///
     /// # Errors
     /// No board, more than one, or its port cannot be opened.
-    pub fn open(&self) -> Result<Board, Failure> {
+    pub fn open(&self) -> Result<Connection, Failure> {
         let (port, name) = match &self.port {
             Some(port) => (port.clone(), self.name_of(port)),
             None => {
@@ -116,7 +116,7 @@ impl Place {
                 (found.name.clone(), found.to_string())
             }
         };
-        Ok(Board {
+        Ok(Connection {
             link: Link::new(port::open(&port)?, Patience::default()),
             name,
         })
@@ -125,8 +125,8 @@ impl Place {
     /// Opens the port, says on standard error which, and waits for the banner.
     ///
     /// # Errors
-    /// As [`Place::open`], or no lizard answers.
-    pub fn meet(&self) -> Result<(Board, Option<String>), Failure> {
+    /// As [`Finder::open`], or no lizard answers.
+    pub fn meet(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
         eprintln!("lizard: waiting for the board at {}", board.name);
         let banner = board.greet()?;
@@ -147,7 +147,7 @@ impl Place {
     }
 }
 
-impl Board {
+impl Connection {
     /// Waits for the banner; see [`Link::greet`].
     ///
     /// # Errors

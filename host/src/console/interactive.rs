@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event as TerminalEvent};
 
-use super::connect::{Board, Connect, Place};
+use super::connect::{Connect, Connection, Finder};
 use super::history;
 use super::link::LinkError;
 use super::prompt::{Outcome, Prompt};
@@ -58,7 +58,7 @@ const RETRY: Duration = Duration::from_millis(300);
 /// # Errors
 /// No board, or the terminal fails.
 pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
-    talk(&args.connect.place("console")?, None)
+    talk(&args.connect.finder("console")?, None)
 }
 
 /// Runs `lizard record`.
@@ -69,11 +69,11 @@ pub fn record(args: RecordArgs) -> Result<(), Failure> {
     if args.file.exists() {
         recorder::create(&args.file)?;
     }
-    talk(&args.connect.place("record FILE")?, Some(args.file))
+    talk(&args.connect.finder("record FILE")?, Some(args.file))
 }
 
-fn talk(place: &Place, file: Option<PathBuf>) -> Result<(), Failure> {
-    let (board, banner) = place.meet()?;
+fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
+    let (board, banner) = finder.meet()?;
     let mut talk = Talk {
         session: Session::new(Instant::now(), true, file.is_some()),
         recorder: None,
@@ -92,7 +92,7 @@ fn talk(place: &Place, file: Option<PathBuf>) -> Result<(), Failure> {
     }
     let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        talk.with_a_person(place, board, &first)
+        talk.with_a_person(finder, board, &first)
     } else {
         talk.with_a_script(board, &first)
     }
@@ -110,7 +110,7 @@ impl Talk {
     /// for the person.
     fn turn(
         &mut self,
-        board: &mut Board,
+        board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
     ) -> Result<(), TurnError> {
         if let Some(line) = self.session.due(Instant::now()) {
@@ -143,7 +143,7 @@ impl Talk {
         Ok(())
     }
 
-    fn with_a_script(mut self, mut board: Board, first: &str) -> Result<(), Failure> {
+    fn with_a_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
         let mut out = io::stdout();
         writeln!(out, "{first}")?;
         // The answers are all that is wanted.
@@ -169,7 +169,12 @@ impl Talk {
         Ok(())
     }
 
-    fn with_a_person(mut self, place: &Place, board: Board, first: &str) -> Result<(), Failure> {
+    fn with_a_person(
+        mut self,
+        finder: &Finder,
+        board: Connection,
+        first: &str,
+    ) -> Result<(), Failure> {
         let mut screen = Screen::new()?;
         let mut prompt = Prompt::new(history::load());
         screen.print(first)?;
@@ -179,7 +184,7 @@ impl Talk {
         while !self.keys(&mut screen, &mut prompt)? {
             let Some(present) = &mut board else {
                 screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
-                board = self.look_again(place, &mut screen)?;
+                board = self.look_again(finder, &mut screen)?;
                 continue;
             };
             match self.turn(present, |line| screen.print(line)) {
@@ -241,9 +246,13 @@ impl Talk {
     }
 
     /// The board, if it is there again.
-    fn look_again(&mut self, place: &Place, screen: &mut Screen) -> Result<Option<Board>, Failure> {
+    fn look_again(
+        &mut self,
+        finder: &Finder,
+        screen: &mut Screen,
+    ) -> Result<Option<Connection>, Failure> {
         std::thread::sleep(RETRY);
-        let Ok(mut board) = place.open() else {
+        let Ok(mut board) = finder.open() else {
             return Ok(None);
         };
         match board.link.greet() {
@@ -260,7 +269,7 @@ impl Talk {
 }
 
 /// What the person reads when the dialogue does not go on.
-fn failure(error: TurnError, board: &Board) -> Failure {
+fn failure(error: TurnError, board: &Connection) -> Failure {
     match error {
         TurnError::Link(error) => board.failure(&error),
         TurnError::Io(error) => error.into(),

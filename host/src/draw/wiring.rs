@@ -37,6 +37,10 @@ const LEAD: f64 = 14.0;
 /// Its signal goes down this far right of its middle.
 const ASIDE: f64 = 42.0;
 
+/// A pull-down resistor's body: its middle's height and its size.
+const RESISTOR: f64 = 122.0;
+const RESISTOR_SIZE: (f64, f64) = (9.0, 24.0);
+
 /// The highest sideways part of a signal.
 const LEVEL: f64 = 302.0;
 
@@ -64,7 +68,7 @@ pub fn wiring(robot: &Robot) -> String {
         group = group.add(wire(&name, &path, colour));
     }
     group = group.add(remarks(robot, notes));
-    let height = notes + 102.0;
+    let height = notes + 138.0;
     Document::new()
         .set("viewBox", (0.0, 0.0, WIDTH, height))
         .set("width", WIDTH)
@@ -116,6 +120,11 @@ fn wires(pins: [u8; 4]) -> Vec<(String, Path, &'static str)> {
             BROWN,
         ));
         wires.push((format!("plus-{name}"), vec![(x, TOP), (x, PLUS)], RED));
+        wires.push((
+            format!("pull-down-{name}"),
+            vec![(x + ASIDE, TOP - GAP), (x + ASIDE, GROUND)],
+            DARK,
+        ));
         from.push((x + ASIDE, TOP - GAP));
         names.push(format!("signal-{name}"));
         if is_analogue(pins[servo]) {
@@ -140,23 +149,51 @@ fn wires(pins: [u8; 4]) -> Vec<(String, Path, &'static str)> {
     wires
 }
 
-/// A wire; where a servo's ground passes over the other rail, it is seen to pass.
+/// A wire; where one to ground passes over the other rail, it is seen to pass.
 fn wire(name: &str, path: &Path, colour: &str) -> Group {
-    let is_rail = name.starts_with("rail");
+    let width = match name {
+        _ if name.starts_with("rail") => 6.0,
+        _ if name.starts_with("pull-down-") => 2.0,
+        _ => 3.5,
+    };
     let mut group = Group::new();
-    if name.starts_with("ground-") {
+    if name.starts_with("ground-") || name.starts_with("pull-down-") {
         let x = path[0].0;
         let over = [(x, PLUS - 6.0), (x, PLUS + 6.0)];
         group = group.add(curve(&over, "white", 8.5).set("stroke-linecap", "butt"));
     }
-    group = group.add(curve(path, colour, if is_rail { 6.0 } else { 3.5 }).set("id", name));
-    // A joint where a servo's wire ends at its rail.
-    match path.last() {
-        Some(end) if name.starts_with("ground-") || name.starts_with("plus-") => {
+    group = group.add(curve(path, colour, width).set("id", name));
+    // A joint where a servo's wire ends at its rail, and at both ends of a resistor.
+    match (path.first(), path.last()) {
+        (_, Some(end)) if name.starts_with("ground-") || name.starts_with("plus-") => {
             group.add(circle(*end, 5.5, colour))
         }
+        (Some(signal), Some(ground)) if name.starts_with("pull-down-") => group
+            .add(resistor(ground.0))
+            .add(circle(*ground, 5.5, BROWN))
+            .add(circle(*signal, 4.5, ORANGE)),
         _ => group,
     }
+}
+
+/// A pull-down resistor in its wire.
+fn resistor(x: f64) -> Group {
+    let (width, height) = RESISTOR_SIZE;
+    let corner = (x - width / 2.0, RESISTOR - height / 2.0);
+    Group::new()
+        .add(
+            rectangle(corner, RESISTOR_SIZE, "#f3e3c3")
+                .set("rx", 2)
+                .set("stroke", DARK)
+                .set("stroke-width", 1.5),
+        )
+        .add(text(
+            "10 k\u{3a9}",
+            (x + width - 1.0, RESISTOR + 4.0),
+            12.0,
+            DARK,
+            Anchor::Start,
+        ))
 }
 
 /// A servo from above.
@@ -293,7 +330,9 @@ fn remarks(robot: &Robot, top: f64) -> Group {
     let edge = UNO.far_corner().1;
     let mut lines = vec![
         "Wires of a servo: orange is the signal, red is +5 V, brown is ground.".to_string(),
-        "A brown wire passes over the red rail and does not touch it.".into(),
+        "A wire that passes over the red rail does not touch it.".into(),
+        "A resistor of 10 k\u{3a9} joins each signal to ground: until the program begins, pins drive".into(),
+        "nothing, and a servo might take noise for a pulse.".into(),
         "The capacitor's stripe (\u{2212}) goes to ground.".into(),
         "The UNO has its power from USB, or from 7 to 12 V at its round socket.".into(),
         "Its ground is joined to the supply's; nothing is connected to its 5V pin.".into(),

@@ -9,8 +9,8 @@ use lizard_kinematics::Pose;
 use lizard_robot::Robot;
 use rayon::prelude::*;
 
+use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{Poses, Timed};
-use crate::paper::record::{self, Record};
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Poses that are solved together; memory is bounded by it.
@@ -64,9 +64,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
     let solved = robot.lizard().solve(pose);
     if !json {
-        return Ok(record::page(robot, pose, &solved).into_bytes());
+        return Ok(pose_line::page(robot, pose, &solved).into_bytes());
     }
-    let mut line = serde_json::to_vec(&Record::new(robot, None, &solved))?;
+    let mut line = serde_json::to_vec(&PoseLine::new(robot, None, &solved))?;
     line.push(b'\n');
     Ok(line)
 }
@@ -78,7 +78,7 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
     thread::scope(|scope| {
-        let heading = (!json).then(|| record::heading(poses.timed()));
+        let heading = (!json).then(|| pose_line::heading(poses.timed()));
         let writer = scope.spawn(move || write(to_write, heading));
         let read = solve_all(robot, json, &mut poses, &solved);
         drop(solved);
@@ -144,9 +144,9 @@ fn lines(robot: &Robot, poses: &[Timed], json: bool) -> Result<Vec<u8>, Failure>
     for timed in poses {
         let solved = robot.lizard().solve(&timed.pose);
         if json {
-            serde_json::to_writer(&mut text, &Record::new(robot, timed.seconds, &solved))?;
+            serde_json::to_writer(&mut text, &PoseLine::new(robot, timed.seconds, &solved))?;
         } else {
-            text.extend_from_slice(record::row(robot, timed, &solved).as_bytes());
+            text.extend_from_slice(pose_line::row(robot, timed, &solved).as_bytes());
         }
         text.push(b'\n');
     }

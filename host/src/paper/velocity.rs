@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_kinematics::{Drive, Lizard, Motion, Pose, Solution, wrap};
+use lizard_kinematics::{Derivatives, Drive, Lizard, Pose, Solution, wrap};
 use serde::Serialize;
 
 use crate::json;
@@ -161,7 +161,7 @@ fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
 }
 
 /// Rate and acceleration in the same order.
-fn rates(m: &Motion) -> [(f64, f64); 12] {
+fn rates(m: &Derivatives) -> [(f64, f64); 12] {
     let pair = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
     [
         pair(m.theta2),
@@ -196,7 +196,7 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    let motion = rates(&solution.motion(drive));
+    let motion = rates(&solution.derivatives(drive));
     values(solution)
         .into_iter()
         .zip(motion)

@@ -13,7 +13,7 @@ mod walk;
 use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lizard_robot::{Firmware, Robot};
+use lizard_robot::{CoreRobot, Robot};
 use serde::Serialize;
 
 use crate::json;
@@ -96,7 +96,7 @@ impl Proof {
     /// last call; [`Proof::rows`] says how many there are.
     pub fn of(
         robot: &Robot,
-        guard: &Firmware,
+        guard: &CoreRobot,
         share: Share,
         progress: impl Fn(u64) + Sync,
     ) -> Self {
@@ -108,7 +108,7 @@ impl Proof {
     }
 
     /// Rows that [`Proof::of`] walks.
-    pub fn rows(guard: &Firmware) -> u64 {
+    pub fn rows(guard: &CoreRobot) -> u64 {
         walk::rows(guard)
     }
 

@@ -4,7 +4,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::trig::Direction;
 use lizard_core::units::Sweep;
 use lizard_kinematics::{End, Vector};
-use lizard_robot::Firmware;
+use lizard_robot::CoreRobot;
 
 /// One servo's positions, in steps of 1/65536 turn over its whole travel.
 pub struct Positions {
@@ -18,7 +18,7 @@ pub struct Positions {
 
 impl Positions {
     /// All positions of a servo, by its index, as the firmware counts them.
-    pub fn of(guard: &Firmware, servo: usize) -> Self {
+    pub fn of(guard: &CoreRobot, servo: usize) -> Self {
         let neutral = guard.neutral()[servo];
         let calibration = guard.calibration()[servo];
         let end = End::of_servo(servo);

@@ -6,7 +6,7 @@ use lizard_core::robot::Robot as _;
 use lizard_core::trig::Direction;
 use lizard_core::units::ONE_Q15;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Side, Slider, Vector};
-use lizard_robot::{Firmware, Robot, servo};
+use lizard_robot::{CoreRobot, Robot, servo};
 use rayon::prelude::*;
 
 use super::positions::Positions;
@@ -19,7 +19,7 @@ const LANES: usize = 8;
 /// Every end, side and leg of a robot.
 pub fn all(
     robot: &Robot,
-    guard: &Firmware,
+    guard: &CoreRobot,
     share: Share,
     progress: &(impl Fn(u64) + Sync),
 ) -> Vec<Finding> {
@@ -58,7 +58,7 @@ pub fn all(
 }
 
 /// The widest band of the robot's ends: see [`margin_band`].
-pub fn widest_band(robot: &Robot, guard: &Firmware) -> f64 {
+pub fn widest_band(robot: &Robot, guard: &CoreRobot) -> f64 {
     End::ALL
         .map(|end| EndWalk::new(robot, guard, end).margin_band)
         .into_iter()
@@ -66,7 +66,7 @@ pub fn widest_band(robot: &Robot, guard: &Firmware) -> f64 {
 }
 
 /// How many rows that is.
-pub fn rows(guard: &Firmware) -> u64 {
+pub fn rows(guard: &CoreRobot) -> u64 {
     let positions = |servo: usize| {
         let calibration = guard.calibration()[servo];
         (i32::from(calibration.max.0) - i32::from(calibration.min.0) + 1) as u64
@@ -152,7 +152,7 @@ struct EndWalk<'a> {
 }
 
 impl<'a> EndWalk<'a> {
-    fn new(robot: &Robot, guard: &'a Firmware, end: End) -> Self {
+    fn new(robot: &Robot, guard: &'a CoreRobot, end: End) -> Self {
         let part = match end {
             End::Head => part::End::Head,
             End::Tail => part::End::Tail,
@@ -294,7 +294,7 @@ struct SideWalk {
 }
 
 impl SideWalk {
-    fn new(robot: &Robot, guard: &Firmware, side: Side) -> Self {
+    fn new(robot: &Robot, guard: &CoreRobot, side: Side) -> Self {
         let fixed = match side {
             Side::Left => guard.side(part::Side::Left),
             Side::Right => guard.side(part::Side::Right).mirrored(),
@@ -353,7 +353,7 @@ impl SideWalk {
 }
 
 /// The positions of one leg.
-fn leg(robot: &Robot, guard: &Firmware, positions: &Positions) -> Tally {
+fn leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
     let least = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {

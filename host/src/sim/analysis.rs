@@ -80,7 +80,7 @@ pub struct Leg {
     pub from: f64,
     /// To this many.
     pub to: f64,
-    /// Forward, mm, seen from where it began; nothing if that hangs on a tie, two
+    /// Forward, mm, seen from where it began; nothing if that depends on a tie, two
     /// feet against two.
     pub forward: Option<f64>,
     /// To the left, mm, likewise.
@@ -270,7 +270,7 @@ pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
 }
 
 /// Which parts of a command's way are decided: forward, left, turn. Those of a gait
-/// may hang on a tie.
+/// may depend on a tie.
 fn decided(robot: &Robot, command: &str) -> [bool; 3] {
     robot.gait(command).map_or([true; 3], |gait| {
         let way = robot.predict(gait);

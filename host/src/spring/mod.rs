@@ -14,7 +14,7 @@ use geometry::{Geometry, Hung};
 /// Turn a tension spring and its anchors into what the legs feel
 ///
 /// The paper pulls each leg along by a tension spring and gives nothing but its size,
-/// 5.55 x 25.4 mm. Whether the robot walks hangs on it: each leg lags behind its servo
+/// 5.55 x 25.4 mm. Whether the robot walks depends on it: each leg lags behind its servo
 /// by the friction of its pad over the stiffness. This prints both, which gaits keep
 /// 90 % of the way of rigid legs, and what would do.
 #[derive(clap::Args, Debug)]
@@ -91,7 +91,7 @@ struct GaitAnswer {
     gait: String,
     /// deg
     lag: f64,
-    /// Of the way of rigid legs; null where that hangs on ties.
+    /// Of the way of rigid legs; null where that depends on ties.
     share: Option<f64>,
 }
 

@@ -1,12 +1,12 @@
 //! How good a plan is: its gait is built and checked as the firmware's build does it, at the
-//! pace at which its fastest servo turns as fast as it may, and walked on robots of chance.
+//! pace at which its fastest servo turns as fast as it may, and walked on random robots.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use lizard_twin::ServoModel;
 
 use super::goal::Goal;
 use super::plan::{Kind, LONGEST, Plan, Space};
-use crate::chance::{Chance, quantiles};
+use crate::variation::{Variation, quantiles};
 
 /// The largest amplitude of a robot's legs is between these, deg.
 const WIDTHS: (f64, f64) = (5.0, 80.0);
@@ -98,17 +98,17 @@ fn fitted(period: f64) -> f64 {
     ((period * 100.0 - 1e-6).ceil() / 100.0).max(0.2)
 }
 
-/// Robots of chance that a gait is judged by.
+/// Random robots that a gait is judged by.
 pub struct Judge {
     robot: Robot,
     goal: Goal,
-    robots: Vec<Chance>,
+    robots: Vec<Variation>,
 }
 
 impl Judge {
     /// So many robots around this one, from this seed on.
     pub fn new(robot: &Robot, goal: Goal, robots: usize, seed: u64) -> Self {
-        let of = |n: u64| Chance::of(robot.ground(), seed.wrapping_add(n));
+        let of = |n: u64| Variation::of(robot.ground(), seed.wrapping_add(n));
         Self {
             robot: robot.clone(),
             goal,
@@ -118,8 +118,8 @@ impl Judge {
 
     /// What a gait reaches in a second on each robot: mm or deg.
     pub fn speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
-        let way = |chance: &Chance| chance.walked(&self.robot, gait, SERVOS);
-        let speed = |chance: &Chance| self.goal.reached(&way(chance)) / period;
+        let way = |varied: &Variation| varied.walked(&self.robot, gait, SERVOS);
+        let speed = |varied: &Variation| self.goal.reached(&way(varied)) / period;
         self.robots.iter().map(speed).collect()
     }
 
@@ -130,10 +130,10 @@ impl Judge {
 
     /// Where a cycle leads the robot itself.
     fn way(&self, gait: &CheckedGait) -> Travel {
-        Chance::none(self.robot.ground()).walked(&self.robot, gait, SERVOS)
+        Variation::none(self.robot.ground()).walked(&self.robot, gait, SERVOS)
     }
 
-    /// What all but a twentieth of the robots surpass; none for a gait that does not lead
+    /// The speed that 95 % of the robots exceed; none for a gait that does not lead
     /// straight to its goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // Asked of a cycle in fine steps: frames of 20 ms leave a period a remainder.

@@ -18,7 +18,7 @@ use judge::{Built, Judge, STAND};
 use plan::{Kind, Plan, Space};
 use report::Report;
 
-/// Robots of chance that a gait is judged by while it is searched.
+/// Random robots that a gait is judged by while it is searched.
 const JUDGES: usize = 16;
 /// Those that the report is of come from seeds that the search has not seen.
 const FRESH: u64 = 1 << 40;
@@ -30,8 +30,8 @@ const SLOWEST: f64 = 10.0;
 /// Takes a gait of robot.toml that goes ahead or turns on the spot, and looks for a wave or
 /// a held gait that gets further in a second while its fastest servo turns no faster. Each
 /// is built and checked against robot.toml's limits as `make firmware` does it, and
-/// judged by the contact model with SG-90 servos on robots and floors of chance: by what all but a twentieth
-/// of them surpass. At last it is compared with the gait on others of chance, and its table
+/// judged by the contact model with SG-90 servos on random robots and floors: by what 95 %
+/// of them exceed. At last it is compared with the gait on other random ones, and its table
 /// for robot.toml is printed. The same seed finds the same on every machine.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
@@ -55,10 +55,10 @@ pub struct Args {
     /// Rounds of the search, 40 trials each
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
-    /// Robots and floors of chance to compare on
+    /// Random robots and floors to compare on
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 200, value_parser = clap::value_parser!(u32).range(20..=100_000))]
     robots: u32,
-    /// Where chance begins
+    /// Seed of the random numbers
     #[arg(
         long,
         value_name = "N",
@@ -144,7 +144,7 @@ fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// The best gait of all kinds whose way does not hang on ties.
+/// The best gait of all kinds whose way does not depend on ties.
 fn found(robot: &Robot, args: &Args, goal: Goal, rate: f64) -> Result<Built, Failure> {
     let rounds = args.rounds as usize;
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} gaits, {eta}")

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::goal::Goal;
 use super::judge::{Built, Judge};
-use crate::chance::{SPREAD, quantiles};
+use crate::variation::{SPREAD, quantiles};
 
 /// The comparison.
 #[derive(Debug, Serialize)]
@@ -21,7 +21,7 @@ pub struct Report {
     pub gait: Figures,
     /// The one that was found.
     pub tuned: Figures,
-    /// Robots of chance that both were walked on.
+    /// Random robots that both were walked on.
     robots: usize,
     /// On how many of them the one that was found is faster.
     pub faster: usize,
@@ -43,7 +43,7 @@ pub struct Figures {
     pub predicted: f64,
     /// The same frame by frame as the firmware sends it, to SG-90 with their dead band.
     sg90: f64,
-    /// The same on robots of chance: 5 %, half and 95 % are slower.
+    /// The same on random robots: 5 %, half and 95 % are slower.
     pub speeds: [f64; 3],
 }
 
@@ -93,7 +93,7 @@ impl Report {
         let (gait, tuned) = (&self.gait.name, &self.tuned.name);
         writeln!(
             out,
-            "# {unit} with servos of at most {:.1} deg/s; the last three on {robots} robots and floors of chance\n#",
+            "# {unit} with servos of at most {:.1} deg/s; the last three on {robots} random robots and floors\n#",
             self.rate
         )?;
         let width = [gait, tuned]
@@ -129,7 +129,7 @@ impl Report {
                  # faster on {faster} of {robots}:"
             )?;
         }
-        writeln!(out, "# Of chance: {}.\n", SPREAD.replace('\n', "\n# "))?;
+        writeln!(out, "# At random: {}.\n", SPREAD.replace('\n', "\n# "))?;
         write!(out, "{}", self.fragment)
     }
 }

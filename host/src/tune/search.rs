@@ -1,7 +1,7 @@
 //! The search: differential evolution (R. Storn, K. Price, *Journal of Global Optimization*
 //! 11, 1997; towards one of the best, as J. Zhang and A. Sanderson do, *IEEE Transactions on
 //! Evolutionary Computation* 13, 2009), which needs no slope, takes refusals for granted and is a page long. Each
-//! round's trials are judged on all cores; chance comes from one seed and in one order, so
+//! round's trials are judged on all cores; random numbers come from one seed and in one order, so
 //! the same seed finds the same gait on every machine.
 
 use fastrand::Rng;
@@ -30,7 +30,7 @@ pub struct Member<T> {
     pub found: Option<(f64, T)>,
 }
 
-/// Looks for parameters (each 0 to 1) of the greatest score, from these and from others of chance
+/// Looks for parameters (each 0 to 1) of the greatest score, from these and from random ones
 /// on; the best come first.
 pub fn search<T: Clone + Send + Sync>(
     begin: &[Vec<f64>],

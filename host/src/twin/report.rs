@@ -41,7 +41,7 @@ pub struct Row {
     pub servo_error: f64,
 }
 
-/// A way; null is what hangs on a tie.
+/// A way; null is what depends on a tie.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Way {
     /// mm
@@ -59,7 +59,7 @@ pub struct Cycle {
     pub way: Way,
     /// Where the contact model leads ideal servos.
     pub predicted: Way,
-    /// mm/s from the cycle's beginning to its end; null where the way hangs on a tie.
+    /// mm/s from the cycle's beginning to its end; null where the way depends on a tie.
     pub speed: Option<f64>,
     /// Its way over that of rigid legs, by the prediction; null where legs are rigid
     /// or there is none to compare.

@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::replay::Replay;
 use super::report::known;
 use crate::Failure;
-use crate::chance::{Chance, SPREAD, quantiles};
 use crate::json;
+use crate::variation::{SPREAD, Variation, quantiles};
 
 /// What a gait's ways come to.
 #[derive(Debug, Serialize)]
@@ -53,7 +53,7 @@ pub fn run(
         }
         let way = |seed: u64| {
             bar.inc(1);
-            Chance::of(robot.ground(), seed).walked(robot, gait, model)
+            Variation::of(robot.ground(), seed).walked(robot, gait, model)
         };
         let ways: Vec<Travel> = (0..u64::from(times)).map(way).collect();
         spreads.push(Spread::of(gait.name(), &ways));

@@ -66,11 +66,11 @@ fn a_signal_ends_at_the_pin_that_the_file_names() {
     }
 }
 
-/// No wire meets another but where it ends at its rail, and where a brown one has to
-/// pass over the red rail.
+/// No wire meets another but where it ends at its rail, where one to ground has to pass
+/// over the red rail, and where a resistor ends at its signal.
 fn crossings(name: &str, drawing: &Drawing) {
     let wires = drawing.wires();
-    assert_eq!(wires.len(), 2 + 1 + 3 * 4, "{name}");
+    assert_eq!(wires.len(), 2 + 1 + 4 * 4, "{name}");
     let mut joints = 0;
     for (place, (a, path)) in wires.iter().enumerate() {
         for (b, other) in &wires[place + 1..] {
@@ -88,15 +88,22 @@ fn crossings(name: &str, drawing: &Drawing) {
                 })
             });
             let may = match (*a, *b) {
-                ("rail-plus", b) => b.starts_with("plus-") || b.starts_with("ground-"),
-                ("rail-ground", b) => b.starts_with("ground-") || b == "uno-ground",
-                _ => false,
+                ("rail-plus", b) => ["plus-", "ground-", "pull-down-"]
+                    .iter()
+                    .any(|kind| b.starts_with(kind)),
+                ("rail-ground", b) => ["ground-", "pull-down-", "uno-ground"]
+                    .iter()
+                    .any(|kind| b.starts_with(kind)),
+                (a, b) => match (a.strip_prefix("pull-down-"), b.strip_prefix("signal-")) {
+                    (Some(servo), Some(signal)) => servo == signal,
+                    _ => false,
+                },
             };
             assert_eq!(meet, may, "{name}: {a} and {b}");
             joints += usize::from(meet);
         }
     }
-    assert_eq!(joints, 4 + 4 + 4 + 1, "{name}");
+    assert_eq!(joints, 3 * 4 + 1 + 3 * 4, "{name}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use super::guard::{Guard, Region, middle, within};
 use super::slope::Slope;
 use super::solids::Task;
 use crate::assembly::Assembly;
-use crate::place::Place;
+use crate::placement::Placement;
 
 /// More air than this is not measured, mm.
 pub const ENOUGH: f64 = 2.0;
@@ -254,24 +254,24 @@ impl<'a, const N: usize> Search<'a, N> {
 
 /// Bounds of a place that are no farther from its middle than it can stray.
 fn near<const N: usize>(
-    bounds: &Place<Slope<N>>,
-    middle: &Place,
+    bounds: &Placement<Slope<N>>,
+    middle: &Placement,
     region: &Region<N>,
-) -> Place<Slope<N>> {
+) -> Placement<Slope<N>> {
     let each = |bounds: Vector<Slope<N>>, middle: Vector| {
         Vector::new(
             bounds.x.near(middle.x, &region.half),
             bounds.y.near(middle.y, &region.half),
         )
     };
-    Place {
+    Placement {
         at: each(bounds.at, middle.at),
         turn: each(bounds.turn, middle.turn),
     }
 }
 
 /// The servo that a place depends on most.
-fn across<const N: usize>(bounds: &Place<Slope<N>>, region: &Region<N>) -> usize {
+fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
     /// A length at which a turn counts, mm.
     const LEVER: f64 = 30.0;
     let numbers = [

@@ -11,7 +11,7 @@ use super::slope::Slope;
 use super::{LEAST, TOUCH, sweep};
 use crate::assembly::Assembly;
 use crate::body::{Body, Mount, Prism};
-use crate::place::Place;
+use crate::placement::Placement;
 use crate::shape::Shape;
 
 /// Heights that differ by less are the same, mm.
@@ -143,7 +143,7 @@ impl Solid {
     /// Whether the two are `by` mm apart or more, wherever the second's points are if
     /// its frame strays by `moves` mm and its axes' ends by `turns`; quickly, so it may
     /// say no where they are.
-    pub fn far(&self, place: &Place, [moves, turns]: [f64; 2], by: f64) -> bool {
+    pub fn far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
         let [(a, reach), (b, other)] = self.discs;
         let between = (place.map(b) - a).length() - reach - other;
         // Turned, a point strays along both axes.
@@ -152,7 +152,7 @@ impl Solid {
 
     /// The air around a pin that is in the middle of a round hole at every one of some
     /// places, mm; `None` if it is not. A linkage that closes keeps it there.
-    pub fn pinned(&self, places: &[Place]) -> Option<f64> {
+    pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
         /// Beyond the rounding of a joint's place, mm.
         const SAME: f64 = 1e-6;
         let centre = |shape: &Shape| match shape.points[..] {
@@ -160,7 +160,7 @@ impl Solid {
             _ => None,
         };
         let stays = |first: Vector, second: Vector| {
-            let off = |place: &Place| (place.map(second) - first).length();
+            let off = |place: &Placement| (place.map(second) - first).length();
             places.iter().all(|place| off(place) < SAME)
         };
         let air = |pin: &Shape, holes: &[Shape], stays: &dyn Fn(Vector, Vector) -> bool| {
@@ -177,7 +177,7 @@ impl Solid {
 
     /// How far the two are apart, mm, where the second's frame is at a place in the
     /// first's; below 0 they overlap.
-    pub fn apart(&self, place: &Place) -> f64 {
+    pub fn apart(&self, place: &Placement) -> f64 {
         self.at_least(place, |_| Vector::default())
     }
 
@@ -185,8 +185,8 @@ impl Solid {
     /// middle and how far each point can stray from there.
     pub fn apart_within<const N: usize>(
         &self,
-        place: &Place,
-        bounds: &Place<Slope<N>>,
+        place: &Placement,
+        bounds: &Placement<Slope<N>>,
         region: &Region<N>,
     ) -> f64 {
         self.at_least(place, |shape| {
@@ -203,7 +203,7 @@ impl Solid {
         })
     }
 
-    fn at_least(&self, place: &Place, strays: impl Fn(&Shape) -> Vector) -> f64 {
+    fn at_least(&self, place: &Placement, strays: impl Fn(&Shape) -> Vector) -> f64 {
         let second = self.second.placed(place);
         let moves = strays(&self.second);
         let mut flat = self.first.distance(&second) - moves.length();

@@ -20,7 +20,7 @@ const EXPECTED: [(&str, f64, f64); 9] = [
     ("arc-right", 17.71, -5.27),
 ];
 
-/// The prediction for one cycle of a gait, of which nothing hangs on a tie.
+/// The prediction for one cycle of a gait, of which nothing depends on a tie.
 fn predict(robot: &Robot, name: &str) -> Travel {
     let way = robot.predict(gait(robot, name));
     let known = |part: Option<f64>| part.unwrap_or_else(|| panic!("{name} is undecided: {way:?}"));

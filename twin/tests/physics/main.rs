@@ -2,7 +2,7 @@
 //!
 //! The model is quasi-static, the engine is not: where a gait leans on inertia, it is
 //! played slower. Gaits that are another one reversed or mirrored are played at one
-//! friction only. `look` hangs on ties and is left out, as is `stand`.
+//! friction only. `look` depends on ties and is left out, as is `stand`.
 
 mod docs;
 mod engine;

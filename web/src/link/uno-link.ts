@@ -1,6 +1,6 @@
 // The link to a simulated UNO: the image that is flashed, cycle by cycle.
 import type { Four } from '../robot';
-import { Board, FREQUENCY } from '../uno/board';
+import { SimulatedBoard, FREQUENCY } from '../uno/board';
 import { Frames } from '../uno/frames';
 import { type Simulated, Waits } from './link';
 
@@ -25,7 +25,7 @@ export class UnoLink implements Simulated {
   private owed = 0;
 
   constructor(
-    readonly board: Board,
+    readonly board: SimulatedBoard,
     pins: number[],
     events: UnoEvents,
   ) {

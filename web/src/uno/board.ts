@@ -23,7 +23,7 @@ export type Cause = keyof typeof CAUSES;
 
 class ChipReset extends Error {}
 
-export class Board {
+export class SimulatedBoard {
   /** Called with each byte that the UNO has sent. */
   onByte: (byte: number) => void = () => {};
   /** Called when a pulse has ended: pin, cycle of its rise, width in cycles. */

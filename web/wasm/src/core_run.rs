@@ -8,7 +8,7 @@ use lizard_core::restart::Restart;
 use lizard_core::robot::Robot as _;
 use lizard_core::supply::Reading;
 use lizard_core::virtual_board::{Eeprom, Running};
-use lizard_robot::{Firmware, healthy_rail_mv};
+use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;
 
 /// Steps of the analogue converter, and the reference on the chip in V.
@@ -26,7 +26,7 @@ pub struct Said {
 
 /// The core of a robot, running.
 pub struct CoreRun {
-    running: Running<Firmware>,
+    running: Running<CoreRobot>,
     /// What a healthy rail of the servos leaves at its pin.
     rail_mv: f64,
 }
@@ -34,7 +34,7 @@ pub struct CoreRun {
 impl CoreRun {
     /// At power-on, with what an EEPROM holds.
     #[must_use]
-    pub fn begin(robot: Firmware, memory: Eeprom) -> Self {
+    pub fn begin(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
             rail_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
             running: Running::with(robot, memory, Restart::default()),

@@ -39,8 +39,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let words = "calibrate asks for single keys; run it in a terminal";
         return Err(Failure::Input(words.to_owned()));
     }
-    let place = args.connect.place("calibrate")?;
-    let (mut board, _) = place.meet()?;
+    let finder = args.connect.finder("calibrate")?;
+    let (mut board, _) = finder.meet()?;
     let ended = Guide::new(&mut board.link).map_err(TurnError::from);
     let ended = ended.and_then(|mut guide| with_keys(&mut guide));
     match ended {

@@ -34,16 +34,16 @@ pub struct Aside {
     pub miss: Miss,
 }
 
-/// A form's record over all samples.
+/// How far a form misses over all samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record {
+pub struct Misses {
     /// Largest miss where there is a real value.
     pub worst: f64,
     /// Share of the samples without one.
     pub unreal: f64,
 }
 
-impl Record {
+impl Misses {
     /// Misses below this are rounding, whatever the unit.
     const ROUNDING: f64 = 1e-6;
 

@@ -284,7 +284,7 @@ fn near_vanishing_a(s: &Sample) -> Option<f64> {
     let Some(zero) = vanishing_a(s) else {
         return Some(0.0);
     };
-    let theta4 = zero + (s.chance[0] - 0.5) * 2e-9 * PI / 180.0;
+    let theta4 = zero + (s.random[0] - 0.5) * 2e-9 * PI / 180.0;
     let Ok(truth) = s
         .lizard
         .end(End::Head)

@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::json;
-use equation::{Equation, Record};
+use equation::{Equation, Misses};
 use sample::Sample;
 
 /// Which of the paper's equations hold.
@@ -97,10 +97,10 @@ pub fn measure(samples: u32) -> Vec<Entry> {
     .collect();
     all.into_par_iter()
         .map(|equation| {
-            let printed = Record::of(equation.miss, &samples);
+            let printed = Misses::of(equation.miss, &samples);
             let corrected = equation
                 .corrected
-                .map(|(_, miss)| Record::of(miss, &samples));
+                .map(|(_, miss)| Misses::of(miss, &samples));
             Entry {
                 place: equation.place,
                 printed: equation.printed,
@@ -110,13 +110,13 @@ pub fn measure(samples: u32) -> Vec<Entry> {
                 unit: equation.unit,
                 aside: equation
                     .aside
-                    .map(|aside| (Record::of(aside.miss, &samples).worst, aside.place)),
+                    .map(|aside| (Misses::of(aside.miss, &samples).worst, aside.place)),
                 holds_clockwise: equation
                     .clockwise
-                    .map(|miss| Record::of(miss, &samples).holds()),
+                    .map(|miss| Misses::of(miss, &samples).holds()),
                 corrected: equation.corrected.map(|(form, _)| form),
-                corrected_worst: corrected.map(|record| record.worst),
-                corrected_holds: corrected.map(|record| record.holds()),
+                corrected_worst: corrected.map(|misses| misses.worst),
+                corrected_holds: corrected.map(|misses| misses.holds()),
             }
         })
         .collect()

@@ -39,7 +39,7 @@ pub struct Sample {
     /// The geometric solution.
     pub s: Solution,
     /// Uniform in [0, 1).
-    pub chance: [f64; 2],
+    pub random: [f64; 2],
 }
 
 /// All angles of the paper in radians, chassis frame, counter-clockwise.
@@ -53,18 +53,18 @@ impl Sample {
     /// [0, 90]: all that the outward elbows allow on the robot's own side.
     pub fn many(count: usize) -> impl Iterator<Item = Self> {
         let lizard = paper_lizard();
-        let mut chance = Chance(1);
+        let mut random = Random(1);
         std::iter::repeat_with(move || {
-            let mut within = |least: f64| least + 90.0 * chance.next();
+            let mut within = |least: f64| least + 90.0 * random.next();
             let pose = Pose {
                 theta1: within(90.0),
                 theta4: within(0.0),
                 theta8: 360.0 - within(0.0),
                 theta5: 360.0 - within(90.0),
             };
-            let chance = [chance.next(), chance.next()];
+            let random = [random.next(), random.next()];
             let s = lizard.solve(&pose).ok()?;
-            Some(Self { lizard, s, chance })
+            Some(Self { lizard, s, random })
         })
         .flatten()
         .take(count)
@@ -107,9 +107,9 @@ pub fn apart(a: f64, b: f64) -> f64 {
 }
 
 /// SplitMix64: the table must be the same on every run and every host.
-struct Chance(u64);
+struct Random(u64);
 
-impl Chance {
+impl Random {
     /// Uniform in [0, 1).
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -33,7 +33,7 @@ pub const EQUATIONS: &[Equation] = &[
         place: "3.1 dimensional factor",
         printed: "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9",
         miss: |s| {
-            let (d, p) = (10.0 + 100.0 * s.chance[0], Proportions::PAPER);
+            let (d, p) = (10.0 + 100.0 * s.random[0], Proportions::PAPER);
             let bars = p.at_scale(d);
             let sum = bars.crank_left + bars.coupler_left + bars.base / 2.0;
             Some(
@@ -51,7 +51,7 @@ pub const EQUATIONS: &[Equation] = &[
         place: "3.1 design space",
         printed: "r3 < 0.45 assures r1 + r2 > r3",
         miss: |s| {
-            let r3 = 0.45 * s.chance[0];
+            let r3 = 0.45 * s.random[0];
             Some((r3 - (SUM - r3)).max(0.0))
         },
         unit: "D",
@@ -90,7 +90,7 @@ pub const EQUATIONS: &[Equation] = &[
                     .fold(f64::INFINITY, f64::min)
             };
             // It is inscribed, and no other centre has more room.
-            let other = clearance(sum * (2.0 * s.chance[0] - 1.0), sum * s.chance[1]);
+            let other = clearance(sum * (2.0 * s.random[0] - 1.0), sum * s.random[1]);
             Some((clearance(0.0, y) - r).abs().max(other - r))
         },
         unit: "mm",
@@ -127,7 +127,7 @@ pub const EQUATIONS: &[Equation] = &[
         place: "3.2 legs",
         printed: "the parallelogram does not operate in the singularity zone",
         miss: |s| {
-            let (least, flat) = (0.3, 360.0 * s.chance[0]);
+            let (least, flat) = (0.3, 360.0 * s.random[0]);
             Some((least - flat.to_radians().sin().abs()).max(0.0))
         },
         unit: "of the margin 0.3 short",
@@ -136,7 +136,7 @@ pub const EQUATIONS: &[Equation] = &[
         corrected: Some((
             "change points at theta_lg = 0 and 180; the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
             |s| {
-                let theta: f64 = 90.0 + 72.5 * (2.0 * s.chance[0] - 1.0);
+                let theta: f64 = 90.0 + 72.5 * (2.0 * s.random[0] - 1.0);
                 Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
             },
         )),
@@ -153,7 +153,7 @@ fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
             bars.crank_left + bars.coupler_left,
             (bars.crank_left - bars.coupler_left).abs(),
         ] {
-            let rim = cis(radius, PI * s.chance[0]);
+            let rim = cis(radius, PI * s.random[0]);
             // x11 is the shaft's x more; the equation takes it off again.
             let (x11, y11) = (rim.x + shaft, rim.y);
             let square = (x11 - shaft).powi(2) + term(y11);
@@ -169,10 +169,10 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
     Workspace::of(&bars)
         .inscribed_circle()
         .map_or(0.0, |circle| {
-            let radius = circle.radius * shrink * s.chance[0].sqrt();
+            let radius = circle.radius * shrink * s.random[0].sqrt();
             lci(
                 &bars,
-                circle.centre + Vector::direction(360.0 * s.chance[1]) * radius,
+                circle.centre + Vector::direction(360.0 * s.random[1]) * radius,
             )
         })
 }

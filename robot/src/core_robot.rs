@@ -1,4 +1,4 @@
-//! The robot as its firmware has it.
+//! The robot as the core reads it.
 //!
 //! The build script writes it into the firmware as constants; on a host it is a
 //! [`lizard_core::robot::Robot`] itself, so that guard, gaits and motion of any
@@ -23,16 +23,16 @@ use crate::generate;
 use crate::numbers::Numbers;
 use crate::table::Tables;
 
-/// A robot in the integers of its firmware.
+/// A robot in the integers of the core.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Firmware {
+pub struct CoreRobot {
     numbers: Numbers,
     hash: u32,
     servo_hash: u32,
 }
 
-impl Firmware {
-    /// A firmware with these numbers.
+impl CoreRobot {
+    /// The robot of these numbers.
     pub(crate) fn new(numbers: Numbers) -> Self {
         Self {
             hash: generate::hash(&numbers),
@@ -72,7 +72,7 @@ impl Firmware {
     }
 }
 
-impl Robot for Firmware {
+impl Robot for CoreRobot {
     fn end(&self, end: End) -> FiveBar<'_> {
         self.numbers.ends[end as usize].five_bar()
     }

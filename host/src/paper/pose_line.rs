@@ -13,7 +13,7 @@ use crate::paper::verdict;
 /// One object of `lizard solve --json`. Everything that a pose without a
 /// solution lacks is null; seconds are there only where the stream has them.
 #[derive(serde::Serialize)]
-pub struct Record {
+pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
     theta2: Option<f64>,
@@ -63,8 +63,8 @@ impl Serialize for Sines {
     }
 }
 
-impl Record {
-    /// The record of a pose, solved or not.
+impl PoseLine {
+    /// The line of a pose, solved or not.
     pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
         let s = match solved {
             Ok(solution) => solution,

@@ -34,7 +34,7 @@ pub struct Derivative<T> {
 
 /// How everything passive moves, chassis frame. Legs follow their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
+pub struct Derivatives {
     /// Head, left coupler; degrees.
     pub theta2: Derivative<f64>,
     /// Head, right coupler; degrees.
@@ -63,31 +63,33 @@ type Spin = Derivative<f64>;
 impl Solution {
     /// How the passive joints move with the servos. Not finite at a type-2
     /// singularity, where no rates follow from the servos'.
-    pub fn motion(&self, drive: &Drive) -> Motion {
+    pub fn derivatives(&self, drive: &Drive) -> Derivatives {
         let spin = |servo: usize| Spin {
             rate: drive.rate[servo] * (PI / 180.0),
             acceleration: drive.acceleration[servo] * (PI / 180.0),
         };
         let spins = [spin(0), spin(1), spin(2), spin(3)];
-        let end_motion = |end: End| {
+        let of_end = |end: End| {
             let signed = |w: f64| end.sign() * w;
             let [left, right] = end.pick(spins).map(|spin| spin.map(signed));
-            let LoopMotion { left, right, point } = loop_motion(self.end(end), left, right);
-            LoopMotion {
+            let LoopDerivatives { left, right, point } =
+                loop_derivatives(self.end(end), left, right);
+            LoopDerivatives {
                 left: left.map(signed).map(degrees),
                 right: right.map(signed).map(degrees),
                 point: point.map(|v| end.mirror(v)),
             }
         };
-        let (head, tail) = (end_motion(End::Head), end_motion(End::Tail));
-        let side_motion = |side: Side| {
+        let (head, tail) = (of_end(End::Head), of_end(End::Tail));
+        let of_side = |side: Side| {
             let ([front, rear], pose) = (side.pick(spins), self.side(side));
-            let (phi, s) = slider_motion(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
+            let (phi, s) =
+                slider_derivatives(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
             (phi.map(degrees), s)
         };
-        let (phi_left, s_left) = side_motion(Side::Left);
-        let (phi_right, s_right) = side_motion(Side::Right);
-        Motion {
+        let (phi_left, s_left) = of_side(Side::Left);
+        let (phi_right, s_right) = of_side(Side::Right);
+        Derivatives {
             theta2: head.left,
             theta3: head.right,
             theta6: tail.left,
@@ -115,14 +117,14 @@ fn degrees(radians: f64) -> f64 {
     radians * (180.0 / PI)
 }
 
-struct LoopMotion {
+struct LoopDerivatives {
     left: Spin,
     right: Spin,
     point: Derivative<Vector>,
 }
 
 /// d/dt and d2/dt2 of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3.
-fn loop_motion(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopMotion {
+fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopDerivatives {
     let r1 = pose.left * pose.bars.crank_left;
     let r2 = pose.left_coupler * pose.bars.coupler_left;
     let r3 = pose.right_coupler * pose.bars.coupler_right;
@@ -141,7 +143,7 @@ fn loop_motion(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopM
     let inward = r1 * (w1 * w1) + r2 * (w2 * w2) - r3 * (w3 * w3) - r4 * (w4 * w4);
     let (e1, e4) = (crank_left.acceleration, crank_right.acceleration);
     let (e2, e3) = free(inward + r4.left() * e4 - r1.left() * e1);
-    LoopMotion {
+    LoopDerivatives {
         left: Spin {
             rate: w2,
             acceleration: e2,
@@ -163,7 +165,7 @@ fn turning(link: Vector, spin: Spin) -> Vector {
 }
 
 /// Rates of the slider's direction (radians) and length (mm).
-fn slider_motion(
+fn slider_derivatives(
     pose: &SliderPose,
     (rear, rear_spin): (Vector, Spin),
     (front, front_spin): (Vector, Spin),
@@ -219,7 +221,7 @@ mod tests {
 
     /// Rates and accelerations in the order of [`values`].
     fn numbers(s: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
-        let m = s.motion(drive);
+        let m = s.derivatives(drive);
         (
             [
                 m.theta2.rate,

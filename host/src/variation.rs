@@ -21,9 +21,9 @@ const SPRING: (f64, f64) = (0.8, 1.2);
 pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
 mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2";
 
-/// A robot on a floor of chance.
+/// A robot and a floor that differ at random from those of robot.toml.
 #[derive(Debug, Clone, Copy)]
-pub struct Chance {
+pub struct Variation {
     ground: Ground,
     /// How much harder each pad presses.
     pads: [f64; 4],
@@ -31,7 +31,7 @@ pub struct Chance {
     ratio: f64,
 }
 
-impl Chance {
+impl Variation {
     /// The one of a seed, around this ground.
     #[must_use]
     pub fn of(ground: &Ground, seed: u64) -> Self {
@@ -66,7 +66,7 @@ impl Chance {
         }
     }
 
-    /// No chance: the ground as it is.
+    /// No variation: the ground as it is.
     #[cfg(any(test, feature = "paper"))]
     #[must_use]
     pub fn none(ground: &Ground) -> Self {
@@ -130,7 +130,7 @@ mod tests {
         let robot = Robot::parse(include_str!("../../robots/paper.toml")).expect("right");
         let walk = robot.gait("walk").expect("walk");
         let ways: Vec<Travel> = (0..40)
-            .map(|seed| Chance::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
+            .map(|seed| Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
             .collect();
         let of = |part: fn(&Travel) -> f64| {
             quantiles(ways.iter().map(part).collect(), [0.05, 0.5, 0.95])
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn without_chance_it_walks_as_the_twin_does() {
+    fn without_variation_it_walks_as_the_twin_does() {
         let text = include_str!("../../robots/paper.toml");
         let springs = text.replace("[leg]", "[leg]\nspring = 5.0");
         for text in [text, &springs] {
@@ -150,7 +150,7 @@ mod tests {
             for name in ["walk", "left"] {
                 let gait = robot.gait(name).expect(name);
                 for model in [ServoModel::IDEAL, ServoModel::SG90] {
-                    let way = Chance::none(robot.ground()).walked(&robot, gait, model);
+                    let way = Variation::none(robot.ground()).walked(&robot, gait, model);
                     let twin = Twin::new(&robot, model).cycle(gait).travel();
                     let off = (way.forward - twin.forward).hypot(way.turn - twin.turn);
                     assert!(off < 0.1, "{name} {way:?} {twin:?}");

@@ -2,16 +2,16 @@
 
 use lizard_kinematics::{Real, Vector};
 
-/// The place of a body's own frame in the chassis frame; or in another body's.
+/// Where a body's own frame is in the chassis frame, or in another body's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place<T = f64> {
+pub struct Placement<T = f64> {
     /// The frame's origin, mm.
     pub at: Vector<T>,
     /// The direction of its x axis, length one.
     pub turn: Vector<T>,
 }
 
-impl Place {
+impl Placement {
     /// The chassis frame itself.
     pub const CHASSIS: Self = Self {
         at: Vector::new(0.0, 0.0),
@@ -26,14 +26,14 @@ impl Place {
     }
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> Placement<T> {
     /// A point of the body's frame in the chassis frame.
     #[must_use]
     pub fn map(&self, point: Vector) -> Vector<T> {
         self.at + self.turn * point.x + self.turn.left() * point.y
     }
 
-    /// This place as it is in another body's frame.
+    /// The same as it is in another body's frame.
     #[must_use]
     pub fn seen_from(&self, frame: &Self) -> Self {
         let of = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));

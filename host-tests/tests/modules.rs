@@ -1,0 +1,157 @@
+//! No module uses another that uses it: each can be read after those that it uses.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use lizard_host_tests::root;
+
+/// The crates whose modules are read.
+const CRATES: [&str; 5] = ["core", "kinematics", "parts", "robot", "twin"];
+
+/// Circles that are still there, by crate.
+const KNOWN: [(&str, &[&str]); 1] = [("core", &["gait", "point_to_point", "pose", "robot"])];
+
+/// What each module of a crate uses of the others.
+type Uses = BTreeMap<String, BTreeSet<String>>;
+
+#[test]
+fn no_modules_use_each_other_in_a_circle() {
+    let mut count = 0;
+    for name in CRATES {
+        let uses = uses(&root().join(name).join("src"));
+        count += uses.values().map(BTreeSet::len).sum::<usize>();
+        let known = KNOWN.iter().find(|(of, _)| *of == name);
+        let known: Vec<&str> = known
+            .map(|(_, modules)| modules.to_vec())
+            .unwrap_or_default();
+        assert_eq!(
+            in_circles(uses),
+            known,
+            "{name}: modules that use each other in a circle, and those that are known to"
+        );
+    }
+    assert!(count > 200, "only {count} uses of another module were read");
+}
+
+#[test]
+fn a_circle_is_found_and_what_leads_to_it_or_from_it_is_no_part_of_it() {
+    let uses = |lines: &[(&str, &[&str])]| -> Uses {
+        let named = |names: &[&str]| names.iter().map(ToString::to_string).collect();
+        let line = |&(name, used): &(&str, &[&str])| (name.to_string(), named(used));
+        lines.iter().map(line).collect()
+    };
+    let chain = uses(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
+    assert!(in_circles(chain).is_empty());
+    let circle = uses(&[
+        ("above", &["a"]),
+        ("a", &["b"]),
+        ("b", &["c"]),
+        ("c", &["a", "below"]),
+        ("below", &[]),
+    ]);
+    assert_eq!(in_circles(circle), ["a", "b", "c"]);
+}
+
+/// The modules that are left when those that use no other, and those that no other
+/// uses, are taken away one after another.
+fn in_circles(mut uses: Uses) -> Vec<String> {
+    loop {
+        let before = uses.len();
+        let used: BTreeSet<String> = uses.values().flatten().cloned().collect();
+        uses.retain(|name, others| !others.is_empty() && used.contains(name));
+        let left: BTreeSet<String> = uses.keys().cloned().collect();
+        for others in uses.values_mut() {
+            others.retain(|other| left.contains(other));
+        }
+        if uses.len() == before {
+            return left.into_iter().collect();
+        }
+    }
+}
+
+/// Reads a crate. A module and those within it count as one; tests do not count.
+fn uses(source: &Path) -> Uses {
+    let lib = read(&source.join("lib.rs"));
+    let modules: BTreeSet<&str> = lib.lines().filter_map(module).collect();
+    // `crate::Name` uses the module that the crate's root has the name from.
+    let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
+    for export in lib.split(';').filter_map(|item| item.split_once("use ")) {
+        if let Some((home, names)) = export.1.split_once("::")
+            && let Some(home) = modules.get(home)
+        {
+            homes.extend(words(names).map(|name| (name, *home)));
+        }
+    }
+    let mut uses = Uses::new();
+    for module in &modules {
+        let mut text = read(&source.join(module).with_extension("rs"));
+        for path in files(&source.join(module)) {
+            text += &read(&path);
+        }
+        let used = named(&text).into_iter();
+        let others = used
+            .filter_map(|name| homes.get(name))
+            .filter(|other| *other != module);
+        uses.insert(
+            module.to_string(),
+            others.map(ToString::to_string).collect(),
+        );
+    }
+    uses
+}
+
+/// The name that a line of lib.rs declares a module by.
+fn module(line: &str) -> Option<&str> {
+    let line = line
+        .trim_start_matches("pub(crate) ")
+        .trim_start_matches("pub ");
+    line.strip_prefix("mod ")?.strip_suffix(';')
+}
+
+/// What follows each `crate::` in a text: a name, or those in braces.
+fn named(text: &str) -> BTreeSet<&str> {
+    let after = text.split("crate::").skip(1);
+    after
+        .flat_map(|rest| match rest.strip_prefix('{') {
+            Some(list) => words(list.split('}').next().unwrap_or_default()).collect(),
+            None => words(rest).take(1).collect::<Vec<_>>(),
+        })
+        .collect()
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    let apart = |c: char| !(c.is_alphanumeric() || c == '_');
+    text.split(apart).filter(|word| !word.is_empty())
+}
+
+/// A file without its comments and without what is compiled for tests alone; nothing
+/// where there is no such file.
+fn read(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let text = match text.split_once("#[cfg(test)]\nmod tests {") {
+        Some((before, _)) => before.to_string(),
+        None => text,
+    };
+    let lines: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect();
+    let for_tests = |i: usize| i > 0 && lines[i - 1].trim() == "#[cfg(test)]";
+    let kept = (0..lines.len()).filter(|i| !for_tests(*i));
+    kept.map(|i| format!("{}\n", lines[i])).collect()
+}
+
+/// The Rust files of a module's folder and of the folders in it, but for its tests.
+fn files(folder: &Path) -> Vec<std::path::PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let ours = paths.filter(|path| path.file_stem().is_some_and(|name| name != "tests"));
+    ours.flat_map(|path| match path.is_dir() {
+        true => files(&path),
+        false => vec![path],
+    })
+    .collect()
+}

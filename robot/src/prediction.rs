@@ -1,0 +1,211 @@
+//! Where the contact model leads a robot whose legs take given sweeps.
+//!
+//! Two feet against two are a tie: every twist between the two pairs costs the
+//! same, and the smallest difference between the pads decides. The model cannot
+//! know it, so it predicts nothing where the way depends on ties.
+
+use crate::friction::Twist;
+use crate::ground::Ground;
+use crate::travel::{Prediction, Travel};
+use crate::walker::Walker;
+
+/// By how much pads are made uneven to see whether a way depends on a tie. No
+/// print and no floor is more even than that.
+const UNEVEN: f64 = 0.01;
+/// A way that then differs by less than this share of its length is decided.
+const DECIDED_SHARE: f64 = 0.05;
+/// So is one that differs by less than this, mm.
+const DECIDED_LENGTH: f64 = 1.0;
+/// So is a turn that differs by less than this, rad.
+const DECIDED_TURN: f64 = 0.5 * std::f64::consts::PI / 180.0;
+
+/// A way with pads that are a little uneven, beside the even one.
+struct Uneven {
+    walker: Walker,
+    /// All differences of its steps from the even ones: forward, left, turn.
+    differs: Twist,
+}
+
+impl Uneven {
+    /// Each pad in turn pressed harder, and a little more friction one way.
+    fn all(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
+        let uneven = |load, ratio| Self {
+            walker: Walker::uneven(*ground, sweeps, load, ratio),
+            differs: [0.0; 3],
+        };
+        let even = [1.0; 4];
+        std::array::from_fn(|i| match i {
+            4 => uneven(even, 1.0 + UNEVEN),
+            5 => uneven(even, 1.0 - UNEVEN),
+            pad => {
+                let mut load = even;
+                load[pad] += UNEVEN;
+                uneven(load, 1.0)
+            }
+        })
+    }
+
+    /// Takes the servos to these sweeps while the even pads move by `twists`.
+    fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
+        let (mut part, differs) = (twists.iter(), &mut self.differs);
+        self.walker.parts(sweeps, |_, displacement| {
+            let even = part.next().copied().unwrap_or_default();
+            for i in 0..3 {
+                differs[i] += (displacement.twist[i] - even[i]).abs();
+            }
+        });
+    }
+}
+
+impl Ground {
+    /// Where the robot gets to when its legs take these sweeps (deg, foot
+    /// forward positive, servo order) one after another, as far as that does not
+    /// depend on ties.
+    ///
+    /// The same sweeps are followed on pads made uneven by a hundredth, each pad
+    /// in turn and all of them backward against forward. Where two feet agree
+    /// against two, the body then goes with one pair or with the other. A part
+    /// of the way is undecided if its end differs by more than 1 mm (0.5 deg) and
+    /// by more than a twentieth of the length of the way. Ahead and turn are
+    /// compared step by step as well: a body dragged to and fro by one pair of
+    /// feet ends where it began, as it does with the other pair, but pads that
+    /// change on the way lead it anywhere between. Sideways only the end counts:
+    /// legs that swing together always spread and close, and bring the body
+    /// back within one swing.
+    pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
+        let mut sweeps = sweeps.into_iter();
+        let first = sweeps.next().unwrap_or_default();
+        let mut even = Walker::new(*self, first);
+        let mut uneven = Uneven::all(self, first);
+        let (mut length, mut turned) = (0.0, 0.0);
+        let mut twists = Vec::new();
+        for next in sweeps {
+            twists.clear();
+            even.parts(next, |_, displacement| {
+                let [forward, left, turn] = displacement.twist;
+                length += forward.hypot(left);
+                turned += turn.abs();
+                twists.push(displacement.twist);
+            });
+            for way in &mut uneven {
+                way.follow(next, &twists);
+            }
+        }
+        let mm = DECIDED_LENGTH.max(DECIDED_SHARE * length);
+        let rad = DECIDED_TURN.max(DECIDED_SHARE * turned);
+        let place = even.place();
+        let off = |way: &Uneven| {
+            let other = way.walker.place();
+            [other.forward - place.forward, other.left - place.left].map(f64::abs)
+        };
+        let all = |within: &dyn Fn(&Uneven) -> bool| uneven.iter().all(within);
+        let decided = [
+            all(&|way| way.differs[0] <= mm && off(way)[0] <= mm),
+            all(&|way| off(way)[1] <= mm),
+            all(&|way| way.differs[2] <= rad),
+        ];
+        let travel = place.travel();
+        Prediction {
+            forward: decided[0].then_some(travel.forward),
+            left: decided[1].then_some(travel.left),
+            turn: decided[2].then_some(travel.turn),
+        }
+    }
+
+    /// Where the model leads, whether or not that depends on ties: then by the
+    /// twist in the middle between the two pairs of feet.
+    pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
+        let mut sweeps = sweeps.into_iter();
+        let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());
+        for next in sweeps {
+            walker.step(next);
+        }
+        walker.place().travel()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feet::{Body, Feet};
+    use crate::ground::DEFAULT_FRICTION;
+    use std::f64::consts::PI;
+
+    const GROUND: Ground = Ground {
+        feet: Feet {
+            hip_forward: 55.0,
+            hip_side: [35.0; 2],
+            mount: 0.0,
+            reach: 45.0,
+        },
+        ratio: 1.0,
+        body: Body::DEFAULT,
+        friction: DEFAULT_FRICTION,
+        spring: None,
+    };
+
+    /// A cycle of legs that all do the same, each from a phase of its own.
+    fn cycle(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
+        let at = |i: i32| starts.map(|start| wave((f64::from(i) / 400.0 - start).rem_euclid(1.0)));
+        (0..=400).map(at).collect()
+    }
+
+    /// Backward at one pace over `duty` of the cycle, then forward.
+    fn stroke(duty: f64) -> impl Fn(f64) -> f64 {
+        move |phase| {
+            20.0 * if phase < duty {
+                1.0 - 2.0 * phase / duty
+            } else {
+                2.0 * (phase - duty) / (1.0 - duty) - 1.0
+            }
+        }
+    }
+
+    fn sine(phase: f64) -> f64 {
+        20.0 * (phase * 2.0 * PI).sin()
+    }
+
+    const ONE_BY_ONE: [f64; 4] = [0.25, 0.75, 0.5, 0.0];
+    const DIAGONAL: [f64; 4] = [0.0, 0.5, 0.0, 0.5];
+
+    #[test]
+    fn three_feet_against_one_are_decided() {
+        let walk = GROUND.predict(cycle(ONE_BY_ONE, stroke(0.75)));
+        assert!(walk.is_decided() && walk.forward > Some(25.0), "{walk:?}");
+    }
+
+    #[test]
+    fn legs_that_stand_still_or_swing_together_are_decided() {
+        const NOWHERE: Prediction = Prediction {
+            forward: Some(0.0),
+            left: Some(0.0),
+            turn: Some(0.0),
+        };
+        assert_eq!(GROUND.predict([[0.0; 4]; 10]), NOWHERE);
+        assert_eq!(GROUND.predict([]), NOWHERE);
+        let way = GROUND.predict([[20.0; 4], [-20.0; 4]]);
+        let forward = way.forward.expect("decided");
+        assert!(way.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn two_feet_against_two_are_undecided() {
+        for duty in [0.5, 0.75] {
+            assert_eq!(GROUND.predict(cycle(DIAGONAL, stroke(duty))).forward, None);
+        }
+        for starts in [DIAGONAL, ONE_BY_ONE] {
+            assert_eq!(GROUND.predict(cycle(starts, sine)).forward, None);
+        }
+        // The front feet against the hind feet, as a gesture of the head moves them.
+        let front = |phase: f64| [sine(phase), sine(phase), 0.0, 0.0];
+        let front = (0..=100).map(|i| front(f64::from(i) / 100.0));
+        assert_eq!(GROUND.predict(front).forward, None);
+    }
+
+    #[test]
+    fn a_tie_too_small_to_matter_leaves_a_way_decided() {
+        let small = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
+        let way = GROUND.predict(cycle(DIAGONAL, sine).into_iter().map(small));
+        assert!(way.is_decided(), "{way:?}");
+    }
+}
