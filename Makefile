@@ -126,7 +126,9 @@ TESTS ?= --workspace
 .tests:
 	@cd host && $(CARGO) test $(TESTS) --no-run --quiet
 
-# The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
+# The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others. One that
+# fails a test is written to a folder proptest-regressions, is tried first from then on,
+# and belongs into the repository.
 # Where the judge cannot be set up, its tests fail and say so; the others run.
 .test:
 	@scripts/setup-judge || true
