@@ -102,7 +102,8 @@ impl<'a> FiveBar<'a> {
     }
 
     /// The margins with the cranks in these directions of the end's own frame. All
-    /// zero where the loop cannot close or is too near to that.
+    /// zero where the loop cannot close, or is so near to that that its type-2 margin
+    /// is below a tenth and the tables have no value.
     // Inlined into its one caller, where a firmware's bars are constants.
     #[inline(always)]
     pub fn margins(&self, left: Direction, right: Direction) -> EndMargins {
@@ -226,6 +227,10 @@ mod tests {
             };
             let off = sine(got.type2).abs() - pose.type2;
             prop_assert!(off <= bound.type2, "type-2 off by {off}: {bound:?}");
+            if got == EndMargins::default() {
+                // What a refusal says then.
+                prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
+            }
             if !bound.known {
                 // It may be told as less, or as nothing.
                 return Ok(());
