@@ -27,10 +27,10 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit .fit parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
+.PHONY: help fit .fit parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants random-robots fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .fuzz .docs
 
 help: ## this list
-	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
 	@echo "firmware, sim, test, bench, prove, fit and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
@@ -63,6 +63,8 @@ physics: ## the contact model against the rigid-body engine rapier
 	$(call prepared,.physics)
 mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
 	$(call prepared,.mutants)
+random-robots: ## the image's tests on random valid robots; SEED=1 COUNT=10
+	$(call prepared,.random-robots)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
 docs: ## write anew the pages and pictures that programs make
@@ -126,7 +128,9 @@ TESTS ?= --workspace
 .tests:
 	@cd host && $(CARGO) test $(TESTS) --no-run --quiet
 
-# The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others.
+# The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others. One that
+# fails a test is written to a folder proptest-regressions, is tried first from then on,
+# and belongs into the repository.
 # Where the judge cannot be set up, its tests fail and say so; the others run.
 .test:
 	@scripts/setup-judge || true
@@ -159,6 +163,9 @@ TESTS ?= --workspace
 # ONLY=serial.rs narrows it down.
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
+
+.random-robots:
+	@scripts/random-robots $(or $(SEED),1) $(or $(COUNT),10)
 
 .fuzz:
 	@for target in $(or $(TARGET),console memory); do scripts/fuzz $$target $(or $(MINUTES),1) || exit 1; done

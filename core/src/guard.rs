@@ -125,16 +125,14 @@ mod tests {
 
     use lizard_kinematics as kinematics;
     use proptest::prelude::*;
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
 
     use super::*;
-    use crate::sample::{Sample, per_mm, sine};
+    use crate::sample::bounds::{self, DIRECTION, Q15};
+    use crate::sample::{Measures, Sample, per_mm, sine};
     use crate::slider::Slider;
     use crate::units::Sweep;
-
-    /// What margins of robots of ordinary proportions may be off by, and slider
-    /// lengths (mm).
-    const MARGIN: f64 = 0.008;
-    const LENGTH: f64 = 0.08;
 
     /// Random robots with a random pose each.
     fn posed() -> impl Strategy<Value = (Sample, Pose)> {
@@ -144,22 +142,68 @@ mod tests {
         })
     }
 
+    /// What the integers may be off by at a pose.
+    struct Bounds {
+        ends: [bounds::End; 2],
+        /// Of the sliders, mm.
+        sliders: [f64; 2],
+    }
+
+    impl Bounds {
+        fn of(robot: &Sample, pose: &Pose) -> Self {
+            let [a1, a2, a3, a4] = robot.degrees(pose);
+            let lizard = robot.measures.lizard;
+            let end = |place: usize, end, angles| {
+                bounds::End::of(&lizard.end(end), &robot.ends[place], angles)
+            };
+            let side = |place: usize, side| bounds::slider(&lizard.side(side), &robot.sides[place]);
+            Self {
+                ends: [
+                    end(0, kinematics::End::Head, [a1, a2]),
+                    // In the tail's own frame.
+                    end(1, kinematics::End::Tail, [-a4, -a3]),
+                ],
+                sliders: [
+                    side(0, kinematics::Side::Left),
+                    side(1, kinematics::Side::Right),
+                ],
+            }
+        }
+
+        fn most(&self, of: impl Fn(&bounds::End) -> f64) -> f64 {
+            of(&self.ends[0]).max(of(&self.ends[1]))
+        }
+    }
+
     /// Whether the truth is clear of all its limits by more than the errors, or
     /// beyond one of them; None in between.
     fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
+        let bounds = Bounds::of(robot, pose);
         let Some(solution) = robot.solve(pose) else {
-            return Some(false);
+            // The integers may take what all but closes for singular.
+            return (bounds.most(|end| end.type2) < robot.measures.limits.type2).then_some(false);
         };
-        let limits = |by: f64, mm: f64| kinematics::Limits {
-            type2: robot.measures.limits.type2 + by,
-            type1: robot.measures.limits.type1 + by,
-            leg: robot.measures.limits.leg + by,
-            stroke_min: robot.measures.limits.stroke_min + mm,
-            stroke_max: robot.measures.limits.stroke_max - mm,
+        let truths = [&solution.head, &solution.tail];
+        let crossing = |(truth, bound): (&&kinematics::FiveBarPose, &bounds::End)| {
+            truth.gap.x.abs() <= bound.along
         };
-        if limits(MARGIN, LENGTH).allow(&solution) {
+        if truths.iter().zip(&bounds.ends).any(crossing) {
+            return None;
+        }
+        // Limits are rounded up to a step, strokes inwards.
+        let step = 1.0 / per_mm(robot.sides[0].scale).min(per_mm(robot.sides[1].scale));
+        let by = |sign: f64| kinematics::Limits {
+            type2: robot.measures.limits.type2 + sign * (bounds.most(|end| end.type2) + Q15),
+            type1: robot.measures.limits.type1 + sign * (bounds.most(bounds::End::type1) + Q15),
+            leg: robot.measures.limits.leg + sign * (DIRECTION + Q15),
+            stroke_min: robot.measures.limits.stroke_min
+                + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
+            stroke_max: robot.measures.limits.stroke_max
+                - sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
+        };
+        if by(1.0).allow(&solution) {
             Some(true)
-        } else if !limits(-MARGIN, -LENGTH).allow(&solution) {
+        } else if !by(-1.0).allow(&solution) {
             Some(false)
         } else {
             None
@@ -177,29 +221,36 @@ mod tests {
             let Some(truth) = robot.solve(&pose) else {
                 return Ok(());
             };
-            let ends = [kinematics::End::Head, kinematics::End::Tail];
+            let bounds = Bounds::of(&robot, &pose);
             for (place, (what, exact)) in truth.margins.iter().enumerate() {
                 let end = match place {
-                    0 | 1 => ends[place],
-                    place => kinematics::End::of_servo((place - 2) % 4),
+                    0 | 1 => place,
+                    place => kinematics::End::of_servo((place - 2) % 4) as usize,
                 };
-                let bars = truth.end(end);
+                let bars = [&truth.head, &truth.tail][end];
+                let bound = &bounds.ends[end];
                 let is_leg = place >= 6;
-                if !is_leg && bars.type2 < 0.1 {
+                if !is_leg && !bound.known {
                     continue;
                 }
-                let crossed = place < 2 && bars.gap.x < 0.0;
-                if place < 2 && bars.gap.x.abs() < 0.2 {
+                if place < 2 && bars.gap.x.abs() <= bound.along {
                     continue;
                 }
-                let exact = if crossed { -exact } else { exact };
+                let exact = if place < 2 && bars.gap.x < 0.0 { -exact } else { exact };
+                let most = match place {
+                    0..2 => bound.type2,
+                    2 | 5 => bound.type1_left,
+                    3 | 4 => bound.type1_right,
+                    _ => DIRECTION,
+                };
                 let off = sine(got.margins[place]) - exact;
-                prop_assert!(off.abs() <= MARGIN, "{what} is off by {off}");
+                prop_assert!(off.abs() <= most, "{what} is off by {off} of {most}");
             }
             for (place, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
                 let length = f64::from(got.sliders_sq[place]).sqrt();
                 let off = length / per_mm(robot.sides[place].scale) - exact;
-                prop_assert!(off.abs() <= LENGTH, "slider {place} is off by {off}");
+                let most = bounds.sliders[place];
+                prop_assert!(off.abs() <= most, "slider {place} is off by {off} of {most}");
             }
         }
 
@@ -212,6 +263,41 @@ mod tests {
                 prop_assert_eq!(hazard.is_none(), safe, "{:?}", hazard);
             }
         }
+    }
+
+    #[test]
+    fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
+        let mut runner = TestRunner::deterministic();
+        let mut decided = 0;
+        for _ in 0..2000 {
+            let (robot, pose) = posed().new_tree(&mut runner).expect("a pose").current();
+            decided += usize::from(truth(&robot, &pose).is_some());
+            let standing = Bounds::of(&robot, &Pose::NEUTRAL);
+            let (type2, type1) = (
+                standing.most(|end| end.type2),
+                standing.most(bounds::End::type1),
+            );
+            assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
+            assert!(
+                standing.sliders.iter().all(|mm| *mm < 0.05),
+                "{:?}",
+                standing.sliders
+            );
+        }
+        assert!(decided > 1900, "{decided} of 2000");
+    }
+
+    /// Floating point calls it safe, the integers do not: a stroke that ends where the
+    /// slider stands is rounded inwards.
+    #[test]
+    fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
+        let mut measures = Measures::paper();
+        let standing = Sample::new(measures);
+        assert!(standing.stands_safely());
+        let truth = standing.solve(&Pose::NEUTRAL).expect("it stands");
+        measures.limits.stroke_max = truth.left.s.max(truth.right.s) + 1e-9;
+        assert!(measures.limits.allow(&truth));
+        assert!(!Sample::new(measures).stands_safely());
     }
 
     /// A robot and a clearance that has something to spare at every place.

@@ -15,6 +15,15 @@ pub enum Margin {
     Leg(Servo),
 }
 
+impl Margin {
+    /// False for a value that stands for no value: an end whose couplers are nearly in
+    /// line, or do not meet, has a type-2 margin below a tenth, and the guard knows no
+    /// more of it. See [`crate::five_bar::FiveBar::margins`].
+    pub fn is_known(self, value: Sine) -> bool {
+        !matches!(self, Self::Type2(_)) || value != Sine(0)
+    }
+}
+
 /// The first condition that a pose breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hazard {

@@ -171,8 +171,12 @@ where
                     limits.leg
                 }
             };
-            Text::Is.print(out)?;
-            sine(out, value)?;
+            if margin.is_known(value) {
+                Text::Is.print(out)?;
+                sine(out, value)?;
+            } else {
+                Text::IsBelow.print(out)?;
+            }
             Text::Least.print(out)?;
             sine(out, least)
         }
@@ -299,6 +303,10 @@ mod tests {
             (
                 margin(Margin::Type2(End::Tail), -33),
                 "4 type-2 margin of the tail is -0.001, at least 0.340",
+            ),
+            (
+                margin(Margin::Type2(End::Tail), 0),
+                "4 type-2 margin of the tail is below 0.1, at least 0.340",
             ),
             (
                 margin(Margin::Type1(Servo::A1), 0),

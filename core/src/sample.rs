@@ -6,6 +6,7 @@
 //! width and a travel of its own. What one part is measured by instead of another
 //! shows.
 
+pub mod bounds;
 mod measures;
 
 use std::vec::Vec;
@@ -20,6 +21,7 @@ use crate::couplers::{self, Couplers};
 use crate::curve::Table;
 use crate::five_bar::{self, FiveBar};
 use crate::gait::{Channel, Gait, GaitId, SAMPLES, Wave};
+use crate::guard::Clearance;
 use crate::limits::Limits;
 use crate::part::{End, Servo, Side};
 use crate::point_to_point::Slew;
@@ -100,6 +102,7 @@ pub struct Sample {
 pub struct Loop {
     /// Half the sum of base and cranks is the farthest that crank tips part.
     pub bars: [i16; 3],
+    pub scale: Scale,
     pub couplers: Bars,
 }
 
@@ -155,6 +158,7 @@ impl Loop {
         }
         Some(Self {
             bars: [base, left, right].map(|mm| steps(mm, scale) as i16),
+            scale,
             couplers: Bars::new(a, b),
         })
     }
@@ -219,9 +223,17 @@ impl Sample {
         Self::new(Measures::odd())
     }
 
-    /// See [`Measures::random`].
+    /// See [`Measures::random`]. Each stands safely in its neutral pose by the
+    /// integers, as every robot must that a firmware is built for: floating point calls
+    /// some safe that the integers do not, within their roundings.
     pub fn random() -> impl Strategy<Value = Self> {
-        Measures::random().prop_map(Self::new)
+        Measures::random()
+            .prop_map(Self::new)
+            .prop_filter("stands safely", Self::stands_safely)
+    }
+
+    pub fn stands_safely(&self) -> bool {
+        Clearance::of(self, &Pose::NEUTRAL).hazard(self).is_none()
     }
 
     /// A gait by its name.

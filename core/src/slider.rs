@@ -82,7 +82,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::sample::{degrees, per_mm, side_of};
+    use crate::sample::{bounds, degrees, per_mm, side_of};
     use crate::units::Angle;
 
     /// A side of any robot that hobby servos move, mm.
@@ -130,8 +130,7 @@ mod tests {
             prop_assert_eq!(of.sign() * 90.0, turn);
             let pose = side.forward(-degrees(rear) - turn, degrees(front) + turn).expect("a length");
             let mm = f64::from(got).sqrt() / per_mm(integers.scale);
-            // Six lengths, each rounded to a step, and sines of 4.5e-5.
-            let most = 6.0 / per_mm(integers.scale) + 1e-4 * (side.front + side.rear);
+            let most = bounds::slider(&side, &integers);
             prop_assert!((mm - pose.d).abs() <= most, "{mm} for {} mm", pose.d);
         }
 

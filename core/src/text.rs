@@ -118,6 +118,7 @@ texts! {
     Type1 = "type-1 margin of ";
     Leg = "leg margin of ";
     Is = " is ";
+    IsBelow = " is below 0.1";
     Least = ", at least ";
     Left = "left";
     Right = "right";

@@ -4,7 +4,8 @@
 //! margin is .3, so a mistake that exchanges two of them changes nothing. Here
 //! every length, servo and limit is another one. A robot is written as the text of
 //! a robot.toml and read by [`Robot::parse`], which refuses what is not valid: a
-//! robot that comes out of here is one that a builder could have.
+//! robot that comes out of here is one that a builder could have. Each has a gait that
+//! moves, and every second one measures its servos' rail.
 
 use std::fmt::Write;
 
@@ -39,8 +40,12 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
             for gait in gaits(rng, &body) {
                 text = accepted(text, &gait);
             }
+            if rng.bool() {
+                line(&mut text, &rail(rng, &body.pins));
+            }
             let robot = Robot::parse(&text).ok()?;
-            Some((text, robot))
+            let moves = robot.gaits().iter().any(|gait| gait.moves());
+            moves.then_some((text, robot))
         })
         .expect("one draft in a few is a valid robot")
 }
@@ -52,6 +57,8 @@ struct Body {
     neutral: [f64; 4],
     limits: Limits,
     servos: [String; 4],
+    /// The pins of the servos, then all others.
+    pins: [&'static str; PINS.len()],
     slew: [f64; 2],
     lizard: Lizard,
 }
@@ -123,6 +130,7 @@ impl Body {
             neutral,
             limits,
             servos,
+            pins,
             slew: [
                 between(rng, 120.0, 500.0).round(),
                 between(rng, 150.0, 800.0).round(),
@@ -195,6 +203,22 @@ fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> 
         };
         roomy.allow(&solution).then_some(neutral)
     })
+}
+
+/// A rail on an analogue pin that no servo is on, with voltages of its own.
+fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
+    let free = pins[4..].iter().find(|pin| pin.starts_with('A'));
+    let pin = free.expect("six analogue pins and four servos");
+    let ratio = round(between(rng, 1.5, 3.0));
+    // Of what the pin may be led, 5 V.
+    let slow = round(ratio * between(rng, 2.4, 4.0));
+    let stop = round(slow - between(rng, 0.15, 0.4));
+    let rest = round(stop - between(rng, 0.15, 0.4));
+    format!(
+        "[supply]\nreference = {}\n[supply.rail]\npin = \"{pin}\"\nratio = {ratio}\n\
+         slow = {slow}\nstop = {stop}\nrest = {rest}",
+        fine(between(rng, 1.05, 1.15)),
+    )
 }
 
 /// A gait's text for a size from 0 to 1; or a gait that has no size of its own.

@@ -250,7 +250,7 @@ impl SimulatedBoard {
     }
 
     /// Lets time pass and times every call of a function of the firmware, named
-    /// as in `Console::frame`.
+    /// as in `Control::frame`.
     ///
     /// # Errors
     /// The ELF has no such function, or more than one.

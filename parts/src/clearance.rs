@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use lizard_kinematics::{Pose, Solution};
+use lizard_kinematics::Solution;
 
 use crate::assembly::Assembly;
 use crate::shape::Shape;

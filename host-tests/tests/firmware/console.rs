@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::{FirmwareBench, robot};
-use lizard_kinematics::{Check, Limits};
+use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
 use crate::{SECOND, Status, angles, awake, doing, gaits, in_both, moving, pose_at, widths};
@@ -73,55 +73,83 @@ fn a_line_may_have_63_characters_and_no_more() {
     assert_eq!(bench.say("stop"), "ok stop", "the next line is a new one");
 }
 
-/// Poses beyond a servo's travel, a margin and a slider's stroke, each with its code;
-/// those that this robot has.
+/// Poses beyond a servo's travel, a margin and a slider's stroke, each with its code. A
+/// robot may have no pose that breaks a stroke and nothing before it.
 fn refused_poses() -> Vec<(String, u8)> {
     let mut rng = Rng::with_seed(1);
     let mut found: [Option<String>; 3] = [None, None, None];
-    for _ in 0..100_000 {
-        let sweeps: [f64; 4] = std::array::from_fn(|_| 175.0 * (2.0 * rng.f64() - 1.0));
+    let servos = robot().servos();
+    for n in 0..400_000 {
+        // All around, and nearer to neutral, where fewer limits are broken at once.
+        let most = [175.0, 90.0, 45.0, 25.0][n % 4];
+        let sweeps: [f64; 4] = std::array::from_fn(|_| most * (2.0 * rng.f64() - 1.0));
         let within = |by: f64| {
-            robot().servos().iter().zip(sweeps).all(|(servo, sweep)| {
+            servos.iter().zip(sweeps).all(|(servo, sweep)| {
                 let (min, max) = servo.travel();
                 min + by < sweep && sweep < max - by
             })
         };
-        let servos = robot().servos();
-        let angles: [f64; 4] = std::array::from_fn(|i| servos[i].neutral + sweeps[i]);
-        let Ok(solution) = robot().lizard().solve(&angles.into()) else {
+        let place = if !within(-0.1) {
+            0
+        } else if !within(0.1) {
             continue;
-        };
-        // Well beyond a limit, so that there is no doubt.
-        let beyond = |by: f64| limits(by).violations(&solution).next();
-        let is_stroke = |what| Check::STROKE.contains(&what);
-        let place = match (beyond(-0.05), beyond(0.05)) {
-            _ if !within(-0.1) => 0,
-            (Some(lax), Some(strict)) if within(0.1) => {
-                match (is_stroke(lax.what), is_stroke(strict.what)) {
-                    (true, true) => 2,
-                    (false, _) if !Check::UNCROSSED.contains(&lax.what) => 1,
-                    _ => continue,
-                }
+        } else {
+            let angles: [f64; 4] = std::array::from_fn(|i| servos[i].neutral + sweeps[i]);
+            let Ok(solution) = robot().lizard().solve(&angles.into()) else {
+                continue;
+            };
+            match code(&solution) {
+                Some(4) => 1,
+                Some(5) => 2,
+                _ => continue,
             }
-            _ => continue,
         };
         found[place].get_or_insert_with(|| pose_at(sweeps));
+        if found.iter().all(Option::is_some) {
+            break;
+        }
     }
-    let found = found.into_iter().zip([3, 4, 5]);
-    found
-        .filter_map(|(line, code)| Some((line?, code)))
+    let [travel, margin, stroke] = found;
+    let travel = travel.expect("some servo does not turn by 175 degrees either way");
+    let margin = margin.expect("some pose breaks a margin");
+    let stroke = stroke.map(|line| (line, 5));
+    println!("a pose that breaks a stroke alone: {stroke:?}");
+    [(travel, 3), (margin, 4)]
+        .into_iter()
+        .chain(stroke)
         .collect()
 }
 
-/// The robot's limits, stricter by so much: sines, and ten times that in mm.
+/// The code with which a pose within the travel is refused, where there is no doubt. The
+/// guard looks at the margins of both ends first, where crossed crank tips are a type-2
+/// margin below 0, and at the strokes after all of them.
+fn code(solution: &Solution) -> Option<u8> {
+    let broken = |by: f64, stroke: bool| {
+        let mut all = limits(by).violations(solution);
+        all.any(|violation| Check::STROKE.contains(&violation.what) == stroke)
+    };
+    let size = robot().lizard().links.l10 / 135.0;
+    let ends = [&solution.head, &solution.tail];
+    let doubtful = ends.iter().any(|end| end.gap.x.abs() < size);
+    match (broken(-0.05, false), broken(0.05, false)) {
+        _ if doubtful => None,
+        (true, _) => Some(4),
+        (false, false) if broken(-0.05, true) => Some(5),
+        _ => None,
+    }
+}
+
+/// The robot's limits, stricter by so much: sines, and ten times that in mm for a robot of
+/// the paper's size.
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
+    let size = robot().lizard().links.l10 / 135.0;
     Limits {
         type2: limits.type2 + by,
         type1: limits.type1 + by,
         leg: limits.leg + by,
-        stroke_min: limits.stroke_min + 10.0 * by,
-        stroke_max: limits.stroke_max - 10.0 * by,
+        stroke_min: limits.stroke_min + 10.0 * by * size,
+        stroke_max: limits.stroke_max - 10.0 * by * size,
     }
 }
 

@@ -63,7 +63,7 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
 fn every_tick_computes_one_frame() {
     let mut bench = doing(&moving(), Fidelity::DataSheet);
     bench.run_for_frames(0);
-    let calls = bench.time_calls("Console::frame", 2000);
+    let calls = bench.time_calls("Control::frame", 2000);
     assert_eq!(calls.len() as u64, 2 * SECOND);
     for pair in calls.windows(2) {
         // The same distance after each tick, but for an instruction that ends and

@@ -17,7 +17,7 @@ fn functions_with(parts: &[&str]) -> Vec<String> {
     let functions = image.symbols().iter().filter(|symbol| symbol.function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
     assert!(
-        paths.iter().any(|path| path.ends_with("Console::frame")),
+        paths.iter().any(|path| path.ends_with("Control::frame")),
         "the ELF has its symbols"
     );
     paths

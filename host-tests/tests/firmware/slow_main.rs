@@ -15,7 +15,7 @@ const HAND_OVER: u64 = 224;
 
 /// Runs main into its next frame and to the return of the function that computes it.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
-    let frame = bench.uno.image().function("Console::frame");
+    let frame = bench.uno.image().function("Control::frame");
     let entry = frame.expect("it computes a frame").address as u32;
     let uno = &mut bench.uno;
     assert!(uno.run_until(FRAME, 1, |uno| uno.pc() == entry));

@@ -225,7 +225,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
     for ms in (90..300).step_by(10) {
         let resets = bench.uno.resets();
         bench.uno.stall_main(ms * MS);
-        bench.run_ms(ms + 150);
+        bench.uno.run_ms(ms + 150);
         let began_anew = bench.uno.resets() > resets;
         let frames = pulses_in(&mut bench, 200);
         for (servo, pulses) in frames.iter().enumerate() {
@@ -255,7 +255,7 @@ fn a_robot_that_rests_and_hangs_comes_back_without_a_pulse_whatever_was_kept() {
             }
             let resets = bench.uno.resets();
             bench.uno.stall_main(ms * MS);
-            bench.run_ms(ms + 150);
+            bench.uno.run_ms(ms + 150);
             assert!(bench.uno.resets() > resets);
             let after = pulses_in(&mut bench, 6000);
             assert!(after.iter().all(Vec::is_empty), "{ms} ms: {after:?}");
@@ -280,14 +280,14 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     // `boot` says stand, as long as nobody says anything else; nobody sends a byte.
     let before = pulses_in(&mut bench, 2_900);
     assert!(before.iter().all(Vec::is_empty), "{before:?}");
-    bench.run_ms(2_500);
+    bench.uno.run_ms(2_500);
     assert_eq!(widths_now(&mut bench), neutral_widths());
     let said = bench.lines().iter().any(|line| line.text == "# boot: stand");
     assert!(said);
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
-    bench.run_ms(1000);
+    bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
     let after = pulses_in(&mut bench, 5_000);
     assert!(after.iter().all(Vec::is_empty), "a byte has called boot off");

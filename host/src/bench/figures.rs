@@ -68,7 +68,7 @@ pub struct Figures {
 }
 
 /// The function of the firmware that computes a frame: the control tick.
-const TICK: &str = "Console::frame";
+const TICK: &str = "Control::frame";
 /// The guard.
 const GUARD: &str = "Motion::hazard_of";
 /// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.

@@ -7,7 +7,7 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
-use lizard_kinematics::{Check, End, Limits, Pose, Real, Side, Solution, Vector};
+use lizard_kinematics::{Check, End, Limits, Real, Side, Solution, Vector};
 use lizard_robot::Robot;
 
 use super::interval::Interval;

@@ -1,0 +1,82 @@
+//! `make random-robots`: writes random robots as files like robot.toml, for the
+//! image's tests to run on each.
+//!
+//! Arguments: a folder, a seed, how many. The same seed writes the same robots. Among
+//! them is each of what the files of `robots/` have too little of, or none is written.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use fastrand::Rng;
+use lizard_host_tests::random_robot::random_robot;
+use lizard_robot::Robot;
+
+/// The first analogue pin by its Arduino number: port C begins there.
+const PORT_C: u8 = 14;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(sentence) => {
+            eprintln!("random-robots: {sentence}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &[String]) -> Result<(), String> {
+    let [folder, seed, count] = arguments else {
+        return Err("the arguments are a folder, a seed, how many robots".into());
+    };
+    let number = |text: &String, what: &str| {
+        let number = text.parse::<u64>();
+        number.map_err(|_| format!("{what} is a whole number, not {text:?}"))
+    };
+    let (seed, count) = (number(seed, "the seed")?, number(count, "COUNT")?);
+    if count == 0 {
+        return Err("COUNT is at least 1".into());
+    }
+    let robots: Vec<(String, Robot)> = (0..count)
+        .map(|n| random_robot(&mut Rng::with_seed(seed.wrapping_mul(1_000_003) + 1000 + n)))
+        .collect();
+    // Few robots cannot have everything.
+    if count >= 10 {
+        has_all(&robots)?;
+    }
+    let folder = Path::new(folder);
+    let written = |error: std::io::Error| format!("{}: {error}", folder.display());
+    std::fs::create_dir_all(folder).map_err(written)?;
+    for (n, (text, _)) in robots.iter().enumerate() {
+        std::fs::write(folder.join(format!("{n}.toml")), text).map_err(written)?;
+    }
+    Ok(())
+}
+
+/// Whether something is true of a robot.
+type Has = fn(&Robot) -> bool;
+
+/// An error that names what no robot has.
+fn has_all(robots: &[(String, Robot)]) -> Result<(), String> {
+    let of_interest: [(&str, Has); 5] = [
+        ("a servo that is reversed", |robot| {
+            robot.servos().iter().any(|servo| servo.us_per_degree < 0.0)
+        }),
+        ("a servo on port C", |robot| {
+            robot.servos().iter().any(|servo| servo.pin >= PORT_C)
+        }),
+        ("a rail that is measured", |robot| {
+            robot.supplies().rail.is_some()
+        }),
+        ("no rail", |robot| robot.supplies().rail.is_none()),
+        ("a gait of its own", |robot| robot.gaits().len() > 1),
+    ];
+    for (what, has) in of_interest {
+        if !robots.iter().any(|(_, robot)| has(robot)) {
+            return Err(format!(
+                "none of these robots has {what}; take another seed"
+            ));
+        }
+    }
+    Ok(())
+}
