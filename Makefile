@@ -27,11 +27,11 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit .fit parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .fuzz .docs
+.PHONY: help fit .fit parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants trouble fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .trouble .fuzz .docs
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
-	@echo "firmware, sim, test, bench, prove, fit and flash take ROBOT=robots/x.toml; without it, robot.toml"
+	@echo "firmware, sim, test, bench, prove, fit, trouble and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
@@ -63,6 +63,8 @@ physics: ## the contact model against the rigid-body engine rapier
 	$(call prepared,.physics)
 mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
 	$(call prepared,.mutants)
+trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
+	$(call prepared,.trouble)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
 docs: ## write anew the pages and pictures that programs make
@@ -159,6 +161,10 @@ TESTS ?= --workspace
 # ONLY=serial.rs narrows it down.
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
+
+# ONLY=4711 plays one scenario of the seed again, and says all that was said.
+.trouble: .firmware
+	@cd host && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
 
 .fuzz:
 	@for target in $(or $(TARGET),console memory); do scripts/fuzz $$target $(or $(MINUTES),1) || exit 1; done
