@@ -43,16 +43,21 @@ pub fn may_begin(record: &Record, rules: &Rules, cycle: u64) -> bool {
     for (heard, done) in record.orders() {
         match (heard.text.as_str(), done) {
             (_, Some(false)) => {}
-            ("rest", Some(true)) => note(heard.cycle + UNTIL_REST, false),
-            // Perhaps done, perhaps not: a robot that was held stays so.
-            ("rest", None) => {}
+            // An order acts with the next frame. One that trouble came before is perhaps
+            // done, perhaps not.
+            ("rest", _) => {
+                let end = heard.cycle + UNTIL_REST;
+                let troubled = record.starts_in(heard.cycle, end).next().is_some()
+                    || record.is_disturbed(heard.cycle, end);
+                if done.is_some() && !troubled {
+                    note(end, false);
+                }
+            }
             _ => note(heard.cycle, true),
         }
     }
     for line in &record.lines {
-        if line.text.ends_with("pulses ended")
-            || line.text.starts_with("# fault: the supply failed")
-        {
+        if line.text.ends_with("pulses ended") || line.text.contains("several times in a row") {
             note(line.cycle + UNTIL_REST, false);
         }
     }
@@ -74,15 +79,18 @@ pub fn only_by_order(record: &Record, rules: &Rules) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether a hang interrupted a servo's pulses, and nothing else came between.
+/// Whether a hang interrupted a servo's pulses, and nothing that hides where it is came
+/// between.
 pub fn is_after_a_hang(record: &Record, begin: &Begin) -> bool {
     let Some(before) = begin.before else {
         return false;
     };
     let (from, to) = (before.start, begin.pulse.start);
-    let mut starts = record.starts_in(from, to).peekable();
-    starts.peek().is_some()
-        && starts.all(|start| start.cause == ResetCause::Watchdog)
+    let causes = || record.starts_in(from, to).map(|start| start.cause);
+    let gone = |cause| matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
+    causes().any(|cause| cause == ResetCause::Watchdog)
+        && !causes().any(gone)
+        && !record.was_ordered(from, to)
         && to - from < 1_000 * MS
 }
 

@@ -52,14 +52,13 @@ pub fn silence_has_a_reason(record: &Record, rules: &Rules) -> Result<(), String
             .iter()
             .filter(booted)
             .any(|line| line.cycle.abs_diff(at) < 60 * MS);
-        let start = |cause| {
-            let mut starts = record.starts_in(at.saturating_sub(25 * MS), at + UNTIL_RESET);
-            starts.any(|start| start.cause == cause)
-        };
-        let hung = start(ResetCause::Watchdog);
+        let restarted = record
+            .starts_in(at.saturating_sub(25 * MS), at + UNTIL_RESET)
+            .next();
+        let restarted = restarted.is_some();
         let unfinished = silence.end == record.end && silence.end - at < UNTIL_RESET;
         let explained =
-            told || by_supply || boot || hung || unfinished || record.cuts.iter().any(cut);
+            told || by_supply || boot || restarted || unfinished || record.cuts.iter().any(cut);
         if !explained {
             let (at, ms) = (at / MS, (silence.end - at) / MS);
             return Err(format!(

@@ -29,6 +29,8 @@ pub struct Rules {
     pub rest: f64,
     /// Whether `boot` ends the pulses, so that it begins none.
     pub boots_to_rest: bool,
+    /// Whether a narrower travel is saved than the one in use.
+    pub narrowed: bool,
 }
 
 impl Rules {
@@ -67,6 +69,7 @@ impl Rules {
             stop,
             rest,
             boots_to_rest: says("boot rest"),
+            narrowed: says("say limit ") && says("say factory"),
         }
     }
 }

@@ -94,7 +94,8 @@ fn what_came(record: &Record, rules: &Rules, pair: &[Pulse]) -> Between {
         }
         return Between::Unknown;
     }
-    if record.lost_power(from, to) {
+    // A pose beyond the travel that was saved is none to wake in.
+    if record.lost_power(from, to) || rules.narrowed {
         return Between::Unknown;
     }
     Between::Reset
