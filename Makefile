@@ -27,11 +27,11 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit .fit parts-test .parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants random-robots fuzz docs clean .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .fuzz .docs
+.PHONY: help fit parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants random-robots fuzz docs clean trouble .fit .parts-test .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .fuzz .docs .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
-	@echo "firmware, sim, test, bench, prove, fit and flash take ROBOT=robots/x.toml; without it, robot.toml"
+	@echo "firmware, sim, test, bench, prove, fit, trouble and flash take ROBOT=robots/x.toml; without it, robot.toml"
 
 sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
@@ -65,6 +65,8 @@ mutants: ## mistakes on purpose: which does no test notice? PART=board, core or 
 	$(call prepared,.mutants)
 random-robots: ## the image's tests on random valid robots; SEED=1 COUNT=10
 	$(call prepared,.random-robots)
+trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
+	$(call prepared,.trouble)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
 docs: ## write anew the pages and pictures that programs make
@@ -166,6 +168,10 @@ TESTS ?= --workspace
 
 .random-robots:
 	@scripts/random-robots $(or $(SEED),1) $(or $(COUNT),10)
+
+# ONLY=4711 plays one scenario of the seed again, and says all that was said.
+.trouble: .firmware
+	@cd host && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
 
 .fuzz:
 	@for target in $(or $(TARGET),console memory); do scripts/fuzz $$target $(or $(MINUTES),1) || exit 1; done

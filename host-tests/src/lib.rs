@@ -11,3 +11,4 @@ pub use bench::{FirmwareBench, bench_of};
 pub use lizard_host::sim::frame::{FRAME, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{Named, paper, rng, robot, robots, root, seed};
+pub mod trouble;

@@ -1,0 +1,439 @@
+//! Scenarios of seeded random numbers: an activity, trouble that begins at a random
+//! cycle of it, and what is asked and ordered afterwards.
+
+use std::fmt;
+
+use fastrand::Rng;
+use lizard_host::sim::tour;
+use lizard_robot::Robot;
+use simulated_uno::CYCLES_PER_MS;
+
+use super::setup;
+use super::step::Step;
+
+const MS: u64 = CYCLES_PER_MS;
+
+/// What the robot does when trouble begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Activity {
+    /// It rests, or has just been told to.
+    Resting,
+    /// Its servos wake after a rest.
+    Waking,
+    /// It holds a pose or stands.
+    Holding,
+    /// It goes from one pose to another.
+    Moving,
+    /// It walks.
+    Cycling,
+    /// It writes the EEPROM.
+    Saving,
+    /// The program has just begun.
+    Starting,
+    /// It is asked, and answers.
+    Talking,
+}
+
+impl Activity {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Resting,
+        Self::Waking,
+        Self::Holding,
+        Self::Moving,
+        Self::Cycling,
+        Self::Saving,
+        Self::Starting,
+        Self::Talking,
+    ];
+}
+
+impl fmt::Display for Activity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Resting => "resting",
+            Self::Waking => "waking",
+            Self::Holding => "holding",
+            Self::Moving => "moving",
+            Self::Cycling => "cycling",
+            Self::Saving => "saving",
+            Self::Starting => "just started",
+            Self::Talking => "talking",
+        })
+    }
+}
+
+/// A scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    /// The seed of its random numbers.
+    pub seed: u64,
+    /// Its number among those of the seed.
+    pub number: u64,
+    /// What the robot does when trouble begins.
+    pub activity: Activity,
+    /// Whether a boot loader has cleared what the chip knows of a reset.
+    pub boot_loader: bool,
+    /// What is done.
+    pub steps: Vec<Step>,
+}
+
+impl fmt::Display for Scenario {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let loader = if self.boot_loader { "a" } else { "no" };
+        writeln!(
+            f,
+            "scenario {} of seed {} ({}, {loader} boot loader), from power-on:",
+            self.number, self.seed, self.activity
+        )?;
+        for step in &self.steps {
+            writeln!(f, "  {step}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Scenario {
+    /// A seed's scenario of this number.
+    #[must_use]
+    pub fn of(seed: u64, number: u64, robot: &Robot) -> Self {
+        let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
+        let activity = Activity::ALL[(number % 8) as usize];
+        let mut script = Script::new(&mut rng, robot);
+        script.activity(activity);
+        script.trouble(activity);
+        script.aftermath();
+        let steps = script.steps;
+        Self {
+            seed,
+            number,
+            activity,
+            boot_loader: rng.bool(),
+            steps,
+        }
+    }
+}
+
+/// A scenario that is being written.
+struct Script<'a> {
+    rng: &'a mut Rng,
+    robot: &'a Robot,
+    steps: Vec<Step>,
+}
+
+impl<'a> Script<'a> {
+    fn new(rng: &'a mut Rng, robot: &'a Robot) -> Self {
+        Self {
+            rng,
+            robot,
+            steps: Vec::new(),
+        }
+    }
+
+    fn say(&mut self, line: impl Into<String>) {
+        self.steps.push(Step::Say(line.into()));
+    }
+
+    fn send(&mut self, line: impl Into<String>) {
+        self.steps.push(Step::Send(line.into()));
+    }
+
+    fn wait(&mut self, ms: u64) {
+        self.steps.push(Step::Wait(ms * MS));
+    }
+
+    /// Waits to a random cycle.
+    fn wait_up_to(&mut self, ms: u64) {
+        let cycles = self.rng.u64(1..ms * MS);
+        self.steps.push(Step::Wait(cycles));
+    }
+
+    fn pose(&mut self) -> String {
+        setup::pose(self.rng, self.robot)
+    }
+
+    fn gait(&mut self) -> String {
+        let gaits = tour::moving(self.robot);
+        let name = self.rng.choice(&gaits);
+        name.map_or("stand".into(), |name| name.replace('-', " "))
+    }
+
+    /// Brings the robot into an activity, up to a random cycle of it.
+    fn activity(&mut self, activity: Activity) {
+        let at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
+        if !at_power_on {
+            self.wait(600);
+            self.steps.extend(setup::settings(self.rng, self.robot));
+            if self.rng.bool() {
+                let pose = self.pose();
+                self.say(pose);
+                self.wait(500);
+            }
+        }
+        match activity {
+            Activity::Resting => {
+                self.say("rest");
+                if self.rng.u8(0..4) == 0 {
+                    self.wait(300);
+                    self.say("rest");
+                    self.wait(200);
+                }
+                self.wait_up_to(800);
+            }
+            Activity::Waking => {
+                self.say("rest");
+                self.wait(200);
+                self.send("stand");
+                self.wait_up_to(450);
+            }
+            Activity::Holding => {
+                if self.rng.bool() {
+                    let gait = self.gait();
+                    self.say(gait);
+                    self.wait_up_to(900);
+                    self.say("stop");
+                }
+                self.wait_up_to(40);
+            }
+            Activity::Moving => {
+                let pose = self.pose();
+                self.send(pose);
+                self.wait_up_to(250);
+            }
+            Activity::Cycling => {
+                let gait = self.gait();
+                self.say(gait);
+                self.wait_up_to(2_000);
+            }
+            Activity::Saving => self.saves(),
+            Activity::Starting => self.starts(at_power_on),
+            Activity::Talking => self.talks(),
+        }
+    }
+
+    fn saves(&mut self) {
+        match self.rng.u8(0..3) {
+            0 => {
+                self.send("rest");
+                self.wait_up_to(120);
+                return;
+            }
+            1 => {
+                let gait = self.gait();
+                self.say(gait);
+                self.wait_up_to(400);
+            }
+            _ => {}
+        }
+        let line = setup::trim(self.rng);
+        self.say(line);
+        self.wait(100);
+        self.send("save");
+        self.wait_up_to(250);
+    }
+
+    fn starts(&mut self, at_power_on: bool) {
+        if !at_power_on {
+            match self.rng.u8(0..4) {
+                0 => self.say("rest"),
+                1 => {
+                    let gait = self.gait();
+                    self.say(gait);
+                }
+                _ => {}
+            }
+            self.wait_up_to(700);
+            let start = if self.rng.u8(0..3) == 0 {
+                Step::PowerCycle
+            } else {
+                Step::Reset
+            };
+            self.steps.push(start);
+        }
+        let ms = *self.rng.choice(&[5, 100, 500]).unwrap_or(&5);
+        self.wait_up_to(ms);
+    }
+
+    fn talks(&mut self) {
+        match self.rng.u8(0..3) {
+            0 => self.say("rest"),
+            1 => {
+                let gait = self.gait();
+                self.say(gait);
+            }
+            _ => {}
+        }
+        for _ in 0..self.rng.u8(1..5) {
+            let lines = [
+                "status",
+                "help",
+                "cal",
+                "speed 50",
+                "nonsense",
+                "pose 0 0 0 0",
+            ];
+            let line = *self.rng.choice(&lines).unwrap_or(&"status");
+            self.send(line);
+        }
+        self.wait_up_to(120);
+    }
+
+    /// What goes wrong, until it is over.
+    fn trouble(&mut self, activity: Activity) {
+        match self.rng.u8(0..100) {
+            0..50 => self.stall(),
+            50..54 => {
+                self.stall();
+                self.wait_up_to(60);
+                self.stall();
+            }
+            54..64 => self.steps.push(Step::Reset),
+            64..72 => {
+                self.steps.push(Step::Reset);
+                self.wait_up_to(5);
+                self.steps.push(Step::Reset);
+            }
+            72..80 => self.dip(),
+            80..86 => self.sag(),
+            86..92 => self.stall_and_more(),
+            92 => self.adjust(),
+            93 => {
+                let cycles = self.rng.u64(100..20_000);
+                self.steps.push(Step::Hold(cycles));
+                self.wait(40);
+            }
+            94 => self.steps.push(Step::PowerCycle),
+            95 => self.two_faults(),
+            _ => self.weak(activity),
+        }
+    }
+
+    /// 1 to 300 ms, and what follows of it: a hang may end 250 ms after it began.
+    fn stall(&mut self) {
+        let cycles = self.rng.u64(MS..300 * MS);
+        self.steps.push(Step::Stall(cycles));
+        self.steps.push(Step::Wait(cycles));
+    }
+
+    /// The supply falls for a while, perhaps below what the chip needs, or its RAM.
+    fn dip(&mut self) {
+        let mv = match self.rng.u8(0..8) {
+            0 => self.rng.u16(500..1_250),
+            1..4 => self.rng.u16(1_900..2_650),
+            _ => self.rng.u16(2_800..4_600),
+        };
+        let ms = *self.rng.choice(&[5, 60, 400]).unwrap_or(&5);
+        self.steps.push(Step::Supply(mv));
+        self.wait_up_to(ms);
+        self.steps.push(Step::Supply(5_000));
+    }
+
+    /// The supply sinks, and for a moment more.
+    fn sag(&mut self) {
+        let [slow, stop, rest] = self
+            .robot
+            .supplies()
+            .board
+            .map(|volts| (1_000.0 * volts) as u16);
+        let first = self.rng.u16(stop - 100..slow + 150);
+        let second = self.rng.u16(rest - 400..stop);
+        self.steps.push(Step::Supply(first));
+        self.wait_up_to(140);
+        self.steps.push(Step::Supply(second));
+        self.wait_up_to(60);
+        self.steps.push(Step::Supply(5_000));
+    }
+
+    /// Something else happens while main is stalled.
+    fn stall_and_more(&mut self) {
+        let ms = self.rng.u64(20..300);
+        self.steps.push(Step::Stall(ms * MS));
+        self.wait_up_to(ms);
+        match self.rng.u8(0..3) {
+            0 => self.steps.push(Step::Reset),
+            1 => self.dip(),
+            _ => self.sag(),
+        }
+        self.wait(ms);
+    }
+
+    /// Other settings while it moves.
+    fn adjust(&mut self) {
+        let gait = self.gait();
+        self.send(gait);
+        for _ in 0..6 {
+            self.wait_up_to(700);
+            let line = setup::adjustment(self.rng);
+            self.send(line);
+        }
+        self.wait(700);
+    }
+
+    /// A hang, and then a supply that is low for long.
+    fn two_faults(&mut self) {
+        self.steps.push(Step::Stall(300 * MS));
+        self.wait(300);
+        self.wait_up_to(2_000);
+        let mv = self.robot.supplies().board[1] * 1_000.0 - 100.0;
+        self.steps.push(Step::Supply(mv as u16));
+        self.wait(5_000);
+        self.say("status");
+        self.steps.push(Step::Supply(5_000));
+    }
+
+    /// A supply that three servos pull down, for so long that a robot which never gives
+    /// up is found out. What pulls it down is an order, a start, or both.
+    fn weak(&mut self, activity: Activity) {
+        self.steps.push(Step::Weak(true));
+        match activity {
+            Activity::Resting => self.send("stand"),
+            Activity::Waking | Activity::Starting => {}
+            _ => self.steps.push(Step::Reset),
+        }
+        self.wait(6_000);
+        self.say("status");
+        self.steps.push(Step::Weak(false));
+    }
+
+    /// Looks on, asks, orders, and asks again.
+    fn aftermath(&mut self) {
+        // The LED's pattern of a fault, and `boot`, take some seconds.
+        let linger = if self.rng.u8(0..4) == 0 {
+            5_500
+        } else {
+            self.rng.u64(350..800)
+        };
+        self.wait(linger);
+        // Whatever was left of a line that a reset has cut.
+        self.send("");
+        self.wait(150);
+        self.say("status");
+        let refused = [
+            "pose 0 0 0 0",
+            "trim 1 90",
+            "speed 5",
+            "nonsense",
+            "limit 2 1 2",
+        ];
+        let refused = *self.rng.choice(&refused).unwrap_or(&"nonsense");
+        self.say(refused);
+        self.say("status");
+        // A supply that has recovered is good after a second.
+        if self
+            .steps
+            .iter()
+            .any(|step| matches!(step, Step::Supply(_) | Step::Weak(_)))
+        {
+            self.wait(1_300);
+        }
+        self.steps.push(Step::Order("walk".into()));
+        self.wait(700);
+        self.say("status");
+        self.say("rest");
+        self.wait(150);
+        self.say("status");
+        self.say("stand");
+        self.wait(1_300);
+        self.say("status");
+    }
+}

@@ -1,0 +1,101 @@
+//! What is set before trouble begins: settings that are saved or not, a boot gait, a
+//! deadman, a travel.
+
+use fastrand::Rng;
+use lizard_robot::Robot;
+use simulated_uno::CYCLES_PER_MS;
+
+use super::step::Step;
+
+const MS: u64 = CYCLES_PER_MS;
+
+/// The command for a random pose around the neutral one.
+pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
+    let servos = robot.servos();
+    let angles: Vec<String> = (0..4)
+        .map(|n| {
+            let sweep = f64::from(rng.i32(-900..900)) / 100.0;
+            format!("{:.2}", (servos[n].neutral + sweep).rem_euclid(360.0))
+        })
+        .collect();
+    format!("pose {}", angles.join(" "))
+}
+
+/// The command for a random trim.
+pub fn trim(rng: &mut Rng) -> String {
+    let servo = rng.u8(1..=4);
+    let degrees = f64::from(rng.i32(-1_500..1_500)) / 100.0;
+    format!("trim {servo} {degrees:.2}")
+}
+
+fn say(line: impl Into<String>) -> Step {
+    Step::Say(line.into())
+}
+
+/// A servo's travel, so many degrees to either side of neutral.
+fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
+    let neutral = robot.servos()[servo].neutral;
+    let [low, high] = [-degrees, degrees].map(|sweep| (neutral + sweep).rem_euclid(360.0));
+    format!("limit {} {low:.2} {high:.2}", servo + 1)
+}
+
+/// us per degree, far from robot.toml's.
+pub const WIDE: &str = "17.77";
+
+/// A line that makes main settle servos anew.
+pub fn adjustment(rng: &mut Rng) -> String {
+    match rng.u8(0..5) {
+        0 => "load".into(),
+        1 => "factory".into(),
+        2 => format!("scale {} {WIDE}", rng.u8(1..=4)),
+        3 => format!(
+            "dir {} {}",
+            rng.u8(1..=4),
+            if rng.bool() { '+' } else { '-' }
+        ),
+        _ => trim(rng),
+    }
+}
+
+/// Settings of a random kind; half of the time none.
+pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
+    let wait = |ms: u64| Step::Wait(ms * MS);
+    match rng.u8(0..16) {
+        // Not saved: a reset takes them away.
+        0 | 1 => vec![say(trim(rng)), wait(150)],
+        2 => vec![say(format!("dir {} -", rng.u8(1..=4))), wait(150)],
+        // Saved.
+        3 => vec![say(trim(rng)), wait(150), say("save")],
+        4 => vec![say("boot walk"), say("save")],
+        5 => vec![say("boot rest"), say("save")],
+        6 => vec![say(format!("deadman {}", rng.u16(100..2_000)))],
+        // A narrower travel is saved than the one in use.
+        7 => {
+            let servo = rng.usize(0..4);
+            // The gaits need 23 degrees; beyond 23.9 a leg's margin ends.
+            let degrees = 23.2;
+            let narrow = travel(servo, degrees, robot);
+            let neutral = robot.servos().map(|servo| servo.neutral);
+            let mut pose = neutral;
+            pose[servo] = (pose[servo] + if rng.bool() { 23.7 } else { -23.7 }).rem_euclid(360.0);
+            let pose = pose.map(|angle| format!("{angle:.2}")).join(" ");
+            vec![
+                say(narrow),
+                say("save"),
+                say("factory"),
+                wait(200),
+                say(format!("pose {pose}")),
+                wait(400),
+            ]
+        }
+        // Every number of every servo is another.
+        8 => {
+            let scales = (1..=4).map(|servo| say(format!("scale {servo} {WIDE}")));
+            let trims = (1..=4).map(|servo| say(format!("trim {servo} 3.3")));
+            let mut steps: Vec<Step> = scales.chain(trims).collect();
+            steps.extend([wait(300), say("save"), wait(50)]);
+            steps
+        }
+        _ => Vec::new(),
+    }
+}
