@@ -14,7 +14,7 @@ use crate::order::{Order, Taken};
 use crate::pose::{Pose, Pulses};
 use crate::record::{self, Outcome, RESTED};
 use crate::refusal::Refusal;
-use crate::restart::{Cause, Restart, Stance};
+use crate::restart::{Cause, Restart};
 use crate::robot::Robot;
 use crate::safety::{Health, Notice, Reaction, Safety};
 use crate::settings::{Boot, Settings};
@@ -88,8 +88,11 @@ impl<R: Robot> Control<R> {
             Some(stance) if stance.resting => Before::Rested,
             Some(_) => Before::Held,
         };
-        let brown_outs = restart.before.map_or(0, |stance| stance.brown_outs);
-        self.brown_outs = (brown_outs + u8::from(restart.may_be_supply)).min(BROWN_OUTS);
+        let brown_outs = restart.brown_outs.min(BROWN_OUTS - 1);
+        self.brown_outs = match restart.may_be_supply {
+            true => brown_outs + 1,
+            false => restart.brown_outs.min(BROWN_OUTS),
+        };
         let (beginning, fault) = supervisor::beginning(restart.cause, self.brown_outs, before);
         if let Some(fault) = fault {
             self.safety.byte_came();
@@ -155,9 +158,9 @@ impl<R: Robot> Control<R> {
         }
     }
 
-    /// What the servos do, for the program after a reset.
-    pub fn stance(&self) -> Stance {
-        self.motion.stance(self.brown_outs)
+    /// Restarts in a row that a weak supply may have made.
+    pub const fn brown_outs(&self) -> u8 {
+        self.brown_outs
     }
 
     /// One frame on: the pulses to send in it. To be called 50 times a second.

@@ -20,7 +20,6 @@
 //! | 4 | first copy: state, brown-outs in a row, pose (8), pulses (8), check |
 //! | 23 | second copy |
 
-use crate::pose::{Pose, Pulses};
 use crate::restart::{Cause, Restart, Stance};
 
 /// How many cells there are.
@@ -87,18 +86,18 @@ pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
     } else {
         Cause::External
     };
-    let known = survived && cause != Cause::Power;
-    let restart = Restart {
+    let mut restart = Restart {
         cause,
-        count: if known { count.saturating_add(1) } else { 0 },
         may_be_supply: cause == Cause::BrownOut || cause == Cause::External && hidden,
-        before: if known { stance(cells) } else { None },
+        ..Restart::NONE
     };
-    if !known {
+    if survived && cause != Cause::Power {
+        restart.count = count.saturating_add(1);
+        take(cells, &mut restart);
+    } else {
         // What RAM holds by chance is not to be believed after the next reset.
-        for copy in [0, 1] {
-            cells.set(COPIES + COPY * copy, NOTHING);
-        }
+        cells.set(COPIES, NOTHING);
+        cells.set(COPIES + COPY, NOTHING);
     }
     cells.set(COUNT, restart.count);
     cells.set(STATE, RUNNING);
@@ -106,14 +105,14 @@ pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
     restart
 }
 
-/// Keeps what the servos do. What was kept before stays whole until all of this is
-/// there.
+/// Keeps what the servos do, and how many restarts in a row a weak supply may have
+/// made. What was kept before stays whole until all of this is there.
 #[inline(never)]
-pub fn keep<C: Cells>(cells: &C, stance: &Stance) {
+pub fn keep<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     let turn = !cells.get(WHOLE) & 1;
     let mut copy = Copy::of(cells, turn);
     copy.put(stance.awake | if stance.resting { RESTING } else { 0 });
-    copy.put(stance.brown_outs);
+    copy.put(brown_outs);
     for sweep in &stance.pose.0 {
         copy.put_word(sweep.0 as u16);
     }
@@ -129,17 +128,16 @@ pub fn mark_hung<C: Cells>(cells: &C) {
     cells.set(STATE, HUNG);
 }
 
-/// What is kept, if it is whole.
+/// Takes over what is kept, if it is whole.
 #[inline(never)]
-fn stance<C: Cells>(cells: &C) -> Option<Stance> {
+fn take<C: Cells>(cells: &C, restart: &mut Restart) {
     let mut copy = Copy::of(cells, cells.get(WHOLE) & 1);
     let state = copy.take();
+    let brown_outs = copy.take();
     let mut stance = Stance {
         resting: state & RESTING != 0,
         awake: state & !RESTING,
-        brown_outs: copy.take(),
-        pose: Pose::NEUTRAL,
-        sent: Pulses::default(),
+        ..Stance::RESTING
     };
     for sweep in &mut stance.pose.0 {
         sweep.0 = copy.take_word() as i16;
@@ -148,7 +146,10 @@ fn stance<C: Cells>(cells: &C) -> Option<Stance> {
         width.0 = copy.take_word();
     }
     let check = !copy.sum;
-    (copy.take() == check && state != NOTHING).then_some(stance)
+    if copy.take() == check && state != NOTHING {
+        restart.brown_outs = brown_outs;
+        restart.before = Some(stance);
+    }
 }
 
 /// A copy that is being written or read, cell by cell.

@@ -42,7 +42,6 @@ use crate::point_to_point::PointToPoint;
 use crate::pose::{Pose, Pulses};
 use crate::restart::Stance;
 use crate::robot::Robot;
-use crate::units::Width;
 
 pub use state::Activity;
 use state::{State, Target};
@@ -71,15 +70,12 @@ pub struct Motion<R> {
     speed: u8,
     /// Whether the supply allows no more than [`SLOW`].
     slow: bool,
-    /// The pulses of the last frame, awake or not.
-    sent: Pulses,
     /// Whether they are on their way to those of another calibration.
     settling: bool,
-    /// Frames since pulses began, up to [`AWAKE`].
-    awake: u8,
+    /// What the servos do; they rest in [`State::Resting`] alone.
+    stance: Stance,
     /// Whether servos that sleep are where a program before this one held them.
     resumed: bool,
-    pose: Pose,
     hazard: Option<Hazard>,
     frames: u32,
 }
@@ -105,11 +101,9 @@ impl<R: Robot> Motion<R> {
             next: None,
             speed: 100,
             slow: false,
-            sent: Pulses([Width(0); 4]),
             settling: false,
-            awake: 0,
+            stance: Stance::RESTING,
             resumed: false,
-            pose: Pose::NEUTRAL,
             hazard: None,
             frames: 0,
         }
@@ -117,6 +111,7 @@ impl<R: Robot> Motion<R> {
 
     /// Wakes the servos, to stand.
     pub fn begin(&mut self) {
+        self.stance.resting = false;
         self.state = State::cycling(&self.robot, GaitId::STAND);
     }
 
@@ -148,7 +143,7 @@ impl<R: Robot> Motion<R> {
         }
         // Before the first pulse there is nothing to go over from, unless a program
         // before this one left it.
-        self.settling = self.resumed || self.awake > 0;
+        self.settling = self.resumed || self.stance.awake > 0;
     }
 
     /// True where a servo would have to leave the travel of another calibration, where
@@ -163,7 +158,7 @@ impl<R: Robot> Motion<R> {
             Some(Target::Pose(pose)) => beyond(pose),
             _ => false,
         };
-        beyond(&self.pose) || moves_beyond || next_beyond
+        beyond(&self.stance.pose) || moves_beyond || next_beyond
     }
 
     /// Stands: the servos wake one after the other in the pose that the robot rested
@@ -174,7 +169,7 @@ impl<R: Robot> Motion<R> {
         if let Some(pose) = rested
             && self.may_hold(pose)
         {
-            self.pose = *pose;
+            self.stance.pose = *pose;
             self.state = State::Holding { asked: false };
             self.next = Some(Target::Gait(GaitId::STAND));
         }
@@ -187,7 +182,7 @@ impl<R: Robot> Motion<R> {
         if let Some(stance) = stance
             && self.may_hold(&stance.pose)
         {
-            self.pose = stance.pose;
+            self.stance.pose = stance.pose;
         }
     }
 
@@ -200,28 +195,22 @@ impl<R: Robot> Motion<R> {
         if !self.may_hold(&stance.pose) {
             return false;
         }
-        self.pose = stance.pose;
-        self.sent = stance.sent;
+        self.stance.pose = stance.pose;
+        self.stance.sent = stance.sent;
         self.resumed = true;
         self.freeze(State::Holding { asked: false });
         if stand {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
-            self.awake = stance.awake.min(AWAKE);
+            self.stance.awake = stance.awake.min(AWAKE);
         }
         self.settle();
         true
     }
 
     /// What the servos do, for the program after a reset.
-    pub fn stance(&self, brown_outs: u8) -> Stance {
-        Stance {
-            resting: self.is_resting(),
-            awake: self.awake,
-            brown_outs,
-            pose: self.pose,
-            sent: self.sent,
-        }
+    pub const fn stance(&self) -> &Stance {
+        &self.stance
     }
 
     fn may_hold(&self, pose: &Pose) -> bool {
@@ -280,8 +269,8 @@ impl<R: Robot> Motion<R> {
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        if self.awake < AWAKE {
-            self.awake += 1;
+        if self.stance.awake < AWAKE {
+            self.stance.awake += 1;
         } else if !self.settling {
             self.proceed();
         }
@@ -291,9 +280,9 @@ impl<R: Robot> Motion<R> {
         let mut wakes_at = WAKE_APART;
         for (place, pulse) in pulses.0.iter_mut().enumerate() {
             let servo = &self.calibration[place];
-            let sent = &mut self.sent.0[place];
-            let sleeps = self.awake < wakes_at;
-            let mut width = servo.width(self.pose.0[place]);
+            let sent = &mut self.stance.sent.0[place];
+            let sleeps = self.stance.awake < wakes_at;
+            let mut width = servo.width(self.stance.pose.0[place]);
             if self.settling {
                 let mut way = servo.slew(per_frame);
                 if sleeps && self.resumed {
@@ -338,7 +327,7 @@ impl<R: Robot> Motion<R> {
 
     /// The pose of the last frame.
     pub const fn pose(&self) -> &Pose {
-        &self.pose
+        &self.stance.pose
     }
 
     /// Whether there are no pulses.
@@ -348,7 +337,7 @@ impl<R: Robot> Motion<R> {
 
     /// The pulses of the last frame, of servos that sleep, too.
     pub const fn sent(&self) -> &Pulses {
-        &self.sent
+        &self.stance.sent
     }
 
     /// Speed of gaits in percent.
@@ -375,7 +364,8 @@ impl<R: Robot> Motion<R> {
     fn head_for(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
             self.state = State::Holding { asked: false };
-            self.awake = 0;
+            self.stance.resting = false;
+            self.stance.awake = 0;
             self.resumed = false;
             self.settling = false;
         }
@@ -383,6 +373,7 @@ impl<R: Robot> Motion<R> {
     }
 
     fn freeze(&mut self, state: State) {
+        self.stance.resting = matches!(state, State::Resting);
         self.state = state;
         self.next = None;
     }
@@ -424,7 +415,7 @@ impl<R: Robot> Motion<R> {
             self.hazard = Some(hazard);
             return;
         }
-        self.pose = pose;
+        self.stance.pose = pose;
         if let State::Moving { path, gait, .. } = &self.state
             && path.arrived()
         {
@@ -457,7 +448,7 @@ impl<R: Robot> Motion<R> {
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
         };
         self.state = State::Moving {
-            path: PointToPoint::new(&self.pose, &to, self.robot.slew()),
+            path: PointToPoint::new(&self.stance.pose, &to, self.robot.slew()),
             pace: pace::FULL,
             gait,
         };

@@ -6,6 +6,7 @@
 
 use crate::pose::{Pose, Pulses};
 use crate::text::Text;
+use crate::units::Width;
 
 /// What made the program begin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -45,9 +46,6 @@ pub struct Stance {
     /// Frames since pulses began, up to [`crate::motion::AWAKE`]; servos wake one
     /// after the other.
     pub awake: u8,
-    /// Restarts in a row that a weak supply may have made, up to
-    /// [`crate::supervisor::BROWN_OUTS`].
-    pub brown_outs: u8,
     /// The pose.
     pub pose: Pose,
     /// The pulses of the last frame, of servos that sleep, too. They may belong to a
@@ -65,9 +63,21 @@ pub struct Restart {
     /// Whether it may have been a weak supply: a brown-out, or a reset behind a boot
     /// loader that does not tell one from the other.
     pub may_be_supply: bool,
+    /// Restarts in a row before this one that a weak supply may have made.
+    pub brown_outs: u8,
     /// What the servos did until then, if that is known. Never after
     /// [`Cause::Power`].
     pub before: Option<Stance>,
+}
+
+impl Stance {
+    /// No pulses, and none before.
+    pub const RESTING: Self = Self {
+        resting: true,
+        awake: 0,
+        pose: Pose::NEUTRAL,
+        sent: Pulses([Width(0); 4]),
+    };
 }
 
 impl Restart {
@@ -76,6 +86,7 @@ impl Restart {
         cause: Cause::Power,
         count: 0,
         may_be_supply: false,
+        brown_outs: 0,
         before: None,
     };
 }

@@ -49,8 +49,9 @@ pub trait Board {
     /// ended the pulses, nothing may put it off, and main must not go on.
     fn feed(&mut self);
 
-    /// Keeps what the servos do where a reset of the processor cannot take it away.
-    fn keep(&mut self, stance: &Stance);
+    /// Keeps what the servos do, and how many restarts in a row a weak supply may have
+    /// made, where a reset of the processor cannot take it away.
+    fn keep(&mut self, stance: &Stance, brown_outs: u8);
 
     /// Why the program began, and what was kept until then.
     fn restart(&self) -> &Restart;
@@ -144,7 +145,7 @@ impl<R: Robot> Main<R> {
             if board.submit(self.control.frame(&health)) {
                 board.feed();
             }
-            board.keep(&self.control.stance());
+            board.keep(self.control.motion().stance(), self.control.brown_outs());
             board.set_led(self.control.is_lit());
             self.console.frame();
         } else if self.console.has_output(&self.control) {

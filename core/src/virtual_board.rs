@@ -129,7 +129,7 @@ impl VirtualBoard {
     #[must_use]
     pub fn restarted(self, restart: Restart) -> Self {
         if let Some(stance) = &restart.before {
-            self.ram.keep(stance);
+            self.ram.keep(stance, restart.brown_outs);
         }
         Self { restart, ..self }
     }
@@ -313,8 +313,8 @@ impl Board for VirtualBoard {
         self.unfed = 0;
     }
 
-    fn keep(&mut self, stance: &Stance) {
-        self.ram.keep(stance);
+    fn keep(&mut self, stance: &Stance, brown_outs: u8) {
+        self.ram.keep(stance, brown_outs);
     }
 
     fn restart(&self) -> &Restart {

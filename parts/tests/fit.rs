@@ -157,7 +157,13 @@ fn zz_work() {
         eprintln!("ROBOT {name}");
         let robot = Robot::parse(&format!("{}\n{extra}", text(name))).expect(name);
         let proof = Assembly::new(&robot).prove(|_, _| ());
-        eprintln!("{:?} regions {}", proof.judge().map_err(|e| e.to_string()), proof.regions);
-        if !extra.is_empty() { break; }
+        eprintln!(
+            "{:?} regions {}",
+            proof.judge().map_err(|e| e.to_string()),
+            proof.regions
+        );
+        if !extra.is_empty() {
+            break;
+        }
     }
 }

@@ -78,7 +78,9 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
 fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut known = HashMap::new();
     for name in names {
-        let written = name.bytes().map(|byte| if byte == b'-' { b' ' } else { byte });
+        let written = name
+            .bytes()
+            .map(|byte| if byte == b'-' { b' ' } else { byte });
         if let Some(other) = known.insert(key(written), *name) {
             return Err(Problem::SameKey(other.to_string()).at(section.path(name)));
         }

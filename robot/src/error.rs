@@ -224,7 +224,9 @@ pub enum Problem {
         most: usize,
     },
     /// A gait name whose number in the memory is that of another one.
-    #[error("is no gait name: the memory would take it for {0} when `boot` begins it, so one of them needs another name")]
+    #[error(
+        "is no gait name: the memory would take it for {0} when `boot` begins it, so one of them needs another name"
+    )]
     SameKey(String),
     /// A gait name that is a console command.
     #[error("is no gait name: \"{0}\" is a command of the console")]

@@ -305,7 +305,10 @@ mod tests {
                 let reach = firmware.reach(servo);
                 [reach.min.0, reach.max.0].map(i64::from)
             };
-            assert_eq!(of("REACH"), lizard_core::part::Servo::ALL.map(reach).concat());
+            assert_eq!(
+                of("REACH"),
+                lizard_core::part::Servo::ALL.map(reach).concat()
+            );
             let supplies = firmware.supplies();
             let board = supplies.board;
             assert_eq!(

@@ -64,8 +64,8 @@ pub fn restart(cpu: &CPU) -> Restart {
 }
 
 /// Keeps what the servos do.
-pub fn keep(stance: &Stance) {
-    kept::keep(&Ram, stance);
+pub fn keep(stance: &Stance, brown_outs: u8) {
+    kept::keep(&Ram, stance, brown_outs);
 }
 
 /// From the watchdog's interrupt: the program has hung.

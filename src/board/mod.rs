@@ -98,8 +98,8 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn keep(&mut self, stance: &Stance) {
-        kept::keep(stance);
+    fn keep(&mut self, stance: &Stance, brown_outs: u8) {
+        kept::keep(stance, brown_outs);
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::pose::{Pose, Pulses};
 use crate::units::{Sweep, Width};
 
 /// RAM that keeps what it holds, and a reset after so many stores.
@@ -87,7 +88,6 @@ fn stance(n: i16) -> Stance {
     Stance {
         resting: n % 3 == 0,
         awake: (n % 21) as u8,
-        brown_outs: (n % 4) as u8,
         pose: Pose([n, -n, 7 * n, -32_768 + n].map(Sweep)),
         sent: Pulses([24_000, 1 + n as u16, 65_535 - n as u16, 0].map(Width)),
     }
@@ -97,10 +97,12 @@ fn stance(n: i16) -> Stance {
 fn what_is_kept_is_there_after_a_reset_and_gone_after_a_loss_of_power() {
     let ram = Ram::powered();
     for n in 1..100 {
-        keep(&ram, &stance(n));
+        keep(&ram, &stance(n), n as u8);
         for flags in [EXTERNAL, BROWN_OUT, WATCHDOG, HIDDEN] {
             let again = ram.after_the_reset();
-            assert_eq!(begin(&again, flags).before, Some(stance(n)));
+            let restart = begin(&again, flags);
+            assert_eq!(restart.before, Some(stance(n)));
+            assert_eq!(restart.brown_outs, n as u8);
             // A second reset, before the program has kept anything.
             assert_eq!(begin(&again, flags).before, Some(stance(n)));
         }
@@ -113,20 +115,20 @@ fn what_is_kept_is_there_after_a_reset_and_gone_after_a_loss_of_power() {
 #[test]
 fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
     let ram = Ram::powered();
-    keep(&ram, &stance(1));
+    keep(&ram, &stance(1), 1);
     let mut seen = [0; 2];
     for n in 2..9 {
         let whole = ram.with_reset_after(usize::MAX);
-        keep(&whole, &stance(n));
+        keep(&whole, &stance(n), n as u8);
         for stores in 0..=whole.stores.get() {
             let torn = ram.with_reset_after(stores);
-            keep(&torn, &stance(n));
+            keep(&torn, &stance(n), n as u8);
             let found = begin(&torn.after_the_reset(), HIDDEN).before;
             let place = usize::from(found == Some(stance(n)));
             assert!(place == 1 || found == Some(stance(n - 1)), "{n} {stores}");
             seen[place] += 1;
         }
-        keep(&ram, &stance(n));
+        keep(&ram, &stance(n), n as u8);
     }
     assert!(seen[0] > 100 && seen[1] == 7, "{seen:?}");
 }
@@ -134,7 +136,7 @@ fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
 #[test]
 fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
     let ram = Ram::powered();
-    keep(&ram, &stance(5));
+    keep(&ram, &stance(5), 5);
     mark_hung(&ram);
     let whole = ram.with_reset_after(usize::MAX);
     begin(&whole, HIDDEN);
@@ -202,7 +204,7 @@ proptest! {
     #[test]
     fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY, n in 1i16..100) {
         let ram = Ram::powered();
-        keep(&ram, &stance(n));
+        keep(&ram, &stance(n), n as u8);
         let copy = COPIES + COPY * usize::from(ram.get(WHOLE) & 1);
         ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
         prop_assert_eq!(begin(&ram, HIDDEN).before, None);

@@ -4,6 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::sample::{GAITS, Sample};
+use crate::units::Width;
 use crate::units::{CYCLE, Sweep};
 
 mod any_order;
@@ -75,7 +76,7 @@ impl Motion<Sample> {
 
     /// The pulses of the pose that is held.
     fn held(&self) -> Pulses {
-        self.pose.pulses(&self.calibration)
+        self.stance.pose.pulses(&self.calibration)
     }
 }
 
@@ -188,7 +189,7 @@ fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
             assert!(motion.is_moving() && motion.next.is_some());
             assert_eq!(motion.pace(), pace);
             // Still on the line: every servo has the same share behind it.
-            let share = |n: usize| f64::from(motion.pose.0[n].0) / f64::from(FAR[n]);
+            let share = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
             assert!((share(0) - share(3)).abs() < 0.002);
         }
         motion.tick();

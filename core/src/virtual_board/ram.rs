@@ -53,8 +53,8 @@ impl Ram {
     }
 
     /// What the servos do is kept.
-    pub fn keep(&self, stance: &Stance) {
-        kept::keep(self, stance);
+    pub fn keep(&self, stance: &Stance, brown_outs: u8) {
+        kept::keep(self, stance, brown_outs);
     }
 
     /// The program has hung.

@@ -258,5 +258,4 @@ impl<'a> Guard<'a> {
         }
         None
     }
-
 }

@@ -163,7 +163,13 @@ impl<'a, const N: usize> Search<'a, N> {
     }
 
     fn found(self, proved: f64, doubt: Option<&Part<N>>) -> Found {
-        eprintln!("WORK {:?} {} {} {} heap", self.task.mounts, self.task.solids.len(), self.regions, self.bounded);
+        eprintln!(
+            "WORK {:?} {} {} {} heap",
+            self.task.mounts,
+            self.task.solids.len(),
+            self.regions,
+            self.bounded
+        );
         let by = match (&self.seen, doubt) {
             (None, Some(part)) => part.by,
             _ => self.by,

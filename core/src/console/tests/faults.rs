@@ -99,7 +99,6 @@ fn held(sweeps: [i16; 4]) -> Stance {
     Stance {
         resting: false,
         awake: crate::motion::AWAKE,
-        brown_outs: 0,
         pose,
         sent: pose.pulses(&Sample::odd().calibration()),
     }
@@ -109,8 +108,8 @@ fn hung(count: u8, stance: Stance) -> Restart {
     Restart {
         cause: Cause::Watchdog,
         count,
-        may_be_supply: false,
         before: Some(stance),
+        ..Restart::NONE
     }
 }
 
