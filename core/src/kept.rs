@@ -3,7 +3,7 @@
 //!
 //! RAM keeps its contents as long as there is power, and the boot loader of the UNO
 //! clears the register that says why the chip was reset, and passes it on nowhere.
-//! So these bytes tell the next program, by a mark and check sums, that power was not
+//! So these bytes tell the next program, by a mark and checksums, that power was not
 //! lost, whether the program hung, and what the servos were doing. Of random bytes one
 //! in 32 768 passes for a mark, and of these one in 256 for a stance.
 //!
@@ -95,7 +95,7 @@ pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
         restart.count = count.saturating_add(1);
         take(cells, &mut restart);
     } else {
-        // What RAM holds by chance is not to be believed after the next reset.
+        // RAM may hold anything that looks right; after the next reset it must not.
         cells.set(COPIES, NOTHING);
         cells.set(COPIES + COPY, NOTHING);
     }

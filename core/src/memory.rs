@@ -44,7 +44,7 @@ const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_3740);
 
 /// The address of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place(pub u16);
+pub struct Address(pub u16);
 
 /// What is at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ pub enum Progress {
 /// A record on its way into the memory, a byte at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Writing {
-    place: Place,
+    address: Address,
     /// The step: 0 takes the mark away, each of the next writes a byte, and the last
     /// one puts the mark back.
     step: u8,
@@ -81,7 +81,7 @@ pub struct Writing {
     written: bool,
 }
 
-impl Place {
+impl Address {
     /// Finds out what is there.
     #[inline(never)]
     pub fn check<M: Memory>(self, memory: &M) -> Found {
@@ -116,7 +116,7 @@ impl Place {
     /// Begins to write a record.
     pub const fn write(self) -> Writing {
         Writing {
-            place: self,
+            address: self,
             step: 0,
             last: LENGTH as u8,
             written: false,
@@ -150,13 +150,13 @@ impl Writing {
             let byte = content.get(usize::from(self.step - 1));
             (step, byte.copied().unwrap_or_else(crc))
         };
-        let address = self.place.0 + offset;
-        if memory.read(address) != byte {
+        let at = self.address.0 + offset;
+        if memory.read(at) != byte {
             if self.written {
                 return Progress::Failed;
             }
             self.written = true;
-            memory.write(address, byte);
+            memory.write(at, byte);
         } else if self.step == self.last {
             return Progress::Done;
         } else {
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
     use crate::virtual_board::Eeprom;
 
-    const PLACE: Place = Place(64);
+    const PLACE: Address = Address(64);
 
     fn content() -> impl Strategy<Value = Content> {
         any::<u64>().prop_map(|seed| {

@@ -11,16 +11,16 @@
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::memory::{CONTENT, Found, Memory, Place, Writing};
+use crate::memory::{Address, CONTENT, Found, Memory, Writing};
 use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::settings::{Settings, TURN};
 
 /// The two copies of the settings.
-pub const COPIES: [Place; 2] = [Place(0), Place(64)];
+pub const COPIES: [Address; 2] = [Address(0), Address(64)];
 
 /// The pose.
-pub const RESTED: Place = Place(128);
+pub const RESTED: Address = Address(128);
 
 /// What was found in the memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Copies {
         self.found[self.latest & 1] != Found::Whole
     }
 
-    fn place(&self) -> Place {
+    fn place(&self) -> Address {
         COPIES[self.latest & 1]
     }
 }

@@ -254,10 +254,10 @@ mod tests {
     #[test]
     fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
         let mut running = begun(0, "");
-        let mut twin = Motion::new(Sample::odd());
+        let mut alone = Motion::new(Sample::odd());
         for _ in 0..30 {
             running.frame();
-            assert_eq!(running.board.submitted(), twin.tick());
+            assert_eq!(running.board.submitted(), alone.tick());
         }
         running.board.lose(34);
         let status = running.say("status");

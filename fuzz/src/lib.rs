@@ -16,7 +16,7 @@ pub use board::Board;
 
 use std::sync::LazyLock;
 
-use lizard_core::memory::{CONTENT, Place, Progress};
+use lizard_core::memory::{Address, CONTENT, Progress};
 use lizard_core::record::{COPIES, RESTED};
 use lizard_core::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
@@ -95,7 +95,7 @@ pub fn memory(data: &[u8]) {
 }
 
 /// Writes a record as the core does.
-fn write(place: Place, content: &[u8; CONTENT], memory: &mut Eeprom) {
+fn write(place: Address, content: &[u8; CONTENT], memory: &mut Eeprom) {
     let mut writing = place.write();
     while writing.step(content, memory) == Progress::Going {}
 }

@@ -18,6 +18,7 @@ use simulated_uno::Fidelity;
 mod bad_input;
 mod calibration;
 mod console;
+mod core_run;
 mod costs;
 mod counters;
 mod every_cycle;
@@ -38,7 +39,6 @@ mod serial;
 mod slow_main;
 mod stopping;
 mod supply;
-mod twin;
 mod walk;
 mod watchdog;
 

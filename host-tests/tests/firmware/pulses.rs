@@ -1,7 +1,7 @@
 //! Pulses to the cycle, whatever the serial line does.
 
+use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME, Frame, servo_pins};
-use lizard_host::sim::twin;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Edge, Fidelity, Uno, most_pins_high};
 
@@ -44,7 +44,7 @@ pub fn commanded(
     frames: &[Frame],
 ) -> Vec<[u64; 4]> {
     let before = ((frames[0].start - first) / FRAME) as usize;
-    let commands = twin::play(
+    let commands = core_run::play(
         robot().firmware(),
         &bench.uno.received_by_uno()[..received],
         first,

@@ -3,6 +3,7 @@
 mod adc;
 mod bench;
 mod brown_out;
+mod core_run;
 mod disturbed;
 mod eeprom;
 mod instructions;
@@ -10,7 +11,6 @@ mod interrupts;
 mod power_cut;
 mod resets;
 mod serial;
-mod twin;
 mod watchdog;
 
 use simulated_uno::{Fidelity, Pin, ResetCause, Uno};

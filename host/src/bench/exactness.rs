@@ -5,8 +5,8 @@ use simulated_uno::most_pins_high;
 use lizard_robot::CoreRobot;
 
 use crate::board::{BoardError, SimulatedBoard};
+use crate::sim::core_run;
 use crate::sim::frame::{FRAME, frames, opens};
-use crate::sim::twin;
 
 /// How exact pulses were.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl Exactness {
         let count = (board.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&edges, pins, first, count);
         let received = &board.uno.received_by_uno()[..commands];
-        let asked = twin::play(robot, received, first, sent.len());
+        let asked = core_run::play(robot, received, first, sent.len());
         let known = banner.as_deref() == asked.written.lines().next();
 
         let mut error = [i64::MAX, i64::MIN];

@@ -37,6 +37,11 @@ pub struct Figures {
     /// The most cycles from the tick to the end of its computation while the
     /// serial line is saturated both ways, interrupts and answers included.
     pub tick_latency: u64,
+    /// The most cycles that an order takes in one step, settings of the servos and
+    /// those of robot.toml among them, interrupts left out.
+    pub order: u64,
+    /// The most cycles of a step of `load`.
+    pub load: u64,
     /// Mean cycles of the guard in a tick of the gait.
     pub guard: Option<f64>,
     /// Mean cycles of all that main does in a frame of the gait, tick included.
@@ -71,6 +76,26 @@ pub struct Figures {
 const TICK: &str = "Control::frame";
 /// The guard.
 const GUARD: &str = "Motion::hazard_of";
+/// The function that takes an order, and the one that does a step for the memory.
+const ORDER: &str = "Control::execute";
+const MEMORY: &str = "Control::write_memory";
+/// Settings that take long: every servo's travel ends where its pulses do.
+const SETTINGS: [&str; 14] = [
+    "trim 1 3.3",
+    "trim 2 3.3",
+    "trim 3 3.3",
+    "trim 4 3.3",
+    "scale 1 17.77",
+    "scale 2 17.77",
+    "scale 3 17.77",
+    "scale 4 17.77",
+    "dir 1 -",
+    "dir 1 +",
+    "limit 3 0 359",
+    "boot stand",
+    "center",
+    "factory",
+];
 /// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
 const SERVO_VECTORS: [u8; 2] = [11, 12];
 /// And those of USART_RX and USART_UDRE.
@@ -124,6 +149,9 @@ impl Figures {
         let guard = mean(&times(awake()?, GUARD, &[gait])?);
         progress("the control tick on a saturated line");
         let tick_latency = latency(awake()?, turn)?;
+        progress("settings");
+        let order = longest(awake()?, ORDER, gait, &SETTINGS)?;
+        let load = longest(awake()?, MEMORY, gait, &["save", "load"])?;
         progress("serial interrupts");
         let serial_interrupt = longest_serial(awake, turn)?;
         progress("ten minutes of a gait");
@@ -142,6 +170,8 @@ impl Figures {
             tick_mean: of_gait(mean(&tick)),
             tick_worst: every.iter().map(Call::own_cycles).max().unwrap_or(0),
             tick_latency,
+            order,
+            load,
             guard: of_gait(guard),
             main: of_gait((idle.awake - idle.in_handlers) as f64 / frames),
             servo_interrupts: idle.in_servos as f64 / frames,
@@ -276,6 +306,25 @@ fn times(
         calls.extend(board.time_calls(function, 3000)?);
     }
     Ok(calls)
+}
+
+/// The most cycles of a function while each line is obeyed in a gait. A line may be
+/// refused: that takes as long.
+fn longest(
+    mut board: SimulatedBoard,
+    function: &str,
+    gait: &str,
+    lines: &[&str],
+) -> Result<u64, BoardError> {
+    board.say(gait)?;
+    let mut most = 0;
+    for line in lines {
+        board.uno.send(line.as_bytes());
+        board.uno.send(b"\n");
+        let calls = board.time_calls(function, 400)?;
+        most = most.max(calls.iter().map(Call::own_cycles).max().unwrap_or(0));
+    }
+    Ok(most)
 }
 
 fn mean(calls: &[Call]) -> f64 {

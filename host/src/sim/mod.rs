@@ -2,6 +2,7 @@
 //! its servos get, and where that would take the robot.
 
 pub mod analysis;
+pub mod core_run;
 pub(crate) mod dialogue;
 pub mod footfall;
 pub mod frame;
@@ -16,7 +17,6 @@ pub mod spans;
 pub mod supplies;
 pub(crate) mod timeline;
 pub mod tour;
-pub mod twin;
 
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -208,7 +208,7 @@ fn record(
 /// that it was built from the same core and tables as this program.
 fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
-    let commands = twin::play(
+    let commands = core_run::play(
         robot.firmware(),
         &recording.received_by_uno,
         log.first,

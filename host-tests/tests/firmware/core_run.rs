@@ -1,8 +1,8 @@
 //! AVR against host: random commands for ten minutes, bit for bit.
 
 use fastrand::Rng;
+use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME, frames, opens, servo_pins};
-use lizard_host::sim::twin;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
@@ -104,7 +104,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         bench.uno.run_until_cycle(END);
         let count = (bench.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
-        let commands = twin::play(
+        let commands = core_run::play(
             robot().firmware(),
             &bench.uno.received_by_uno(),
             first,

@@ -1,9 +1,9 @@
 //! AVR against host: the same core, the same commands, the same bits.
 
+use lizard_host::sim::core_run;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::{Event, Recording, Sender, play};
-use lizard_host::sim::twin;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
 
@@ -69,19 +69,20 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let mut script = everything(apart);
         let (mut recording, mut lines) = run(&script, fidelity);
         let first = recording.frames.first;
-        let undecided: Vec<usize> = twin::undecided(&recording.received_by_uno, first).collect();
+        let undecided: Vec<usize> =
+            core_run::undecided(&recording.received_by_uno, first).collect();
         if !undecided.is_empty() {
             for &line in &undecided {
                 script.steps[line].ms += 1;
             }
             (recording, lines) = run(&script, fidelity);
-            let left = twin::undecided(&recording.received_by_uno, first).count();
+            let left = core_run::undecided(&recording.received_by_uno, first).count();
             assert_eq!(left, 0, "lines that end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
         assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
-        let commands = twin::play(
+        let commands = core_run::play(
             robot().firmware(),
             &recording.received_by_uno,
             log.first,

@@ -34,11 +34,11 @@ const READING_TAKES: u64 = 1_600;
 const WAKES: usize = 500;
 
 /// The firmware's main on such a board.
-struct Twin<R> {
+struct CoreRun<R> {
     running: Running<R>,
 }
 
-impl<R: Robot> Twin<R> {
+impl<R: Robot> CoreRun<R> {
     fn new(robot: R) -> Self {
         let supplies = robot.supplies();
         let mut board = VirtualBoard::default();
@@ -94,7 +94,7 @@ pub fn play<R: Robot + Copy>(
     count: usize,
 ) -> Commands {
     let silent = frames_before_waking(robot);
-    let mut twin = Twin::new(robot);
+    let mut run = CoreRun::new(robot);
     let mut received = received.iter().peekable();
     let mut widths = Vec::with_capacity(count);
     for frame in 0..silent + count {
@@ -102,27 +102,27 @@ pub fn play<R: Robot + Copy>(
         // A tick comes a slot before the first pulse of the frame it begins.
         let tick = start.saturating_sub(silent as u64 * FRAME + SLOT);
         loop {
-            let retry = twin.retry().filter(|retry| *retry < tick);
+            let retry = run.retry().filter(|retry| *retry < tick);
             let due = |byte: &&SerialByte| {
                 byte.cycle < tick && retry.is_none_or(|retry| byte.cycle < retry)
             };
             if let Some(byte) = received.next_if(due) {
-                twin.running.board.send(&[byte.byte]);
-                twin.wake(byte.cycle);
+                run.running.board.send(&[byte.byte]);
+                run.wake(byte.cycle);
             } else if let Some(retry) = retry {
-                twin.wake(retry);
+                run.wake(retry);
             } else {
                 break;
             }
         }
-        let pulses = twin.tick(tick);
+        let pulses = run.tick(tick);
         if frame >= silent {
             widths.push(pulses);
         }
     }
     Commands {
         widths,
-        written: twin.running.board.transmitter.text,
+        written: run.running.board.transmitter.text,
     }
 }
 
@@ -138,6 +138,6 @@ pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = us
 
 /// Frames before A1's first pulse, if no command comes.
 fn frames_before_waking<R: Robot>(robot: R) -> usize {
-    let mut twin = Twin::new(robot);
-    (0..WAKES).take_while(|_| twin.tick(0)[0] == 0).count()
+    let mut run = CoreRun::new(robot);
+    (0..WAKES).take_while(|_| run.tick(0)[0] == 0).count()
 }
