@@ -5,12 +5,29 @@
 //! core turns what was asked for into four pulse widths that a servo can follow
 //! and that no linkage of the robot can be broken by.
 //!
-//! Values move one way, each stage a plain value or struct that knows nothing
-//! of the next:
+//! Values move one way. Whoever speaks to the robot gives it orders; it computes a
+//! frame fifty times a second, and what it answers goes back the same way:
 //!
 //! ```text
-//! bytes -> Line -> Command -> Gait -> Clearance (guard) -> Pulses -> timer
+//!         Console                     Control                                Board
+//! bytes -> Line -> Command -> Order -> Motion (Gait, PointToPoint) -> guard -> Pulses -> timer
+//! lines <- print <- Answer <- Refusal <- Safety (supervisor's table) <- Health
 //! ```
+//!
+//! [`step::Main`] holds a [`console::Console`] and a [`control::Control`] and does one
+//! thing at a time. The console knows bytes and lines and gives orders; the control
+//! knows none of that, owns motion, settings and safety, and says why it refuses. What
+//! it does in which state at which event is one table, [`supervisor`].
+//!
+//! What counts, in this order, where two of these meet:
+//!
+//! 1. **Safe.** No frame leaves without the guard, no servo is woken beside another, a
+//!    fault ends in a robot that stands still and says why.
+//! 2. **Exact.** A pulse is right to the cycle, and a frame on the host is the chip's to
+//!    the bit.
+//! 3. **Plain.** A type for a thing, an enum for a choice, a sentence for a refusal.
+//! 4. **Small.** Flash and RAM are counted last; where a few bytes cost a type, the
+//!    type wins as long as the whole fits.
 //!
 //! Everything here is integer arithmetic and runs unchanged on the
 //! microcontroller and on the host, where the tests compare it with floating
