@@ -2,8 +2,7 @@
 //! each has a copy of every open file between `fork` and `exec`, and keeps nothing open.
 
 use std::process::Command;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
 use lizard_host_tests::avr_gcc;
@@ -26,39 +25,43 @@ const HELLO: &str = r#"
 /// Opens the port that is its argument, reads two bytes, closes it.
 const READER: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
+/// Openings, and at least as many other programs meanwhile.
+const LEAST: usize = 150;
+
+static STARTED: AtomicUsize = AtomicUsize::new(0);
+static OVER: AtomicBool = AtomicBool::new(false);
+
+fn start_others() {
+    while !OVER.load(Ordering::Relaxed) {
+        let ended = LIMIT.output(&mut Command::new("true"), b"");
+        assert!(ended.expect("it ends").status.success());
+        STARTED.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
 #[test]
 fn every_opening_by_another_program_resets_the_chip_once() {
-    const OPENINGS: usize = 60;
     let uno = Uno::with_image(avr_gcc::c(HELLO), Fidelity::DataSheet);
-    let over = Arc::new(AtomicBool::new(false));
-    let others = {
-        let over = Arc::clone(&over);
-        move || {
-            let mut started = 0;
-            while !over.load(Ordering::Relaxed) {
-                let ended = LIMIT.output(&mut Command::new("true"), b"");
-                assert!(ended.expect("it ends").status.success());
-                started += 1;
-            }
-            started
-        }
-    };
-    let others = thread::spawn(others);
+    let others = [(); 3].map(|()| thread::spawn(start_others));
     let port = Port::new().expect("a pseudo terminal");
     let board = port.in_background(uno, |_| {}).expect("a thread");
-    for n in 1..=OPENINGS {
+    let mut openings = 0;
+    while openings < LEAST || STARTED.load(Ordering::Relaxed) < LEAST {
+        let at_work = others.iter().all(|other| !other.is_finished());
+        assert!(at_work, "no more programs are started");
+        openings += 1;
         let mut reader = Command::new("bash");
         reader.args(["-c", READER]).arg(board.path());
         let said = LIMIT.output(&mut reader, b"").expect("the chip answers");
-        assert_eq!(String::from_utf8_lossy(&said.stdout), "<r", "opening {n}");
+        let said = String::from_utf8_lossy(&said.stdout);
+        assert_eq!(said, "<r", "opening {openings}");
     }
-    over.store(true, Ordering::Relaxed);
-    let started = LIMIT.within("the end of the other programs", || others.join());
-    assert!(
-        started.expect("they are well") > OPENINGS,
-        "not enough to disturb"
-    );
+    OVER.store(true, Ordering::Relaxed);
+    for other in others {
+        let ended = LIMIT.within("the end of the other programs", || other.join());
+        ended.expect("they are well");
+    }
     let uno = LIMIT.within("the end of the port's thread", || board.stop());
     let resets = uno.expect("the port was well").reset_events().len();
-    assert_eq!(resets, 1 + OPENINGS, "power-on and one for each opening");
+    assert_eq!(resets, 1 + openings, "power-on and one for each opening");
 }

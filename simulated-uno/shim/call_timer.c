@@ -33,7 +33,9 @@ void call_timer_look(struct call_timer *timer)
 		*call = (struct call){ timer->enter, avr->cycle, interrupted };
 		timer->inside = false;
 	} else if (!timer->inside && avr->pc == timer->entry) {
-		timer->back = (avr->data[sp + 1] << 8 | avr->data[sp + 2]) << 1;
+		/* The stack pointer may be anything, and wraps. */
+		uint8_t high = avr->data[(uint16_t)(sp + 1)], low = avr->data[(uint16_t)(sp + 2)];
+		timer->back = (high << 8 | low) << 1;
 		timer->stack_pointer = sp;
 		timer->enter = avr->cycle;
 		timer->handlers_before = handlers_cycles(timer->handlers);

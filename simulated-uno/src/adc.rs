@@ -15,6 +15,7 @@ impl Uno {
             (1000.0..=1200.0).contains(&mv),
             "a bandgap reference has 1000 to 1200 mV, not {mv}"
         );
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
     }
 
@@ -26,6 +27,8 @@ impl Uno {
     pub fn set_analog_mv(&mut self, pin: Pin, mv: u16) {
         let channel = pin.number().checked_sub(Pin::a(0).number());
         let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analogue pin"));
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim takes the channel
+        // modulo the eight that there are.
         unsafe { ffi::uno_set_analog(self.raw, channel, mv) }
     }
 }

@@ -12,7 +12,8 @@ impl Uno {
     pub fn with_boot_loader(loader: Image, fidelity: Fidelity) -> Self {
         let start = loader.code_start();
         let uno = Self::with_image(loader, fidelity);
-        // SAFETY: `raw` is valid as long as `uno`.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; `Image` has checked that its code,
+        // and so its start, is inside flash.
         unsafe { ffi::uno_boot_at(uno.raw, start) }
         uno
     }
@@ -20,8 +21,8 @@ impl Uno {
     /// All of flash, the boot loader included. What was never written is 0xff.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
-        // SAFETY: the chip has `FLASH_SIZE` bytes of flash, which live as long as
-        // `self` and do not change while it is borrowed.
+        // SAFETY: `raw` is valid, see `Uno`. The chip has `FLASH_SIZE` bytes of flash, which
+        // live as long as `self` and do not change while it is borrowed.
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
     }
 

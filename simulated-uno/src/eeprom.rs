@@ -57,14 +57,15 @@ impl Uno {
     /// old value.
     #[must_use]
     pub fn eeprom(&self) -> [u8; EEPROM_SIZE] {
-        // SAFETY: simavr's buffer has 1024 bytes, as long as the instance lives.
+        // SAFETY: `raw` is valid, see `Uno`. simavr's buffer has `EEPROM_SIZE` bytes as long as
+        // the instance lives, and bytes need no alignment.
         unsafe { *ffi::uno_eeprom(self.raw).cast() }
     }
 
     /// Sets the contents, at any time. A new board's are all 0xff. They survive
     /// every reset and power cycle.
     pub fn set_eeprom(&mut self, contents: &[u8; EEPROM_SIZE]) {
-        // SAFETY: as in `eeprom`.
+        // SAFETY: as in `eeprom`, and `self` is borrowed by nobody else.
         unsafe { *ffi::uno_eeprom(self.raw).cast() = *contents }
     }
 
@@ -101,6 +102,8 @@ impl Uno {
     /// happens, and tears nothing.
     pub fn cut_power(&mut self, when: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number until
+        // then.
         unsafe {
             match when {
                 PowerCut::AtCycle(cycle) => ffi::uno_cut_power_at(self.raw, cycle.max(1)),
@@ -116,12 +119,15 @@ impl Uno {
 
     /// Takes back a [`Uno::cut_power`] that has not happened yet.
     pub fn keep_power(&mut self) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim forgets what
+        // `cut_power` has set.
         unsafe { ffi::uno_keep_power(self.raw) }
     }
 
     /// `ones` of [`Uno::cut_power`] for power that fails otherwise: a supply below
     /// 1.8 V, or [`Uno::power_cycle`].
     pub fn set_torn_bits(&mut self, ones: u8) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_torn_ones(self.raw, ones) }
     }
 }

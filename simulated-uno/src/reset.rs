@@ -34,6 +34,8 @@ impl Uno {
     ///
     /// The chip's start-up delay (65 ms on an UNO) is not simulated.
     pub fn reset(&mut self) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim resets the chip at
+        // any moment between two runs, and this is one.
         unsafe { ffi::uno_reset(self.raw) }
         self.revive();
     }
@@ -42,6 +44,7 @@ impl Uno {
     /// the moment. Only the EEPROM survives; an operation under way in it is torn
     /// (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 hold noise.
     pub fn power_cycle(&mut self) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; as in `reset`.
         unsafe { ffi::uno_power_cycle(self.raw) }
         self.state = State::Alive;
     }
@@ -53,12 +56,15 @@ impl Uno {
     /// present start counts, too. Off unless set. In
     /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
     pub fn set_boot_loader(&mut self, on: bool) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a flag, and
+        // restarts a chip that has not begun.
         unsafe { ffi::uno_set_boot_loader(self.raw, on) }
     }
 
     /// Seeds the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0
     /// to r31. Each power-on continues the sequence.
     pub fn set_noise_seed(&mut self, seed: u64) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_noise(self.raw, seed) }
     }
 

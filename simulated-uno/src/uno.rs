@@ -42,6 +42,12 @@ pub enum State {
 }
 
 /// A simulated Arduino UNO with a firmware in its flash.
+///
+/// On what all `unsafe` here rests: `raw` comes from the shim's constructor and is freed
+/// in `drop` alone, and nothing outside this struct keeps a copy. So it is valid wherever
+/// there is a `self`; functions of the shim that take it as `const` only read and may be
+/// called with `&self`, since no other thread can have one ([`Uno`] is not `Sync`); those
+/// that change something are called with `&mut self`.
 pub struct Uno {
     pub(crate) raw: *mut RawUno,
     image: Image,
@@ -100,7 +106,7 @@ impl Uno {
     /// Cycles since power-on.
     #[must_use]
     pub fn cycle(&self) -> u64 {
-        // SAFETY: `raw` is valid as long as `self`; so in all that follows.
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_now(self.raw) }
     }
 
@@ -161,7 +167,8 @@ impl Uno {
     }
 
     fn run_to(&mut self, until: u64, stop_at_line: bool) -> bool {
-        // SAFETY: see `cycle`.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim stops at any cycle,
+        // and every value that it returns is one of `Stop`.
         let stop = unsafe {
             ffi::uno_stop_at_line(self.raw, stop_at_line);
             ffi::uno_run(self.raw, until)
@@ -172,10 +179,11 @@ impl Uno {
             ffi::Stop::Halted => self.state = State::Halted,
             ffi::Stop::Off => self.state = State::Off,
             ffi::Stop::Crashed => {
-                // SAFETY: a NUL-terminated buffer inside the instance.
+                // SAFETY: `raw` is valid, see `Uno`. The message is inside the instance and
+                // ends with a NUL, and nothing changes it while it is copied.
                 let message = unsafe { CStr::from_ptr(ffi::uno_message(self.raw)) };
                 self.state = State::Crashed {
-                    pc: unsafe { ffi::uno_pc(self.raw) },
+                    pc: self.pc(),
                     message: message.to_string_lossy().trim().to_owned(),
                 };
             }
@@ -186,7 +194,8 @@ impl Uno {
     /// Queues bytes for the serial line. They go out back to back, as fast as
     /// the baud rate allows, whether or not the firmware keeps up.
     pub fn send(&mut self, bytes: &[u8]) {
-        // SAFETY: the shim copies the bytes.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
+        // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
@@ -194,31 +203,44 @@ impl Uno {
     /// noise or a start bit missed: the byte arrives with a framing error, FE0 in
     /// UCSR0A. The next byte begins where it would without.
     pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
-        // SAFETY: the shim copies the bytes.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
+        // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
     }
 
     /// Saturates the serial line: repeats `bytes` without end once the queue is
     /// empty. An empty slice ends the flood.
     pub fn flood(&mut self, bytes: &[u8]) {
-        // SAFETY: the shim copies the bytes.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
+        // a slice that has them.
         unsafe { ffi::uno_flood(self.raw, bytes.as_ptr(), bytes.len()) }
     }
 
     /// Changes the sender's baud rate, from the next byte on.
+    ///
+    /// # Panics
+    /// Beyond 1 to 10 million.
     pub fn set_baud(&mut self, baud: f64) {
+        assert!(
+            (1.0..=1e7).contains(&baud),
+            "a sender has 1 to 10 million baud, not {baud}"
+        );
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; with such a rate a bit's cycles
+        // are a number that C can convert.
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
     /// Queued bytes that are not through the line yet.
     #[must_use]
     pub fn unsent(&self) -> usize {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_unsent(self.raw) }
     }
 
     /// Bytes the sender has put on the line so far, a flood's included.
     #[must_use]
     pub fn bytes_sent(&self) -> u64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_sent(self.raw) }
     }
 
@@ -226,6 +248,7 @@ impl Uno {
     /// [`Fidelity::Stock`].
     #[must_use]
     pub fn overruns(&self) -> u64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_overruns(self.raw) }
     }
 
@@ -275,6 +298,7 @@ impl Uno {
     /// Whether a pin (D2 to D13, A0 to A5) is high now.
     #[must_use]
     pub fn is_high(&self, pin: Pin) -> bool {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         let levels = unsafe { ffi::uno_levels(self.raw) };
         levels & (1 << pin.number()) != 0
     }
@@ -300,8 +324,11 @@ impl Uno {
     /// it looks at every instruction. Recursive calls count as part of the
     /// outermost.
     pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim compares `entry`
+        // with the program counter and never follows it.
         unsafe { ffi::uno_time_calls(self.raw, true, entry) };
         self.run_cycles(cycles);
+        // SAFETY: as above.
         unsafe { ffi::uno_time_calls(self.raw, false, 0) };
         let calls = self.list(ffi::uno_calls, |raw: &RawCall| Call {
             enter: raw.enter,
@@ -315,6 +342,7 @@ impl Uno {
     /// Cycles asleep since power-on.
     #[must_use]
     pub fn asleep_cycles(&self) -> u64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_asleep(self.raw) }
     }
 
@@ -327,6 +355,7 @@ impl Uno {
     /// Resets by the watchdog so far; [`Uno::reset_events`] has them all.
     #[must_use]
     pub fn resets(&self) -> u64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_resets(self.raw) }
     }
 
@@ -334,25 +363,33 @@ impl Uno {
     /// byte counts once it differs.
     #[must_use]
     pub fn stack_used(&self) -> u16 {
-        SRAM_END - unsafe { ffi::uno_stack_low(self.raw) }
+        SRAM_END - self.stack_low()
     }
 
     /// The fewest bytes ever left between the stack and static data.
     #[must_use]
     pub fn stack_spare(&self) -> u16 {
-        (unsafe { ffi::uno_stack_low(self.raw) }) - self.image.data_end()
+        self.stack_low() - self.image.data_end()
+    }
+
+    /// Lowest SRAM address that the stack has ever touched.
+    fn stack_low(&self) -> u16 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim looks through the chip's own SRAM.
+        unsafe { ffi::uno_stack_low(self.raw) }
     }
 
     /// Byte address in flash of the next instruction.
     #[must_use]
     pub fn pc(&self) -> u32 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_pc(self.raw) }
     }
 
     /// The byte at a data address (registers, I/O or SRAM), 0 beyond SRAM.
     #[must_use]
     pub fn peek(&self, address: u16) -> u8 {
-        // SAFETY: the shim's data space has `uno_data_size` bytes.
+        // SAFETY: `raw` is valid, see `Uno`. The data space has `uno_data_size` bytes as long
+        // as the instance lives, and nothing runs while they are borrowed.
         let data = unsafe {
             let size = ffi::uno_data_size(self.raw) as usize;
             std::slice::from_raw_parts(ffi::uno_data(self.raw), size)
@@ -363,7 +400,8 @@ impl Uno {
     /// The interrupts served so far, those that never came left out.
     #[must_use]
     pub fn interrupts(&self) -> Vec<VectorUse> {
-        // SAFETY: an array of VECTORS items inside the instance.
+        // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTORS` items inside the
+        // instance, and nothing runs while they are borrowed.
         let vectors =
             unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTORS) };
         let used = vectors
@@ -389,8 +427,9 @@ impl Uno {
         of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList,
         make: impl Fn(&Raw) -> Item,
     ) -> Vec<Item> {
-        // SAFETY: the callers pair each list with the type that the shim keeps
-        // in it; the list is only read, and not changed while borrowed.
+        // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
+        // the shim keeps in it, whose size is compared; `count` items of it are filled in,
+        // and nothing runs while they are borrowed.
         unsafe {
             let list = &*of(self.raw);
             assert_eq!(list.size, size_of::<Raw>());
@@ -403,7 +442,8 @@ impl Uno {
     }
 
     pub(crate) fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
-        // SAFETY: the shim allows its caller to set the count to 0.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
+        // the shim writes after its `count`, so that 0 empties it.
         unsafe { (*of(self.raw)).count = 0 }
     }
 }
@@ -417,7 +457,7 @@ fn serial_byte(raw: &RawByte) -> SerialByte {
 
 impl Drop for Uno {
     fn drop(&mut self) {
-        // SAFETY: made by `uno_new`, freed once.
+        // SAFETY: `raw` was made by `uno_new`, see `Uno`, and is freed this once.
         unsafe { ffi::uno_free(self.raw) }
     }
 }

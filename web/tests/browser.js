@@ -17,7 +17,25 @@ const TYPES = {
 /** Debian's; CHROMIUM names another. */
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 /** A machine may be busy: only what hangs is to fail by time. */
-const PATIENCE = 60_000;
+export const PATIENCE = 300_000;
+
+/** What a promise comes to; fails with what was waited for if it comes to nothing. */
+export function within(what, promise) {
+  let timer;
+  const late = new Promise((_, fail) => {
+    const sentence = `waited ${PATIENCE / 1000} s for ${what}`;
+    timer = setTimeout(() => fail(new Error(sentence)), PATIENCE);
+  });
+  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+}
+
+/** Playwright gives these no limit of their own. */
+function limit(object, name, methods) {
+  for (const method of methods) {
+    const unlimited = object[method].bind(object);
+    object[method] = (...values) => within(`${name}.${method} of the browser`, unlimited(...values));
+  }
+}
 
 /** What the page has complained of, in all pages. */
 export const complaints = [];
@@ -28,7 +46,7 @@ const pages = [];
 
 /** Closes the pages of a test, which would go on walking. */
 export async function tidy() {
-  await Promise.all(pages.splice(0).map((opened) => opened.close()));
+  await within('the pages to close', Promise.all(pages.splice(0).map((opened) => opened.close())));
 }
 
 export async function open() {
@@ -44,12 +62,12 @@ export async function open() {
       response.end();
     }
   });
-  await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
-  browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox'] });
+  await within('a web server', new Promise((ready) => server.listen(0, '127.0.0.1', ready)));
+  browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox'], timeout: PATIENCE });
 }
 
 export async function close() {
-  await browser?.close();
+  if (browser) await within('the browser to close', browser.close());
   server?.close();
 }
 
@@ -58,8 +76,12 @@ export async function close() {
  * the test says so.
  */
 export async function page(options = {}, before = undefined) {
-  const opened = await browser.newPage(options);
+  const opened = await within('a new page', browser.newPage(options));
   pages.push(opened);
+  limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
+  limit(opened.clock, 'clock', ['install', 'runFor']);
+  limit(opened.keyboard, 'keyboard', ['press']);
+  limit(opened.mouse, 'mouse', ['move', 'down', 'up']);
   opened.setDefaultTimeout(PATIENCE);
   opened.on('console', (message) => {
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());

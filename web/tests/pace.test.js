@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page, tidy } from './browser.js';
+import { close, complaints, open, page, tidy, within } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -34,10 +34,10 @@ async function walking() {
   await opened.clock.runFor(3000);
   await opened.locator('#gaits button[data-command="walk"]').click();
   await opened.clock.runFor(500);
-  const session = await opened.context().newCDPSession(opened);
-  await session.send('Performance.enable');
+  const session = await within('the page to be measured', opened.context().newCDPSession(opened));
+  await within('the page to be measured', session.send('Performance.enable'));
   const metrics = async () => {
-    const { metrics } = await session.send('Performance.getMetrics');
+    const { metrics } = await within('the CPU time of the page', session.send('Performance.getMetrics'));
     return 1000 * metrics.find(({ name }) => name === 'ThreadTime').value;
   };
   return { opened, metrics };

@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page, tidy } from './browser.js';
+import { PATIENCE, close, complaints, open, page, tidy } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -40,8 +40,12 @@ function simulated() {
     const files = ['--robot', ROBOT, '--elf', ELF, '--svg', join(folder, 'x.svg')];
     const said = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', script, ...files], {
       maxBuffer: 1 << 26,
+      timeout: PATIENCE,
     });
     return JSON.parse(said).frames.flatMap(({ angles }) => (angles ? [angles] : []));
+  } catch (error) {
+    if (error.code === 'ETIMEDOUT') throw new Error(`waited ${PATIENCE / 1000} s for the end of lizard sim`);
+    throw error;
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }
