@@ -134,6 +134,16 @@ mod tests {
         runs
     }
 
+    /// What docs/faults.md says of a pattern, so many frames after it began.
+    fn is_lit(fault: Option<Fault>, frame: usize) -> bool {
+        let Some(fault) = fault else {
+            return frame % 64 < 32;
+        };
+        let flashes = 16 * usize::from(fault.code());
+        let at = frame % (flashes + 48);
+        at < flashes && at % 16 < 8
+    }
+
     #[test]
     fn without_a_fault_it_beats_slowly() {
         let runs = runs(&mut Led::default(), None, 1000);
@@ -168,6 +178,25 @@ mod tests {
             }
             assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
             assert!(patterns.iter().all(|n| *n == place + 1), "{fault:?}");
+        }
+    }
+
+    /// Whatever the LED shows, and however far it has got with it: a long pattern may
+    /// have come farther than a short one that follows ever gets.
+    #[test]
+    fn any_pattern_begins_at_once_at_any_place_of_any_other_and_goes_on() {
+        let shown: Vec<Option<Fault>> = ALL.into_iter().map(Some).chain([None]).collect();
+        for before in &shown {
+            for after in shown.iter().filter(|after| *after != before) {
+                for frames in 1..300 {
+                    let mut led = Led::default();
+                    runs(&mut led, *before, frames);
+                    for frame in 0..400 {
+                        let lit = led.frame(*after);
+                        assert_eq!(lit, is_lit(*after, frame), "{before:?} {after:?} {frames}");
+                    }
+                }
+            }
         }
     }
 

@@ -92,10 +92,15 @@ pub fn robots() -> &'static [Named] {
 }
 
 /// What random numbers begin from: `PROPTEST_RNG_SEED`, or 1.
+///
+/// # Panics
+/// If that is no whole number.
 #[must_use]
 pub fn seed() -> u64 {
     let given = std::env::var("PROPTEST_RNG_SEED").ok();
-    given.and_then(|seed| seed.parse().ok()).unwrap_or(1)
+    given.map_or(1, |seed| {
+        seed.parse().expect("PROPTEST_RNG_SEED is a whole number")
+    })
 }
 
 /// Random numbers of their own for each `stream`, the same in every run with the

@@ -38,12 +38,14 @@ fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
         .collect();
     let moving = robot().gaits().iter().filter(|gait| gait.moves()).count();
     assert_eq!(cycles.len(), moving, "one for each gait");
+    let mut compared = 0;
     for (row, cycle) in cycles {
-        let part = |name: &str, ours: Option<f64>, wanted: Option<f64>, least: f64| {
+        let mut part = |name: &str, ours: Option<f64>, wanted: Option<f64>, least: f64| {
             let (Some(ours), Some(wanted)) = (ours, wanted) else {
                 assert_eq!(ours, wanted, "{} {name}", row.command);
                 return;
             };
+            compared += 1;
             let off = (ours - wanted).abs();
             assert!(
                 off <= least.max(0.03 * wanted.abs()),
@@ -59,8 +61,11 @@ fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
             row.command
         );
         let (name, margin) = row.margin.expect("every pose closes");
-        assert!(margin > 0.29, "{} {name} {margin}", row.command);
+        let limits = robot().limits();
+        let least = limits.type2.min(limits.type1).min(limits.leg);
+        assert!(margin > least - 0.01, "{} {name} {margin}", row.command);
     }
+    assert!(compared > 0, "every gait depends on a tie");
 }
 
 #[test]

@@ -214,7 +214,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig {
-            cases: 100_000, failure_persistence: None, ..ProptestConfig::default()
+            cases: 100_000, ..ProptestConfig::default()
         })]
 
         #[test]

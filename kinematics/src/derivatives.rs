@@ -270,7 +270,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig {
-            cases: 2048, failure_persistence: None, max_global_rejects: 100_000,
+            cases: 2048, max_global_rejects: 100_000,
             ..ProptestConfig::default()
         })]
 

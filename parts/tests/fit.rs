@@ -77,6 +77,7 @@ fn pins_meet_the_holes_of_what_they_hold() {
     for name in NAMES {
         let robot = Robot::parse(&text(name)).expect(name);
         let assembly = Assembly::new(&robot);
+        let mut met = 0;
         for pose in assembly.poses(5) {
             for screw in assembly.bodies() {
                 if !screw.name.starts_with("screw ") {
@@ -105,9 +106,11 @@ fn pins_meet_the_holes_of_what_they_hold() {
                         screw.name,
                         held.name
                     );
+                    met += 1;
                 }
             }
         }
+        assert!(met > 50, "{name}: {met} holes");
     }
 }
 

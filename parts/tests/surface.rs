@@ -8,6 +8,7 @@ fn every_printed_part_is_closed_and_has_its_volume() {
     for name in ["paper", "large", "unequal"] {
         let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let assembly = Assembly::new(&Robot::load(path).expect(name));
+        let mut printed = 0;
         for body in assembly.bodies().iter().chain(assembly.instead()) {
             if body.kind != Kind::Printed {
                 continue;
@@ -18,6 +19,8 @@ fn every_printed_part_is_closed_and_has_its_volume() {
             assert!(mesh.is_closed(), "{name}: the mesh of {}", body.name);
             let off = mesh.volume() / solid.volume - 1.0;
             assert!(off.abs() < 0.004, "{name}: {} {off}", body.name);
+            printed += 1;
         }
+        assert!(printed > 10, "{name}: {printed} printed parts");
     }
 }

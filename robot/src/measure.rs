@@ -383,6 +383,40 @@ mod tests {
     }
 
     #[test]
+    fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
+        for name in ["A1", "A2", "A3", "A4"] {
+            let text = crate::testing::text("unequal");
+            let begin = text.find(&format!("[servo.{name}]")).expect(name);
+            let line = |key: &str| {
+                let from = begin + text[begin..].find(key).expect(key);
+                let to = from + text[from..].find('\n').expect("a line's end");
+                from..to
+            };
+            let us = |key: &str| -> f64 {
+                let line = &text[line(key)];
+                let value = line.split(" = ").nth(1).expect("a value");
+                value.parse().expect("a number")
+            };
+            for (neutral, refused) in [
+                (us("min_us") - 0.1, "min_us"),
+                (us("min_us"), "min_us"),
+                (us("max_us"), "neutral_us"),
+                (us("max_us") + 0.1, "neutral_us"),
+            ] {
+                let mut changed = text.clone();
+                changed.replace_range(line("neutral_us"), &format!("neutral_us = {neutral}"));
+                let error = crate::Robot::parse(&changed)
+                    .expect_err("outside")
+                    .to_string();
+                assert!(
+                    error.contains(&format!("servo.{name}.{refused}")),
+                    "{error}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn a_stroke_leaves_the_shorter_slider_a_length() {
         for slider in [["l12 = 53.0", "l13 = 51.0"], ["l17 = 54.0", "l18 = 57.0"]] {
             let changes = [

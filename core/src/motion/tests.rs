@@ -9,6 +9,7 @@ use crate::units::{CYCLE, Sweep};
 
 mod any_order;
 mod guarded;
+mod settling;
 mod waking;
 
 /// Frames until all servos are awake.

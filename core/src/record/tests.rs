@@ -214,6 +214,21 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
 }
 
 #[test]
+fn every_bit_of_the_servos_hash_tells_other_servos() {
+    let robot = robot();
+    let mut chip = Chip::blank();
+    save_all(&settings(&robot, 1), &mut chip);
+    for bit in 0..32 {
+        let other = Sample {
+            servo_hash: robot.servo_hash ^ 1 << bit,
+            ..robot.clone()
+        };
+        assert_eq!(loaded(&other, &chip).1, Outcome::Foreign, "bit {bit}");
+    }
+    assert_eq!(loaded(&robot, &chip).1, Outcome::Latest);
+}
+
+#[test]
 fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     let robot = robot();
     let mut chip = Eeprom::blank();

@@ -172,16 +172,28 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
             continue;
         }
         let (name, said) = told(&answer);
-        let Ok(solution) = robot().lizard().solve(&Pose::from(angles)) else {
-            // A loop that does not close has no value to tell.
-            let is_type2 = name.starts_with("4 type-2");
-            assert!(is_type2, "{angles:?}: {answer}");
-            assert!(
-                said.is_none_or(|said| said.abs() < 0.1),
-                "{angles:?}: {answer}"
-            );
-            unknown += 1;
-            continue;
+        let solution = match robot().lizard().solve(&Pose::from(angles)) {
+            Ok(solution) => solution,
+            Err(open) => {
+                // A loop that does not close has no value to tell. The head is looked at
+                // before the tail, and may have one.
+                let head = robot().lizard().end(kinematics::End::Head);
+                let head = head.forward(angles[0], angles[1]);
+                match head {
+                    Ok(pose) if name.ends_with("head") && said.is_some() => {
+                        let most = margin_error(pose.type2.max(0.05)) + 0.0005;
+                        let off = said.expect("a number").abs() - pose.type2;
+                        assert!(off.abs() <= most, "{angles:?}: {answer}, {open}");
+                    }
+                    _ => {
+                        assert!(name.starts_with("4 type-2"), "{angles:?}: {answer}");
+                        let is_small = said.is_none_or(|said| said.abs() < 0.1);
+                        assert!(is_small, "{angles:?}: {answer}, {open}");
+                    }
+                }
+                unknown += 1;
+                continue;
+            }
         };
         let (float, most) = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
         match said {

@@ -112,6 +112,35 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 }
 
 #[test]
+fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
+    // The receiver has room for two bytes and one on its way; the answer tells the number
+    // that is left of four digits.
+    let byte = 1_400;
+    let mut bench = awake(Fidelity::DataSheet);
+    let mut lost_before = 0.0;
+    for n in 0..40u64 {
+        let overruns = bench.uno.overruns();
+        bench.uno.send(b"watch ");
+        bench.run_ms(2);
+        bench.uno.send(b"1234");
+        bench.uno.run_cycles(byte / 2 + n * 37);
+        bench.uno.hold(4 * byte);
+        bench.run_ms(3);
+        let answer = bench.say("");
+        let digits = answer.strip_prefix("ok watch ").expect(&answer);
+        assert!(digits.len() < 4 && !digits.is_empty(), "{n}: {answer}");
+        let mut sent = b"1234".iter();
+        let in_order = digits.bytes().all(|digit| sent.any(|sent| *sent == digit));
+        assert!(in_order, "{n}: {answer}");
+        assert!(bench.uno.overruns() > overruns, "{n}: nothing was lost");
+        let lost = Status::of(&mut bench).number("rx_lost");
+        assert!(lost > lost_before, "{n}: it is counted");
+        lost_before = lost;
+        bench.say("watch 0");
+    }
+}
+
+#[test]
 fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
     let mut rng = Rng::with_seed(11);
     let mut bench = awake(Fidelity::DataSheet);

@@ -198,6 +198,20 @@ fn every_cause_of_a_reset_is_told_right_and_resets_are_counted() {
 }
 
 #[test]
+fn resets_are_counted_up_to_255_and_no_farther() {
+    let mut bench = begun(true);
+    for reset in 1..=260u32 {
+        bench.uno.reset();
+        bench.run_ms(5);
+        if reset >= 253 {
+            bench.run_ms(700);
+            let told = Status::of(&mut bench).number("resets");
+            assert_eq!(told, f64::from(reset.min(255)), "{reset} resets");
+        }
+    }
+}
+
+#[test]
 fn power_on_is_known_from_any_noise_in_the_memory() {
     let mut bench = begun(true);
     for seed in 0..300 {

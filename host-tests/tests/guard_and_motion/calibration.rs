@@ -26,6 +26,7 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
                 "{name}: A{}",
                 n + 1
             );
+            let mut checked = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
                 let meant =
                     16.0 * (servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS);
@@ -34,7 +35,14 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
                 }
                 let off = f64::from(core.width(Sweep(sweep)).0) - meant;
                 assert!(off.abs() <= 2.0, "{name}: A{} is {off} cycles off", n + 1);
+                checked += 1;
             }
+            // Half the turn at least has pulses.
+            assert!(
+                checked > 65_536 / 17 / 2,
+                "{name}: A{}: {checked} pulses",
+                n + 1
+            );
         }
     }
 }

@@ -313,14 +313,17 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
     const FRAMES: u32 = 1000;
     let mut rng = rng(8000);
     let mut worst = 0.0f64;
+    let (mut walked, mut barred) = (0, 0);
     for named in robots() {
         for float in named.robot.gaits().iter().skip(1) {
             let mut walker = Walker::standing(named);
             walker.does(&words(float));
             walker.run(long_enough(&named.robot));
             if walker.motion().hazard().is_some() {
-                continue; // the way to its first pose is barred
+                barred += 1; // the way to its first pose
+                continue;
             }
+            walked += 1;
             for percent in [10, 100, rng.u8(11..100)] {
                 walker.does(&format!("speed {percent}"));
                 walker.run(10);
@@ -347,6 +350,10 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
         }
     }
     println!("pace is off by at most {:.2} %", 100.0 * worst);
+    assert!(
+        walked > 10 * barred,
+        "{walked} gaits walked, {barred} barred"
+    );
 }
 
 #[test]
@@ -375,6 +382,7 @@ fn a_gait_asked_for_again_just_goes_on() {
 
 #[test]
 fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
+    let (mut walked, mut barred) = (0, 0);
     for named in robots() {
         for (gait, id) in named
             .robot
@@ -388,8 +396,10 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             let table = firmware.gait(id);
             walker.run(long_enough(&named.robot));
             if walker.motion().hazard().is_some() {
-                continue; // the way to its first pose is barred
+                barred += 1; // the way to its first pose
+                continue;
             }
+            walked += 1;
             for _ in 0..100 {
                 walker.run(1);
                 let phase = walker.motion().phase();
@@ -402,6 +412,10 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             }
         }
     }
+    assert!(
+        walked > 10 * barred,
+        "{walked} gaits walked, {barred} barred"
+    );
 }
 
 #[test]

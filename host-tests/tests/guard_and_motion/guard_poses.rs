@@ -228,6 +228,7 @@ fn straddling(robot: &Robot, far: Pose) -> [Pose; 2] {
 
 #[test]
 fn a_reason_carries_the_value_that_broke_the_limit() {
+    let mut reasons = [0; 2];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         for pose in poses(&mut rng(300 + n as u64), robot).take(2000) {
             let core = Clearance::of(robot.firmware(), &pose);
@@ -236,22 +237,27 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
                 Some(Hazard::Margin { margin, value }) => {
                     let place = MARGINS.iter().position(|known| *known == margin);
                     assert_eq!(value, core.margins[place.expect("one of ten")], "{name}");
+                    reasons[0] += 1;
                 }
                 Some(Hazard::Stroke { side, length }) => {
                     assert_eq!(length, root(core.sliders_sq[side as usize]), "{name}");
+                    reasons[1] += 1;
                 }
             }
         }
     }
+    assert!(reasons.iter().all(|count| *count > 100), "{reasons:?}");
 }
 
 #[test]
 fn the_smallest_margin_is_the_one_of_kinematics() {
     for (n, Named { name, robot }) in robots().iter().enumerate() {
+        let mut safe = 0;
         for pose in poses(&mut rng(400 + n as u64), robot).take(10_000) {
             if !is_safe(robot.firmware(), &pose) {
                 continue;
             }
+            safe += 1;
             let at = angles(robot.firmware(), &pose);
             let truth = Truth::of(robot, at).expect("a safe pose");
             let least = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
@@ -259,6 +265,7 @@ fn the_smallest_margin_is_the_one_of_kinematics() {
             let most = truth.bands[..10].iter().copied().fold(0.0, f64::max);
             assert!(off.abs() <= most, "{name}: {pose:?} is {off} off");
         }
+        assert!(safe > 10, "{name}: {safe} safe poses");
     }
 }
 

@@ -110,6 +110,7 @@ fn a_command_that_is_refused_changes_nothing() {
 fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(4000 + n as u64);
+        let mut arrived = 0;
         for _ in 0..DIALOGUES {
             let goal = safe_pose(&mut rng, named.robot.firmware());
             let mut walker = Walker::standing(named);
@@ -129,6 +130,7 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
             }
             let end = poses[poses.len() - 1];
             assert!(end.farthest(&goal) <= 1, "{}", named.name);
+            arrived += 1;
             let longest = f64::from(Pose::NEUTRAL.farthest(&end));
             for pose in &poses {
                 let share = 1.0 - f64::from(pose.farthest(&end)) / longest;
@@ -138,6 +140,7 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
                 }
             }
         }
+        assert!(arrived > 0, "{}: no move arrived", named.name);
     }
 }
 

@@ -147,6 +147,7 @@ fn lies_ahead(
 
 #[test]
 fn a_gait_that_is_under_way_never_meets_the_guard() {
+    let (mut walked, mut barred) = (0, 0);
     for named in robots() {
         for gait in named.robot.gaits() {
             let mut walker = Walker::standing(named);
@@ -155,8 +156,10 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
             walker.run(long_enough(&named.robot));
             if walker.motion().hazard().is_some() {
                 println!("{}: the way to {} is barred", named.name, gait.name());
+                barred += 1;
                 continue;
             }
+            walked += 1;
             walker.run((2.0 * gait.period() * 50.0) as u32);
             let hazard = walker.motion().hazard();
             assert!(
@@ -167,4 +170,8 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
             );
         }
     }
+    assert!(
+        walked > 10 * barred,
+        "{walked} gaits walked, {barred} barred"
+    );
 }

@@ -59,7 +59,7 @@ fn finite(pose: &FiveBarPose) -> bool {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 20_000, failure_persistence: None, ..ProptestConfig::default()
+        cases: 20_000, ..ProptestConfig::default()
     })]
 
     #[test]

@@ -50,7 +50,7 @@ fn poses() -> impl Strategy<Value = Vec<[f64; 4]>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1024, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1024, ..ProptestConfig::default() })]
 
     #[test]
     fn a_pose_in_a_lane_has_the_bits_of_the_pose_alone(robot in any_lizard(), poses in poses()) {

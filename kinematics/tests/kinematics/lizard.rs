@@ -28,7 +28,7 @@ fn at_the_neutral_pose_the_sliders_are_at_nominal_and_the_head_at_57_840() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, max_global_rejects: 100_000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4096, max_global_rejects: 100_000, ..ProptestConfig::default() })]
 
     #[test]
     fn all_four_loops_close_in_the_chassis_frame(robot in any_lizard(), pose in any_pose()) {

@@ -26,7 +26,7 @@ fn the_papers_head_has_the_workspace_that_was_measured() {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 64, failure_persistence: None, ..ProptestConfig::default()
+        cases: 64, ..ProptestConfig::default()
     })]
 
     #[test]

@@ -259,3 +259,106 @@ impl<'a> Guard<'a> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the firmware's integers may decide otherwise by, a sine and mm: docs/firmware.md.
+    const BAND: f64 = 0.002;
+    const STEPS: f64 = 4.0 / 256.0;
+
+    /// A robot of `robots/`, and the paper's with no limit in the way of the type-2 one.
+    fn robot(name: &str) -> Robot {
+        let file = name.trim_end_matches(" at its type-2 limit");
+        let path = format!("{}/../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut text = std::fs::read_to_string(&path).expect(&path);
+        if file != name {
+            for (from, to) in [
+                ("type1 = 0.3 ", "type1 = 0.0 "),
+                ("leg = 0.3 ", "leg = 0.0 "),
+                ("stroke_min = -15.0", "stroke_min = -80.0"),
+                ("stroke_max = 45.0", "stroke_max = 150.0"),
+            ] {
+                assert!(text.contains(from), "{file} has no {from}");
+                text = text.replacen(from, to, 1);
+            }
+        }
+        Robot::parse(&text).expect(name)
+    }
+
+    /// The robot's limits, laxer by what the integers may be off by.
+    fn lax(robot: &Robot) -> Limits {
+        let limits = robot.limits();
+        Limits {
+            type2: limits.type2 - BAND,
+            type1: limits.type1 - BAND,
+            leg: limits.leg - BAND,
+            stroke_min: limits.stroke_min - STEPS,
+            stroke_max: limits.stroke_max + STEPS,
+        }
+    }
+
+    #[test]
+    fn no_pose_that_the_firmware_may_accept_is_left_out_at_any_limit() {
+        const ALL: [usize; 4] = [0, 1, 2, 3];
+        let mut seen: Vec<Check> = Vec::new();
+        for name in ["paper", "unequal", "paper at its type-2 limit"] {
+            let robot = robot(name);
+            let guard = Guard::new(&robot);
+            let lax = lax(&robot);
+            let neutral = robot.servos().each_ref().map(|servo| servo.neutral);
+            let broken = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
+                Ok(solution) => lax.violations(&solution).map(|of| Some(of.what)).next(),
+                Err(_) => Some(None),
+            };
+            // To either side with each servo, each pair and all of them.
+            for ways in 0..81 {
+                let way = [1, 3, 9, 27].map(|part| f64::from(ways / part % 3) - 1.0);
+                for share in [
+                    [1.0, 1.0, 1.0, 1.0],
+                    [1.0, 0.4, 0.7, 0.2],
+                    [0.2, 0.7, 0.4, 1.0],
+                ] {
+                    let at =
+                        |by: f64| ALL.map(|servo| neutral[servo] + by * way[servo] * share[servo]);
+                    let (mut safe, mut not) = (0.0, 90.0);
+                    if broken(at(not)).is_none() {
+                        continue;
+                    }
+                    while not - safe > 1e-6 {
+                        let middle = (safe + not) / 2.0;
+                        if broken(at(middle)).is_none() {
+                            safe = middle;
+                        } else {
+                            not = middle;
+                        }
+                    }
+                    let region = Region {
+                        middle: at(safe),
+                        half: [1e-7; 4],
+                    };
+                    assert!(!guard.refuses(&ALL, &region), "{name}: {:?}", at(safe));
+                    seen.extend(broken(at(not)).flatten());
+                }
+            }
+        }
+        let kinds: [(&str, fn(&Check) -> bool); 4] = [
+            ("type-2", |what| {
+                matches!(what, Check::Type2Head | Check::Type2Tail)
+            }),
+            ("type-1", |what| {
+                matches!(
+                    what,
+                    Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4
+                )
+            }),
+            ("leg", |what| Check::LEG.contains(what)),
+            ("stroke", |what| Check::STROKE.contains(what)),
+        ];
+        for (kind, is) in kinds {
+            let count = seen.iter().filter(|what| is(what)).count();
+            assert!(count > 0, "no pose at the limit of a {kind}");
+        }
+    }
+}

@@ -11,6 +11,8 @@ pub struct Mutant {
     pub test: Option<String>,
     /// A test file that compiles the mistaken file on its own.
     pub compiled_by: Option<String>,
+    /// The package whose own tests are to notice, of code that runs on the host, too.
+    pub package: Option<String>,
     /// Line of the list at which the entry begins.
     pub line: usize,
     old: String,
@@ -69,6 +71,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
                 "file" => mutant.file = value.into(),
                 "wrong" => mutant.wrong = value.into(),
                 "test" => mutant.test = Some(value.into()),
+                "package" => mutant.package = Some(value.into()),
                 "compiled-by" => mutant.compiled_by = Some(value.into()),
                 _ => return Err(format!("line {line_number}: what is {key:?}?")),
             }

@@ -1,9 +1,10 @@
 //! `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
 //! tree, one at a time, and says which of them no test notices.
 //!
-//! Only the code of the board is in that list: it runs nowhere but in the firmware,
-//! so no tool for host crates reaches it. The tests are built once, from the tree as
-//! it is, and given each mistaken firmware by LIZARD_ELF.
+//! Most of that list is code of the board: it runs nowhere but in the firmware, so no
+//! tool for host crates reaches it. The tests are built once, from the tree as it is, and
+//! given each mistaken firmware by LIZARD_ELF. An entry that names a package is for that
+//! package's own tests.
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
 //! sentence that says what is wrong; an entry that has one of them is tried. None: all.
@@ -57,7 +58,10 @@ fn run(parts: &[String]) -> Result<usize, String> {
     };
     let list: Vec<&Mutant> = list.iter().filter(wanted).collect();
     let scratch = Scratch::copy()?;
-    if !tests(&scratch.firmware()?, "")?.is_none_or(|failed| failed.is_empty()) {
+    let is_of_board = |mutant: &&&Mutant| mutant.package.is_none();
+    if list.iter().find(is_of_board).is_some()
+        && !tests(&scratch.firmware()?, "")?.is_none_or(|failed| failed.is_empty())
+    {
         return Err("a test fails without any mistake".into());
     }
     let mut lives = Vec::new();
@@ -146,9 +150,10 @@ impl Scratch {
     fn judge(&self, mutant: &Mutant) -> Result<Fate, String> {
         let right = text(&root().join(&mutant.file))?;
         self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
-        let fate = match &mutant.compiled_by {
-            Some(test) => self.alone(test),
-            None => self.in_the_firmware(mutant),
+        let fate = match (&mutant.compiled_by, &mutant.package) {
+            (Some(test), _) => self.alone(test),
+            (None, Some(package)) => self.in_its_package(package, mutant),
+            (None, None) => self.in_the_firmware(mutant),
         };
         self.write(&mutant.file, right.as_bytes())?;
         fate.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.wrong))
@@ -162,6 +167,32 @@ impl Scratch {
                 None => return Ok(Fate::Caught("tests that hang".into())),
                 Some(failed) if !failed.is_empty() => return Ok(Fate::Caught(failed.join(", "))),
                 Some(_) => {}
+            }
+        }
+        Ok(Fate::Lives)
+    }
+
+    /// Runs the tests of a package of the copy: those that are to notice, then all.
+    fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Fate, String> {
+        for filter in mutant.test.as_deref().into_iter().chain([""]) {
+            let run = Command::new("cargo")
+                .args(["test", "--no-fail-fast", "-p", package, "--", filter])
+                .current_dir(self.folder.join("tree/host"))
+                .env("CARGO_TARGET_DIR", self.folder.join("host"))
+                .env("PROPTEST_RNG_SEED", "1")
+                .env("RUST_BACKTRACE", "0")
+                .stderr(Stdio::null())
+                .output()
+                .map_err(|error| format!("cargo: {error}"))?;
+            let said = String::from_utf8_lossy(&run.stdout);
+            if !said.lines().any(|line| line.starts_with("test ")) {
+                return Err(format!(
+                    "no test of {package} has {filter:?} in its name, or it does not build"
+                ));
+            }
+            let failed = failures(&said);
+            if !failed.is_empty() {
+                return Ok(Fate::Caught(failed.join(", ")));
             }
         }
         Ok(Fate::Lives)
