@@ -280,8 +280,17 @@ impl Record {
                     "err" => Some(false),
                     _ => None,
                 });
-                (heard, done)
+                (heard, done.or_else(|| self.is_confirmed(heard)))
             })
+    }
+
+    /// `Some(true)` if the `ok` to a line that nobody waited for came soon.
+    fn is_confirmed(&self, heard: &Heard) -> Option<bool> {
+        let soon = heard.cycle..heard.cycle + 300 * MS;
+        let ok = format!("ok {}", heard.text);
+        let mut lines = self.lines.iter();
+        let said = lines.any(|line| soon.contains(&line.cycle) && line.text == ok);
+        said.then_some(true)
     }
 
     /// Whether an order that may have been done came in `start..end`.

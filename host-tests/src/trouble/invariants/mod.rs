@@ -140,7 +140,7 @@ pub const INVARIANTS: [(&str, Holds); 26] = [
         pulses::no_leap,
     ),
     (
-        "no pulse after a stall is farther from the one before than the slew limit",
+        "no pulse after a stall is farther from the one before than three frames at the slew limit",
         pulses::no_leap_after_a_stall,
     ),
     (

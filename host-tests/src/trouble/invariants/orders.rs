@@ -95,7 +95,10 @@ pub fn rest_ends_pulses(record: &Record, _: &Rules) -> Result<(), String> {
     for (exchange, at) in answers(record) {
         let end = at + 140 * MS;
         let rests = exchange.line == "rest" && exchange.is_done();
+        // A main that is stalled computes no frame.
         if rests
+            && !record.is_disturbed(exchange.asked, end)
+            && !record.lost_power(at, end)
             && !record.was_ordered(at, end)
             && record.has_pulses(at + A_FRAME, end.min(record.end))
         {

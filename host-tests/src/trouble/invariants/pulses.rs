@@ -53,7 +53,13 @@ fn leaps(record: &Record, rules: &Rules, between: Between) -> Result<(), String>
             .collect();
         for pair in whole.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
-            let frames = if between == Between::Reset { 2 } else { 1 };
+            // A frame that main was late for may be replaced before it is played, and the
+            // next, too; one that was computed before a reset may never be played.
+            let frames = match between {
+                Between::Stall => 3,
+                Between::Reset => 2,
+                _ => 1,
+            };
             if leap > frames * rules.way[servo] && what_came(record, rules, pair) == between {
                 let ms = pair[1].start as f64 / MS as f64;
                 return Err(format!(
