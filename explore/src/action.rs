@@ -97,8 +97,8 @@ impl fmt::Display for Action {
             Self::Supply(mv) => write!(f, "the supply is at {mv} mV"),
             Self::Weak(true) => f.write_str("the supply becomes too weak for three servos"),
             Self::Weak(false) => f.write_str("the supply bears four servos again"),
-            Self::Late => f.write_str("an edge comes late"),
-            Self::Stack => f.write_str("the stack reaches the data"),
+            Self::Late => f.write_str("a frame in which an edge comes late"),
+            Self::Stack => f.write_str("a frame in which the stack reaches the data"),
             Self::Reset(cause) => write!(f, "reset: {cause:?}"),
             Self::LosePower(None) => f.write_str("power is lost and comes back"),
             Self::LosePower(Some(byte)) => {

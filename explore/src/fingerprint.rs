@@ -19,9 +19,9 @@ enum Rule {
 use Rule::{Coarse, Skip};
 
 /// Fields, by the name of what they are in.
-const RULES: [(&str, &str, Rule); 23] = [
+const RULES: [(&str, &str, Rule); 26] = [
     ("Main", "ticks", Skip),
-    ("Motion", "frames", Skip),
+    ("Motion", "frames", Coarse(countdown)),
     ("Led", "frames", Skip),
     ("Safety", "lit", Skip),
     ("Safety", "late", Skip),
@@ -30,7 +30,7 @@ const RULES: [(&str, &str, Rule); 23] = [
     ("Supply", "reading", Skip),
     ("Supply", "frames", Coarse(countdown)),
     ("Motion", "calibration", Skip),
-    ("Motion", "sent", Skip),
+    ("Motion", "sent", Coarse(|width| width >> 9)),
     ("Motion", "awake", Coarse(|frames| frames.div_ceil(5))),
     ("Cycling", "gait", Skip),
     ("Cycling", "phase", Coarse(|phase| phase >> 22)),
@@ -44,8 +44,11 @@ const RULES: [(&str, &str, Rule); 23] = [
         "step",
         Coarse(|step| step.min(2) + u64::from(step > 44)),
     ),
-    ("Console", "restarts", Coarse(|count| count.min(1))),
+    ("Control", "restarts", Coarse(|count| count.min(1))),
     ("Motion", "pose", Coarse(|sweep| sweep >> 8)),
+    ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
+    ("Stance", "pose", Coarse(|sweep| sweep >> 8)),
+    ("Stance", "sent", Coarse(|width| width >> 9)),
     ("PointToPoint", "from", Coarse(|sweep| sweep >> 9)),
 ];
 
@@ -65,7 +68,8 @@ fn countdown(frames: u64) -> u64 {
         2..=5 => 2,
         6..=25 => 3,
         26..=60 => 4,
-        _ => 5,
+        61..=200 => 5,
+        _ => 6,
     }
 }
 
@@ -247,7 +251,7 @@ mod tests {
         let print = coarse(&motion());
         let same = [
             Motion {
-                frames: 8,
+                frames: 9,
                 ..motion()
             },
             Motion {

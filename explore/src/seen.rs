@@ -17,6 +17,9 @@ pub struct Seen {
     pub is_on: [bool; 4],
     /// Whether the robot rests: nobody has ordered pulses since they ended.
     pub rests: bool,
+    /// Whether it has been told to rest since its last frame: that is what a reset
+    /// before the next one may take.
+    pub is_sent_to_rest: bool,
     /// Frames in a row, main running, without any pulse; up to 200.
     pub silent: u8,
     /// Frames for which main was late since its last one.
@@ -26,6 +29,8 @@ pub struct Seen {
     pub stopped: u8,
     /// Whether the console has said why.
     pub is_told: bool,
+    /// Frames since the console said so last.
+    pub since_told: u8,
     /// Lines sent and not answered.
     pub owed: i8,
     /// Of those, the ones whose answer is known already.
@@ -34,7 +39,9 @@ pub struct Seen {
     pub low: u8,
     /// Frames for which it has been too low to move.
     pub too_low: u8,
-    /// Frames since it was that.
+    /// Frames since it was too low to write.
+    pub since_low: u8,
+    /// Frames since it was too low to move.
     pub since_too_low: u8,
     /// Frames for which it has been too low to hold.
     pub far_too_low: u8,
@@ -53,6 +60,8 @@ impl Seen {
     #[must_use]
     pub fn new() -> Self {
         Self {
+            since_told: 200,
+            since_low: 200,
             since_too_low: 200,
             ..Self::default()
         }
@@ -64,6 +73,7 @@ impl Seen {
             is_weak: self.is_weak,
             low: self.low,
             too_low: self.too_low,
+            since_low: self.since_low,
             since_too_low: self.since_too_low,
             far_too_low: self.far_too_low,
             ..Self::new()
@@ -73,8 +83,12 @@ impl Seen {
     /// The processor begins anew; servos stay where they are.
     pub fn reset(&mut self) {
         self.is_on = [false; 4];
+        self.is_sent_to_rest = false;
         self.silent = 0;
         self.owed = 0;
+        self.since_told = 200;
+        self.too_low = 0;
+        self.far_too_low = 0;
         self.known = 0;
         self.line_ms = 0;
     }
@@ -83,13 +97,14 @@ impl Seen {
     pub fn stop(&mut self) {
         if self.stopped == 0 {
             self.stopped = 1;
-            self.is_told = false;
+            self.is_told = self.since_told < 20;
         }
     }
 
     /// A person has ordered a motion, and the robot has taken the order.
     pub fn order(&mut self) {
         self.rests = false;
+        self.is_sent_to_rest = false;
         self.stopped = 0;
         self.brown_outs = 0;
     }
@@ -107,6 +122,8 @@ impl Seen {
             }
         }
         if main_ran {
+            self.rests |= self.is_sent_to_rest;
+            self.is_sent_to_rest = false;
             self.late_frames = 0;
             self.silent = if self.is_on == [false; 4] {
                 self.silent.saturating_add(1).min(200)
@@ -119,6 +136,7 @@ impl Seen {
         if self.stopped > 0 && main_ran {
             self.stopped = self.stopped.saturating_add(1).min(200);
         }
+        self.since_told = self.since_told.saturating_add(1).min(200);
         self.line_ms = (self.line_ms + FRAME_MS).min(1_000);
     }
 
@@ -133,6 +151,7 @@ impl Seen {
         };
         self.low = count(self.low, below[0]);
         self.too_low = count(self.too_low, below[1]);
+        self.since_low = count(self.since_low, !below[0]);
         self.since_too_low = count(self.since_too_low, !below[1]);
         self.far_too_low = count(self.far_too_low, below[2]);
     }
@@ -151,8 +170,10 @@ impl Seen {
             silent: frames(self.silent),
             late_frames: self.late_frames.min(2),
             stopped: frames(self.stopped),
+            since_told: self.since_told / 20,
             low: frames(self.low),
             too_low: frames(self.too_low),
+            since_low: frames(self.since_low),
             since_too_low: frames(self.since_too_low),
             far_too_low: frames(self.far_too_low),
             line_ms: self.line_ms / 20 * u16::from(self.deadman > 0),

@@ -10,7 +10,7 @@ use lizard_core::calibration::Calibration;
 use lizard_core::five_bar::FiveBar;
 use lizard_core::gait::{Channel, Gait, SAMPLES, Wave};
 use lizard_core::limits::Limits;
-use lizard_core::part::{End, Side};
+use lizard_core::part::{End, Servo, Side};
 use lizard_core::point_to_point::Slew;
 use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
@@ -125,7 +125,7 @@ impl Robot for Small {
         Flash::from(self.waves.as_slice())
     }
 
-    fn reach(&self, _: usize) -> Reach {
+    fn reach(&self, _: Servo) -> Reach {
         Reach {
             min: Sweep(-NEED),
             max: Sweep(NEED),

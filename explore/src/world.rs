@@ -3,7 +3,7 @@
 use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
 use lizard_core::motion::Activity;
-use lizard_core::pose::Pose;
+use lizard_core::pose::{Pose, Pulses};
 use lizard_core::restart::{Cause, Restart};
 use lizard_core::robot::Robot;
 use lizard_core::step::{Board, Step};
@@ -79,6 +79,7 @@ impl World {
                 );
             }
         }
+        print.add(fingerprint::coarse(&board.kept()));
         let truth = board.converter.truth();
         let flags = [
             board.memory.worn,
@@ -86,9 +87,8 @@ impl World {
             board.is_hushed(),
             board.stack_is_intact,
             board.converter.is_complete(),
-            board.kept_pose().is_some(),
             board.transmitter.held,
-            board.restart().pose.is_some(),
+            board.restart().before.is_some(),
             board.waiting() > 0,
             board.is_fresh(),
         ];
@@ -104,9 +104,7 @@ impl World {
         let board = &self.running.board;
         match action {
             Action::Say(_) => board.waiting() == 0 && !board.transmitter.held && !board.is_hushed(),
-            Action::Step => {
-                self.running.main.console().has_output() || self.running.main.console().is_writing()
-            }
+            Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
             Action::Frames(_)
             | Action::Stall(_)
             | Action::Reset(_)
@@ -142,10 +140,12 @@ impl World {
             Action::Late => {
                 self.running.board.late += 1;
                 self.seen.stop();
+                self.frame()?;
             }
             Action::Stack => {
                 self.running.board.stack_is_intact = false;
                 self.seen.stop();
+                self.frame()?;
             }
             Action::Reset(cause) => self.reset(cause),
             Action::LosePower(torn) => {
@@ -257,9 +257,9 @@ impl World {
         }
         if line.starts_with("# fault: ") || line.starts_with("# held") {
             self.seen.is_told = true;
+            self.seen.since_told = 0;
             if line.contains("no line for") {
                 self.seen.stop();
-                self.seen.is_told = true;
                 if self.seen.deadman > 0 && self.seen.line_ms < self.seen.deadman {
                     return broken(
                         "a gait ends for want of a line only if none came for as long as deadman says",
@@ -292,9 +292,12 @@ impl World {
             self.has_pulses_after(line)
         } else if line == "ok rest" {
             self.rests_after(line)?;
-            self.seen.rests = true;
+            self.seen.is_sent_to_rest = true;
             Ok(())
-        } else if line.starts_with("err 8") && self.seen.since_too_low > 70 && self.seen.low == 0 {
+        } else if line.starts_with("err 8")
+            && self.seen.since_low > 70
+            && self.running.board.converter.is_complete()
+        {
             broken("what the supply allows is not refused for its sake", line)
         } else {
             if let Some(ms) = line.strip_prefix("ok deadman ") {
@@ -330,7 +333,7 @@ impl World {
     }
 
     fn has_pulses_after(&self, line: &str) -> Held {
-        if self.seen.is_weak || self.is_below()[0] {
+        if self.seen.is_weak || self.is_below()[0] || self.seen.since_too_low <= BELIEVED {
             return Ok(());
         }
         let mut later = self.after(30);
@@ -345,13 +348,20 @@ impl World {
     }
 
     fn stands_after(&self, line: &str) -> Held {
-        if self.seen.is_weak || self.is_below()[0] {
+        let board = &self.running.board;
+        // A stack in the data stops the robot again until a reset.
+        let is_stopped = self.is_below()[0] || !board.stack_is_intact;
+        if self.seen.is_weak || is_stopped || self.seen.since_too_low <= BELIEVED {
             return Ok(());
         }
         let mut later = self.after(LONG);
         let motion = later.motion();
         let standing = Pose::NEUTRAL.pulses(motion.calibration());
         let activity = motion.activity();
+        // A gait that no robot.toml may have has left safe ground while it braked.
+        if motion.hazard().is_some() {
+            return Ok(());
+        }
         if later.board.begun() != standing || activity != Activity::Gait(GaitId::STAND) {
             let status = later.say("status");
             return broken(
@@ -416,20 +426,18 @@ impl World {
     }
 
     fn frame(&mut self) -> Held {
-        let was_on = self.seen.is_on;
-        let hushed = self.running.board.is_hushed();
-        let resets = self.running.board.restart().count;
-        self.running.frame();
-        if hushed && self.running.board.restart().count != resets {
-            self.seen.reset();
-            self.seen.stop();
+        if self.running.board.is_hushed() {
+            // Main is no more; the watchdog is about to begin it anew.
+            return self.stall(20);
         }
+        let was_on = self.seen.is_on;
+        self.running.frame();
         self.pulses(was_on, true)?;
-        self.listen()?;
-        self.written()?;
         if self.running.motion().hazard().is_some() {
             self.seen.stop();
         }
+        self.listen()?;
+        self.written()?;
         self.supply();
         let hears = !self.running.board.transmitter.held && !self.running.board.is_hushed();
         if self.seen.stopped > 3 && !self.seen.is_told && hears && self.seen.late_frames == 0 {
@@ -465,33 +473,44 @@ impl World {
         }
     }
 
-    /// Main does nothing; then it does what it missed.
+    /// Main does nothing; then it does what it missed, to the end of that frame. Or the
+    /// watchdog begins it anew.
     fn stall(&mut self, ms: u16) -> Held {
-        let mut left = ms;
-        while left >= 20 {
-            left -= 20;
+        for _ in 0..ms / 20 {
             let was_on = self.seen.is_on;
-            if self.running.stall(20) {
-                self.seen.reset();
-                self.seen.stop();
+            if self.lapse(20) {
                 return self.listen();
             }
             self.pulses(was_on, false)?;
             self.supply();
         }
-        let was_on = self.seen.is_on;
-        if self.running.stall(left) {
-            self.seen.reset();
-            self.seen.stop();
-            return self.listen();
+        let left = ms % 20;
+        if left > 0 {
+            let was_on = self.seen.is_on;
+            if self.lapse(left) {
+                return self.listen();
+            }
+            self.running.settle();
+            if self.lapse(20 - left) {
+                return self.listen();
+            }
+            self.pulses(was_on, left < 5)?;
+            self.supply();
         }
         self.running.settle();
-        // To the end of this frame.
-        self.running.stall(20 - left);
-        self.running.settle();
-        self.pulses(was_on, left < 5)?;
-        self.supply();
         self.listen()
+    }
+
+    /// Time passes without main; says whether the watchdog has begun it anew.
+    fn lapse(&mut self, ms: u16) -> bool {
+        let bites = self.running.board.pass(ms);
+        if bites {
+            self.running.reset(Cause::Watchdog);
+            self.seen.reset();
+            self.seen.stopped = 0;
+            self.seen.stop();
+        }
+        bites
     }
 
     /// The pulses of a frame.
@@ -501,6 +520,14 @@ impl World {
         let wakes = |servo: &usize| widths[*servo] > 0 && !was_on[*servo];
         let woken: Vec<usize> = (0..4).filter(wakes).collect();
         if self.seen.rests && self.seen.silent > 0 && widths.iter().any(|width| *width > 0) {
+            // Nobody may have heard that it boots.
+            let mut heard = self.running.clone();
+            heard.board.transmitter.held = false;
+            heard.settle();
+            if heard.board.transmitter.text.contains("# boot: ") {
+                self.seen.rests = false;
+                return self.seen_frame(&begun, main_ran);
+            }
             return broken(
                 "a robot that rests has no pulses until an order, boot or power-on",
                 format!("{widths:?}"),
@@ -539,12 +566,12 @@ impl World {
                 );
             }
         }
+        self.seen_frame(&begun, main_ran)
+    }
+
+    fn seen_frame(&mut self, begun: &Pulses, main_ran: bool) -> Held {
         let ran = main_ran && !self.running.board.is_hushed();
-        self.seen.frame(&begun, ran);
-        if main_ran && !ran {
-            // Main runs and no pulse may begin.
-            self.seen.silent = self.seen.silent.saturating_add(1).min(200);
-        }
+        self.seen.frame(begun, ran);
         Ok(())
     }
 
