@@ -19,37 +19,38 @@ enum Rule {
 use Rule::{Coarse, Skip};
 
 /// Fields, by the name of what they are in.
-const RULES: [(&str, &str, Rule); 26] = [
+const RULES: [(&str, &str, Rule); 25] = [
     ("Main", "ticks", Skip),
-    ("Motion", "frames", Coarse(countdown)),
+    // What the last line was; the next byte begins a new one.
+    ("Console", "line", Skip),
+    (
+        "Motion",
+        "frames",
+        Coarse(|frames| u64::from(frames >= 1_500)),
+    ),
+    ("Motion", "calibration", Skip),
+    ("Motion", "sent", Coarse(|width| width >> 11)),
+    ("Motion", "pose", Coarse(|sweep| sweep >> 10)),
+    ("Motion", "awake", Coarse(|frames| frames.div_ceil(5))),
+    ("Stance", "sent", Coarse(|width| width >> 11)),
+    ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
+    ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
     ("Led", "frames", Skip),
     ("Safety", "lit", Skip),
     ("Safety", "late", Skip),
-    ("Safety", "silence", Coarse(|ms| (ms / 20).min(6))),
+    // The bystander counts that, too, where it matters.
+    ("Safety", "silence", Skip),
     ("Safety", "boot", Coarse(countdown)),
     ("Supply", "reading", Skip),
     ("Supply", "frames", Coarse(countdown)),
-    ("Motion", "calibration", Skip),
-    ("Motion", "sent", Coarse(|width| width >> 9)),
-    ("Motion", "awake", Coarse(|frames| frames.div_ceil(5))),
     ("Cycling", "gait", Skip),
     ("Cycling", "phase", Coarse(|phase| phase >> 22)),
     ("Cycling", "pace", Coarse(pace)),
     ("Moving", "pace", Coarse(pace)),
+    ("PointToPoint", "from", Coarse(|sweep| sweep >> 11)),
     ("PointToPoint", "step", Skip),
     ("PointToPoint", "gone", Coarse(|gone| gone >> 13)),
-    ("Watch", "left", Coarse(countdown)),
-    (
-        "Writing",
-        "step",
-        Coarse(|step| step.min(2) + u64::from(step > 44)),
-    ),
     ("Control", "restarts", Coarse(|count| count.min(1))),
-    ("Motion", "pose", Coarse(|sweep| sweep >> 8)),
-    ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
-    ("Stance", "pose", Coarse(|sweep| sweep >> 8)),
-    ("Stance", "sent", Coarse(|width| width >> 9)),
-    ("PointToPoint", "from", Coarse(|sweep| sweep >> 9)),
 ];
 
 /// What a command that is refused may change: that a line came.
@@ -68,8 +69,7 @@ fn countdown(frames: u64) -> u64 {
         2..=5 => 2,
         6..=25 => 3,
         26..=60 => 4,
-        61..=200 => 5,
-        _ => 6,
+        _ => 5,
     }
 }
 
@@ -251,7 +251,7 @@ mod tests {
         let print = coarse(&motion());
         let same = [
             Motion {
-                frames: 9,
+                frames: 1_499,
                 ..motion()
             },
             Motion {

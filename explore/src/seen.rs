@@ -160,17 +160,18 @@ impl Seen {
     #[must_use]
     pub fn coarse(&self) -> Self {
         let frames = |frames: u8| match frames {
-            0..=3 => frames,
+            0 => 0,
+            1..=3 => 1,
             4..=14 => 4,
             15..=70 => 15,
             _ => 71,
         };
         Self {
-            width: self.width.map(|width| width >> 9),
+            width: self.width.map(|width| width >> 11),
             silent: frames(self.silent),
             late_frames: self.late_frames.min(2),
             stopped: frames(self.stopped),
-            since_told: self.since_told / 20,
+            since_told: self.since_told.min(20) / 20,
             low: frames(self.low),
             too_low: frames(self.too_low),
             since_low: frames(self.since_low),

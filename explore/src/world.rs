@@ -2,8 +2,10 @@
 
 use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
+use lizard_core::memory::{LENGTH, WHOLE};
 use lizard_core::motion::Activity;
 use lizard_core::pose::{Pose, Pulses};
+use lizard_core::record::{COPIES, RESTED};
 use lizard_core::restart::{Cause, Restart};
 use lizard_core::robot::Robot;
 use lizard_core::step::{Board, Step};
@@ -70,13 +72,16 @@ impl World {
         let mut print = Print(fingerprint::coarse(&self.running.main));
         print.add(fingerprint::coarse(&self.seen.coarse()));
         let memory = board.memory.bytes();
-        for record in [0usize, 64, 128] {
-            for eight in memory[record..record + 48].chunks_exact(8) {
-                print.add(
-                    eight
-                        .iter()
-                        .fold(0, |all, byte| all << 8 | u64::from(*byte)),
-                );
+        for record in COPIES.map(|copy| copy.0).into_iter().chain([RESTED.0]) {
+            let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
+            // What is in a record that is not whole is never used.
+            let used = if record[0] == WHOLE {
+                record
+            } else {
+                &record[..2]
+            };
+            for byte in used {
+                print.add(u64::from(*byte));
             }
         }
         print.add(fingerprint::coarse(&board.kept()));
