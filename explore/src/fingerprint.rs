@@ -19,7 +19,7 @@ enum Rule {
 use Rule::{Coarse, Skip};
 
 /// Fields, by the name of what they are in.
-const RULES: [(&str, &str, Rule); 25] = [
+const RULES: &[(&str, &str, Rule)] = &[
     ("Main", "ticks", Skip),
     // What the last line was; the next byte begins a new one.
     ("Console", "line", Skip),
@@ -29,9 +29,6 @@ const RULES: [(&str, &str, Rule); 25] = [
         Coarse(|frames| u64::from(frames >= 1_500)),
     ),
     ("Motion", "calibration", Skip),
-    ("Motion", "sent", Coarse(|width| width >> 11)),
-    ("Motion", "pose", Coarse(|sweep| sweep >> 10)),
-    ("Motion", "awake", Coarse(|frames| frames.div_ceil(5))),
     ("Stance", "sent", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
     ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
@@ -50,11 +47,12 @@ const RULES: [(&str, &str, Rule); 25] = [
     ("PointToPoint", "from", Coarse(|sweep| sweep >> 11)),
     ("PointToPoint", "step", Skip),
     ("PointToPoint", "gone", Coarse(|gone| gone >> 13)),
+    ("Restart", "count", Coarse(|count| count.min(1))),
     ("Control", "restarts", Coarse(|count| count.min(1))),
 ];
 
 /// What a command that is refused may change: that a line came.
-const A_LINE_CAME: [(&str, &str, Rule); 6] = [
+const A_LINE_CAME: &[(&str, &str, Rule)] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
     ("Console", "answer", Skip),
@@ -80,13 +78,13 @@ fn pace(pace: u64) -> u64 {
 /// A number that two values share if no rule tells them apart.
 #[must_use]
 pub fn coarse(value: &impl fmt::Debug) -> u64 {
-    print(value, &RULES)
+    print(value, RULES)
 }
 
 /// The same with every field, but for those that say that a line came.
 #[must_use]
 pub fn but_for_the_line(value: &impl fmt::Debug) -> u64 {
-    print(value, &A_LINE_CAME)
+    print(value, A_LINE_CAME)
 }
 
 fn print(value: &impl fmt::Debug, rules: &'static [(&str, &str, Rule)]) -> u64 {
@@ -227,64 +225,66 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::small::Small;
+    use crate::{Action, beginnings};
 
-    #[derive(Debug)]
+    #[derive(Clone, Copy, Debug)]
     #[allow(dead_code, reason = "read by Debug")]
     struct Motion {
         frames: u32,
-        awake: u8,
+        stance: Stance,
         speed: i16,
         list: [u8; 3],
     }
 
-    fn motion() -> Motion {
-        Motion {
-            frames: 7,
-            awake: 3,
-            speed: -5,
-            list: [1, 2, 3],
-        }
+    #[derive(Clone, Copy, Debug)]
+    #[allow(dead_code, reason = "read by Debug")]
+    struct Stance {
+        awake: u8,
+    }
+
+    const MOTION: Motion = Motion {
+        frames: 7,
+        stance: Stance { awake: 3 },
+        speed: -5,
+        list: [1, 2, 3],
+    };
+
+    /// The motion, changed.
+    fn with(change: impl Fn(&mut Motion)) -> Motion {
+        let mut motion = MOTION;
+        change(&mut motion);
+        motion
     }
 
     #[test]
     fn what_only_counts_is_left_out_what_is_coarse_is_coarse_and_all_else_tells() {
-        let print = coarse(&motion());
-        let same = [
-            Motion {
-                frames: 1_499,
-                ..motion()
-            },
-            Motion {
-                awake: 5,
-                ..motion()
-            },
-        ];
-        for other in same {
-            assert_eq!(coarse(&other), print, "{other:?}");
+        let print = coarse(&MOTION);
+        assert_eq!(coarse(&with(|motion| motion.frames = 1_499)), print);
+        assert_eq!(coarse(&with(|motion| motion.stance.awake = 5)), print);
+        assert_ne!(coarse(&with(|motion| motion.frames = 1_500)), print);
+        assert_ne!(coarse(&with(|motion| motion.stance.awake = 6)), print);
+        assert_ne!(coarse(&with(|motion| motion.speed = 5)), print);
+        assert_ne!(coarse(&with(|motion| motion.list[2] = 4)), print);
+        let exact = but_for_the_line(&MOTION);
+        assert_ne!(but_for_the_line(&with(|motion| motion.frames = 8)), exact);
+    }
+
+    #[test]
+    fn every_rule_is_about_a_field_that_there_is() {
+        let robot = Box::leak(Box::new(Small::new()));
+        let mut text = String::new();
+        for beginning in beginnings::all(robot) {
+            for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {
+                let mut world = beginning.world.clone();
+                _ = world.apply(action);
+                let ram = world.running.board.ram.found(Default::default());
+                _ = write!(text, "{:?} {ram:?}", world.running.main);
+            }
         }
-        let others = [
-            Motion {
-                awake: 6,
-                ..motion()
-            },
-            Motion {
-                speed: 5,
-                ..motion()
-            },
-            Motion {
-                list: [1, 2, 4],
-                ..motion()
-            },
-        ];
-        for other in others {
-            assert_ne!(coarse(&other), print, "{other:?}");
+        for (owner, field, _) in RULES.iter().chain(A_LINE_CAME) {
+            assert!(text.contains(&format!("{owner} {{ ")), "{owner}");
+            assert!(text.contains(&format!(" {field}: ")), "{owner}.{field}");
         }
-        assert_ne!(
-            but_for_the_line(&Motion {
-                frames: 8,
-                ..motion()
-            }),
-            but_for_the_line(&motion())
-        );
     }
 }

@@ -16,12 +16,12 @@ use lizard_core::robot::Robot;
 use lizard_core::slider::Slider;
 use lizard_core::supply::Supplies;
 use lizard_core::units::{Angle, Sweep};
-use lizard_robot::Firmware;
+use lizard_robot::CoreRobot;
 
 /// The paper's robot with gaits of its own.
 #[derive(Clone)]
 pub struct Small {
-    firmware: Firmware,
+    firmware: CoreRobot,
     gaits: Vec<Gait>,
     names: Vec<u8>,
     waves: Vec<Wave>,

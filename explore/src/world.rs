@@ -2,6 +2,7 @@
 
 use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
+use lizard_core::kept::Flags;
 use lizard_core::memory::{LENGTH, WHOLE};
 use lizard_core::motion::Activity;
 use lizard_core::pose::{Pose, Pulses};
@@ -84,7 +85,7 @@ impl World {
                 print.add(u64::from(*byte));
             }
         }
-        print.add(fingerprint::coarse(&board.kept()));
+        print.add(fingerprint::coarse(&board.ram.found(Flags::default())));
         let truth = board.converter.truth();
         let flags = [
             board.memory.worn,
@@ -108,7 +109,9 @@ impl World {
     pub fn can(&self, action: Action) -> bool {
         let board = &self.running.board;
         match action {
-            Action::Say(_) => board.waiting() == 0 && !board.transmitter.held && !board.is_hushed(),
+            Action::Say(_) => {
+                board.waiting() == 0 && !board.transmitter.held && !self.running.is_over()
+            }
             Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
             Action::Frames(_)
             | Action::Stall(_)
@@ -431,7 +434,7 @@ impl World {
     }
 
     fn frame(&mut self) -> Held {
-        if self.running.board.is_hushed() {
+        if self.running.is_over() {
             // Main is no more; the watchdog is about to begin it anew.
             return self.stall(20);
         }
@@ -444,7 +447,7 @@ impl World {
         self.listen()?;
         self.written()?;
         self.supply();
-        let hears = !self.running.board.transmitter.held && !self.running.board.is_hushed();
+        let hears = !self.running.board.transmitter.held && !self.running.is_over();
         if self.seen.stopped > 3 && !self.seen.is_told && hears && self.seen.late_frames == 0 {
             return broken(
                 "whatever stopped the robot is told on the console",
@@ -575,7 +578,7 @@ impl World {
     }
 
     fn seen_frame(&mut self, begun: &Pulses, main_ran: bool) -> Held {
-        let ran = main_ran && !self.running.board.is_hushed();
+        let ran = main_ran && !self.running.is_over();
         self.seen.frame(begun, ran);
         Ok(())
     }

@@ -54,12 +54,18 @@ impl<R: Robot> Running<R> {
         self.main.console().has_output(self.main.control())
     }
 
+    /// Whether the watchdog has ended the pulses: main does not go on, and is begun
+    /// anew.
+    pub const fn is_over(&self) -> bool {
+        self.board.is_hushed()
+    }
+
     /// Steps until there is nothing to do before time passes.
     ///
     /// # Panics
     /// If that never comes.
     pub fn settle(&mut self) {
-        if self.board.is_hushed() {
+        if self.is_over() {
             return;
         }
         for _ in 0..1_000_000 {
@@ -164,7 +170,7 @@ impl<R: Robot + Clone> Running<R> {
     /// main does not go on and the reset is waited for. Returns whether it comes.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut bites = self.board.pass(ms);
-        while self.board.is_hushed() && !bites {
+        while self.is_over() && !bites {
             bites = self.board.pass(1);
         }
         if bites {
