@@ -159,7 +159,7 @@ impl VirtualBoard {
 
     fn millisecond(&mut self) {
         self.transmitter.pass(1);
-        self.memory.settle();
+        self.memory.pass();
         self.ms += 1;
         if self.ms == FRAME_MS {
             self.ms = 0;
@@ -276,6 +276,12 @@ impl VirtualBoard {
     #[must_use]
     pub const fn is_lit(&self) -> bool {
         self.lit
+    }
+
+    /// Milliseconds since the watchdog was fed.
+    #[must_use]
+    pub const fn unfed(&self) -> u16 {
+        self.unfed
     }
 
     /// What a reset would leave of what the servos do.

@@ -37,6 +37,12 @@ impl Converter {
         self.truth
     }
 
+    /// Whether all of it has been measured once since the program began.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        self.complete
+    }
+
     pub(super) fn reset(self) -> Self {
         Self::new(self.truth, self.rail)
     }

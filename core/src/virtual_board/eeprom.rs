@@ -11,13 +11,18 @@ use crate::memory::{ERASED, Memory, SIZE};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Eeprom {
     bytes: Arc<[u8; SIZE]>,
-    /// How many times it is asked after a write before it is ready again.
+    /// How many times it is asked after a write before it is ready again; or, where
+    /// it is `timed`, milliseconds.
     pub slowness: u16,
+    /// Whether time alone makes it ready, as on the chip.
+    pub timed: bool,
     /// Whether bytes stay as they are.
     pub worn: bool,
     /// Every byte written: address, what was there, what was meant to be.
     pub log: Vec<(u16, u8, u8)>,
     busy: Cell<u16>,
+    /// Whether it has been asked and was not ready.
+    in_vain: Cell<bool>,
     /// The byte that is being written.
     under_way: Cell<Option<u16>>,
 }
@@ -51,9 +56,11 @@ impl Eeprom {
         Self {
             bytes: Arc::new(bytes),
             slowness: 0,
+            timed: false,
             worn: false,
             log: Vec::new(),
             busy: Cell::new(0),
+            in_vain: Cell::new(false),
             under_way: Cell::new(None),
         }
     }
@@ -75,11 +82,25 @@ impl Eeprom {
         self.under_way.get()
     }
 
-    /// Time enough has passed for the byte that was being written.
-    pub(super) fn settle(&mut self) {
-        if self.slowness == 0 {
+    /// Whether it has been asked since the last call and only time makes it ready.
+    #[must_use]
+    pub fn is_asked_in_vain(&self) -> bool {
+        self.in_vain.take()
+    }
+
+    /// A millisecond passes.
+    pub(super) fn pass(&mut self) {
+        let busy = self.busy.get().saturating_sub(u16::from(self.timed));
+        self.busy.set(busy);
+        if busy == 0 {
             self.under_way.set(None);
         }
+    }
+
+    /// Time enough passes for the byte that was being written.
+    pub(super) fn settle(&mut self) {
+        self.busy.set(0);
+        self.under_way.set(None);
     }
 
     /// Power is lost: the byte that was being written holds something else.
@@ -94,7 +115,11 @@ impl Eeprom {
 impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
         let busy = self.busy.get();
-        self.busy.set(busy.saturating_sub(1));
+        if self.timed {
+            self.in_vain.set(busy > 0);
+        } else {
+            self.busy.set(busy.saturating_sub(1));
+        }
         if busy == 0 {
             self.under_way.set(None);
         }

@@ -3,7 +3,7 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::{Converter, Eeprom, FRAME_MS, VirtualBoard, reading};
+use super::{Converter, Eeprom, VirtualBoard, reading};
 use crate::console::LONGEST_LINE;
 use crate::motion::Motion;
 use crate::pose::Pulses;
@@ -54,16 +54,23 @@ impl<R: Robot> Running<R> {
         self.main.console().has_output(self.main.control())
     }
 
-    /// Steps until there is nothing to do.
+    /// Whether the watchdog has ended the pulses: main does not go on, and is begun
+    /// anew.
+    pub const fn is_over(&self) -> bool {
+        self.board.is_hushed()
+    }
+
+    /// Steps until there is nothing to do before time passes.
     ///
     /// # Panics
     /// If that never comes.
     pub fn settle(&mut self) {
-        if self.board.is_hushed() {
+        if self.is_over() {
             return;
         }
         for _ in 0..1_000_000 {
-            if self.main.step(&mut self.board) != Step::Worked {
+            let step = self.main.step(&mut self.board);
+            if step != Step::Worked || self.board.memory.is_asked_in_vain() {
                 return;
             }
         }
@@ -76,7 +83,11 @@ impl<R: Robot> Running<R> {
         self.settle();
         self.board.pass(self.board.until_tick());
         self.settle();
-        self.board.pass(u16::from(FRAME_MS) - 1);
+        // Main goes on between the pulses, too.
+        for ms in [4, 4, 4, 4, 3] {
+            self.board.pass(ms);
+            self.settle();
+        }
         self.board.begun()
     }
 
@@ -159,7 +170,7 @@ impl<R: Robot + Clone> Running<R> {
     /// main does not go on and the reset is waited for. Returns whether it comes.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut bites = self.board.pass(ms);
-        while self.board.is_hushed() && !bites {
+        while self.is_over() && !bites {
             bites = self.board.pass(1);
         }
         if bites {

@@ -1,0 +1,123 @@
+//! Where a walk begins: memories of every kind, and robots that already do something.
+
+use lizard_core::virtual_board::Eeprom;
+
+use crate::action::Action::{self, Frames, LosePower, Say, Stall};
+use crate::small::Small;
+use crate::world::World;
+
+/// A state to begin with, and how it came about.
+pub struct Beginning {
+    /// The memory at power-on.
+    pub memory: &'static str,
+    /// What happened since.
+    pub actions: Vec<Action>,
+    /// The state.
+    pub world: World,
+}
+
+/// Memories, by what made them: lines that were said to a robot that stood.
+const MEMORIES: [(&str, &[Action]); 5] = [
+    ("a blank memory", &[]),
+    (
+        "saved settings",
+        &[
+            Say("trim 1 8"),
+            Frames(25),
+            Say("boot walk"),
+            Say("save"),
+            Frames(25),
+        ],
+    ),
+    (
+        "a saved rest",
+        &[
+            Say("pose 142 41.41 318.59 221.41"),
+            Frames(160),
+            Say("rest"),
+            Frames(25),
+        ],
+    ),
+    (
+        "saved settings and a saved rest",
+        &[
+            Say("trim 1 8"),
+            Frames(25),
+            Say("boot rest"),
+            Say("save"),
+            Frames(25),
+            Say("rest"),
+            Frames(25),
+        ],
+    ),
+    (
+        "a save that was cut off",
+        &[
+            Say("trim 1 8"),
+            Frames(25),
+            Say("save"),
+            Frames(25),
+            Say("trim 1 4"),
+            Frames(25),
+            Say("save"),
+            Frames(2),
+            LosePower(Some(0x5a)),
+        ],
+    ),
+];
+
+/// What the robot does before the walk begins.
+const DOES: [&[Action]; 6] = [
+    &[],
+    &[Frames(160)],
+    &[Frames(160), Say("walk"), Frames(25)],
+    &[Frames(160), Say("rest"), Frames(25)],
+    &[Frames(160), Say("trim 1 8"), Frames(25)],
+    &[Frames(25), Stall(240), Frames(5)],
+];
+
+/// All beginnings.
+///
+/// # Panics
+/// If a memory cannot be made.
+#[must_use]
+pub fn all(robot: &'static Small) -> Vec<Beginning> {
+    let mut memories: Vec<(&'static str, Eeprom)> = MEMORIES
+        .iter()
+        .map(|(name, actions)| {
+            let mut world = World::power_on(robot, Eeprom::blank());
+            // Rules may be broken here; whoever walks finds that, too.
+            _ = world.apply(Frames(160));
+            for action in *actions {
+                _ = world.apply(*action);
+            }
+            (*name, world.running.board.memory)
+        })
+        .collect();
+    let saved = |memories: &[(&'static str, Eeprom)]| memories[1].1.clone();
+    let mut foreign = saved(&memories);
+    foreign.bytes_mut().rotate_left(1);
+    let mut worn = saved(&memories);
+    worn.worn = true;
+    memories.extend([
+        ("foreign bytes in the memory", foreign),
+        ("a worn memory", worn),
+    ]);
+    let mut all = Vec::new();
+    for (memory, eeprom) in memories {
+        for actions in DOES {
+            let mut eeprom = Eeprom::with(*eeprom.bytes());
+            eeprom.worn = memory == "a worn memory";
+            let mut world = World::power_on(robot, eeprom);
+            if actions.iter().all(|action| world.apply(*action).is_ok()) {
+                let actions = actions.to_vec();
+                all.push(Beginning {
+                    memory,
+                    actions,
+                    world,
+                });
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,290 @@
+//! What makes two states one: all that the core's own `Debug` shows, but for what
+//! only counts.
+//!
+//! The core derives `Debug` for everything it holds, so nothing is forgotten here that
+//! is added there; and the core needs nothing for this. A field that cannot matter
+//! is left out, and one that is only compared with a few values, as a countdown, is
+//! taken as coarse as [`RULES`] says. Coarse means that of states which differ in no
+//! more than that the one that is reached first stands for all.
+
+use std::fmt::{self, Write};
+
+/// What becomes of a field.
+#[derive(Clone, Copy)]
+enum Rule {
+    Skip,
+    Coarse(fn(u64) -> u64),
+}
+
+use Rule::{Coarse, Skip};
+
+/// Fields, by the name of what they are in.
+const RULES: &[(&str, &str, Rule)] = &[
+    ("Main", "ticks", Skip),
+    // What the last line was; the next byte begins a new one.
+    ("Console", "line", Skip),
+    (
+        "Motion",
+        "frames",
+        Coarse(|frames| u64::from(frames >= 1_500)),
+    ),
+    ("Motion", "calibration", Skip),
+    ("Stance", "sent", Coarse(|width| width >> 11)),
+    ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
+    ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
+    ("Led", "frames", Skip),
+    ("Safety", "lit", Skip),
+    ("Safety", "late", Skip),
+    // The bystander counts that, too, where it matters.
+    ("Safety", "silence", Skip),
+    ("Safety", "boot", Coarse(countdown)),
+    ("Supply", "reading", Skip),
+    ("Supply", "frames", Coarse(countdown)),
+    ("Cycling", "gait", Skip),
+    ("Cycling", "phase", Coarse(|phase| phase >> 22)),
+    ("Cycling", "pace", Coarse(pace)),
+    ("Moving", "pace", Coarse(pace)),
+    ("PointToPoint", "from", Coarse(|sweep| sweep >> 11)),
+    ("PointToPoint", "step", Skip),
+    ("PointToPoint", "gone", Coarse(|gone| gone >> 13)),
+    ("Restart", "count", Coarse(|count| count.min(1))),
+    ("Control", "restarts", Coarse(|count| count.min(1))),
+];
+
+/// What a command that is refused may change: that a line came.
+const A_LINE_CAME: &[(&str, &str, Rule)] = &[
+    ("Main", "ticks", Skip),
+    ("Console", "line", Skip),
+    ("Console", "answer", Skip),
+    ("Console", "banner", Skip),
+    ("Safety", "silence", Skip),
+    ("Safety", "boot", Skip),
+];
+
+fn countdown(frames: u64) -> u64 {
+    match frames {
+        0 | 1 => frames,
+        2..=5 => 2,
+        6..=25 => 3,
+        26..=60 => 4,
+        _ => 5,
+    }
+}
+
+fn pace(pace: u64) -> u64 {
+    u64::from(pace > 0) + u64::from(pace >= 1024)
+}
+
+/// A number that two values share if no rule tells them apart.
+#[must_use]
+pub fn coarse(value: &impl fmt::Debug) -> u64 {
+    print(value, RULES)
+}
+
+/// The same with every field, but for those that say that a line came.
+#[must_use]
+pub fn but_for_the_line(value: &impl fmt::Debug) -> u64 {
+    print(value, A_LINE_CAME)
+}
+
+fn print(value: &impl fmt::Debug, rules: &'static [(&str, &str, Rule)]) -> u64 {
+    let mut reader = Reader {
+        rules,
+        print: Print::default(),
+        within: Vec::new(),
+        last: 0,
+        names_field: false,
+        number: None,
+        skipped: None,
+    };
+    write!(reader, "{value:?}").expect("Debug does not fail");
+    reader.print.0
+}
+
+/// A number made of numbers.
+#[derive(Clone, Copy)]
+pub struct Print(pub u64);
+
+impl Default for Print {
+    fn default() -> Self {
+        Self(0x9e37_79b9_7f4a_7c15)
+    }
+}
+
+impl Print {
+    /// One more.
+    pub fn add(&mut self, value: u64) {
+        let mixed = (self.0 ^ value).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        self.0 = (mixed ^ (mixed >> 32)).wrapping_mul(0xc4ce_b9fe_1a85_ec53) ^ (mixed >> 29);
+    }
+}
+
+/// Reads what `Debug` writes: it writes a name, a brace, a field's name, a colon and a
+/// value, each by itself.
+struct Reader {
+    rules: &'static [(&'static str, &'static str, Rule)],
+    print: Print,
+    /// What the value is in: the hash of a struct's name, 0 for what has no fields.
+    within: Vec<u64>,
+    /// The hash of the piece before.
+    last: u64,
+    /// Whether the next piece is a field's name.
+    names_field: bool,
+    /// What becomes of the numbers of the field that is this deep.
+    number: Option<(fn(u64) -> u64, usize)>,
+    /// How deep the value is that is left out.
+    skipped: Option<usize>,
+}
+
+/// Of a short text, at compile time, too.
+const fn hash(text: &str) -> u64 {
+    let bytes = text.as_bytes();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut at = 0;
+    while at < bytes.len() {
+        hash = (hash ^ bytes[at] as u64).wrapping_mul(0x0100_0000_01b3);
+        at += 1;
+    }
+    hash
+}
+
+impl Write for Reader {
+    fn write_str(&mut self, piece: &str) -> fmt::Result {
+        match piece {
+            " { " => {
+                self.within.push(self.last);
+                self.names_field = true;
+            }
+            "(" | "[" => self.within.push(0),
+            " }" | ")" | "]" => {
+                if self.skipped == Some(self.within.len()) {
+                    self.skipped = None;
+                }
+                if self
+                    .number
+                    .is_some_and(|(_, depth)| depth == self.within.len())
+                {
+                    self.number = None;
+                }
+                self.within.pop();
+            }
+            ", " => {
+                if self.skipped == Some(self.within.len()) {
+                    self.skipped = None;
+                }
+                if self
+                    .number
+                    .is_some_and(|(_, depth)| depth == self.within.len())
+                {
+                    self.number = None;
+                }
+                self.names_field = self.within.last().is_some_and(|name| *name != 0);
+            }
+            ": " => {}
+            _ if self.names_field => {
+                self.names_field = false;
+                if self.skipped.is_none() {
+                    self.name(piece);
+                }
+            }
+            _ if self.skipped.is_none() => self.value(piece),
+            _ => {}
+        }
+        if self.skipped.is_none() {
+            self.last = hash(piece);
+        }
+        Ok(())
+    }
+}
+
+impl Reader {
+    fn name(&mut self, field: &str) {
+        let name = hash(field);
+        self.print.add(name);
+        let within = *self.within.last().unwrap_or(&0);
+        let rule = self
+            .rules
+            .iter()
+            .find(|(owner, of, _)| *of == field && hash(owner) == within);
+        match rule {
+            Some((_, _, Skip)) => self.skipped = Some(self.within.len()),
+            Some((_, _, Coarse(what))) => self.number = Some((*what, self.within.len())),
+            None => {}
+        }
+    }
+
+    fn value(&mut self, piece: &str) {
+        match (piece.parse::<u64>(), self.number) {
+            (Ok(number), Some((coarse, _))) => self.print.add(coarse(number)),
+            (Ok(number), None) => self.print.add(number),
+            (Err(_), _) => self.print.add(hash(piece)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::small::Small;
+    use crate::{Action, beginnings};
+
+    #[derive(Clone, Copy, Debug)]
+    #[allow(dead_code, reason = "read by Debug")]
+    struct Motion {
+        frames: u32,
+        stance: Stance,
+        speed: i16,
+        list: [u8; 3],
+    }
+
+    #[derive(Clone, Copy, Debug)]
+    #[allow(dead_code, reason = "read by Debug")]
+    struct Stance {
+        awake: u8,
+    }
+
+    const MOTION: Motion = Motion {
+        frames: 7,
+        stance: Stance { awake: 3 },
+        speed: -5,
+        list: [1, 2, 3],
+    };
+
+    /// The motion, changed.
+    fn with(change: impl Fn(&mut Motion)) -> Motion {
+        let mut motion = MOTION;
+        change(&mut motion);
+        motion
+    }
+
+    #[test]
+    fn what_only_counts_is_left_out_what_is_coarse_is_coarse_and_all_else_tells() {
+        let print = coarse(&MOTION);
+        assert_eq!(coarse(&with(|motion| motion.frames = 1_499)), print);
+        assert_eq!(coarse(&with(|motion| motion.stance.awake = 5)), print);
+        assert_ne!(coarse(&with(|motion| motion.frames = 1_500)), print);
+        assert_ne!(coarse(&with(|motion| motion.stance.awake = 6)), print);
+        assert_ne!(coarse(&with(|motion| motion.speed = 5)), print);
+        assert_ne!(coarse(&with(|motion| motion.list[2] = 4)), print);
+        let exact = but_for_the_line(&MOTION);
+        assert_ne!(but_for_the_line(&with(|motion| motion.frames = 8)), exact);
+    }
+
+    #[test]
+    fn every_rule_is_about_a_field_that_there_is() {
+        let robot = Box::leak(Box::new(Small::new()));
+        let mut text = String::new();
+        for beginning in beginnings::all(robot) {
+            for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {
+                let mut world = beginning.world.clone();
+                _ = world.apply(action);
+                let ram = world.running.board.ram.found(Default::default());
+                _ = write!(text, "{:?} {ram:?}", world.running.main);
+            }
+        }
+        for (owner, field, _) in RULES.iter().chain(A_LINE_CAME) {
+            assert!(text.contains(&format!("{owner} {{ ")), "{owner}");
+            assert!(text.contains(&format!(" {field}: ")), "{owner}.{field}");
+        }
+    }
+}

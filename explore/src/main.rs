@@ -1,0 +1,34 @@
+//! `make explore`: ten million states, or as many as the argument says.
+
+use std::process::ExitCode;
+
+use lizard_explore::{search, small::Small};
+
+fn main() -> ExitCode {
+    let most = std::env::args()
+        .nth(1)
+        .map_or(Ok(10_000_000), |count| count.parse());
+    let Ok(most) = most else {
+        eprintln!("explore [how many states]");
+        return ExitCode::FAILURE;
+    };
+    let robot = Box::leak(Box::new(Small::new()));
+    let begun = std::time::Instant::now();
+    let found = search(robot, most);
+    println!(
+        "{} distinct states by {} actions in {:.0} s, the longest sequence of {}, {}",
+        found.states,
+        found.tried,
+        begun.elapsed().as_secs_f64(),
+        found.longest,
+        if found.closed { "closed" } else { "not closed" },
+    );
+    for (rule, (times, sequence)) in &found.broken {
+        println!("\nBROKEN {times} times: {rule}\n{sequence}");
+    }
+    if found.broken.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}

@@ -1,0 +1,213 @@
+//! Breadth first through everything that may happen.
+//!
+//! All states of one length are gone through before any of the next, by as many
+//! threads as there are processors; so the first sequence that breaks a rule is one
+//! of the shortest. Of a state that was gone through only its number is kept, and how
+//! it was reached.
+
+use std::collections::{BTreeMap, HashSet};
+use std::fmt::Write as _;
+use std::hash::{BuildHasherDefault, Hasher};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::vec;
+
+use crate::action::Action;
+use crate::beginnings::{self, Beginning};
+use crate::small::Small;
+use crate::world::{Broken, World};
+
+/// Numbers of states are random as they are.
+#[derive(Default)]
+struct AsIs(u64);
+
+impl Hasher for AsIs {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, _: &[u8]) {
+        unreachable!("only numbers");
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        self.0 = number;
+    }
+}
+
+/// States that a thread takes at once.
+const CHUNK: usize = 256;
+
+type Known = HashSet<u64, BuildHasherDefault<AsIs>>;
+
+/// What a walk has found.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// Distinct states.
+    pub states: usize,
+    /// Actions tried.
+    pub tried: usize,
+    /// Actions of the longest sequence.
+    pub longest: usize,
+    /// Whether there is no state left that was not gone through.
+    pub closed: bool,
+    /// How many times each rule was broken, and its first sequence.
+    pub broken: BTreeMap<&'static str, (usize, String)>,
+}
+
+/// How a state was reached: from which one, by which action.
+#[derive(Clone, Copy)]
+struct Step {
+    from: u32,
+    action: u8,
+}
+
+/// From all beginnings, until that many distinct states are reached or none is left.
+#[must_use]
+pub fn search(robot: &'static Small, most: usize) -> Found {
+    let actions = Action::all();
+    let begun = beginnings::all(robot);
+    let known: Vec<Mutex<Known>> = (0..64).map(|_| Mutex::default()).collect();
+    let mut steps: Vec<Step> = Vec::new();
+    let mut found = Found::default();
+    let mut now: Vec<(World, u32)> = Vec::new();
+    for (place, beginning) in begun.iter().enumerate() {
+        steps.push(Step {
+            from: u32::MAX,
+            action: 0,
+        });
+        if is_new(&known, beginning.world.print()) {
+            now.push((beginning.world.clone(), place as u32));
+        }
+    }
+    let states = AtomicUsize::new(now.len());
+    while !now.is_empty() && states.load(Ordering::Relaxed) < most {
+        found.longest += 1;
+        let queue = Mutex::new(now.into_iter());
+        let threads = thread::available_parallelism().map_or(1, usize::from);
+        let parts: Vec<Part> = thread::scope(|scope| {
+            let walk = || walk(&queue, &actions, &known, &states, most);
+            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(walk)).collect();
+            threads
+                .into_iter()
+                .map(|thread| thread.join().expect("a thread of the walk"))
+                .collect()
+        });
+        let mut next = Vec::new();
+        let mut broken = Vec::new();
+        for part in parts {
+            found.tried += part.tried;
+            broken.extend(part.broken);
+            next.extend(part.reached);
+        }
+        // The same whichever thread was quicker.
+        broken.sort_by_key(|(from, action, _)| (*from, *action));
+        for (from, action, fault) in broken {
+            let entry = found.broken.entry(fault.rule).or_insert_with(|| {
+                let told = tell(&begun, &steps, &actions, Step { from, action });
+                (0, format!("{told}\n  {}", fault.seen))
+            });
+            entry.0 += 1;
+        }
+        now = next
+            .into_iter()
+            .map(|(world, step)| {
+                steps.push(step);
+                (world, steps.len() as u32 - 1)
+            })
+            .collect();
+    }
+    found.closed = now.is_empty();
+    found.states = states.into_inner();
+    found
+}
+
+/// What a thread has reached.
+#[derive(Default)]
+struct Part {
+    tried: usize,
+    reached: Vec<(World, Step)>,
+    broken: Vec<(u32, u8, Broken)>,
+}
+
+fn is_new(known: &[Mutex<Known>], print: u64) -> bool {
+    let shard = &known[(print >> 58) as usize];
+    shard.lock().expect("no thread has failed").insert(print)
+}
+
+fn walk(
+    queue: &Mutex<vec::IntoIter<(World, u32)>>,
+    actions: &[Action],
+    known: &[Mutex<Known>],
+    states: &AtomicUsize,
+    most: usize,
+) -> Part {
+    let mut part = Part::default();
+    while states.load(Ordering::Relaxed) < most {
+        let chunk: Vec<_> = {
+            let mut queue = queue.lock().expect("no thread has failed");
+            queue.by_ref().take(CHUNK).collect()
+        };
+        if chunk.is_empty() {
+            break;
+        }
+        for (world, from) in chunk {
+            part.expand(&world, from, actions, known, states);
+        }
+    }
+    part
+}
+
+impl Part {
+    /// All that may happen to a state.
+    fn expand(
+        &mut self,
+        world: &World,
+        from: u32,
+        actions: &[Action],
+        known: &[Mutex<Known>],
+        states: &AtomicUsize,
+    ) {
+        for (number, action) in actions.iter().enumerate() {
+            if !world.can(*action) {
+                continue;
+            }
+            self.tried += 1;
+            let mut next = world.clone();
+            let step = Step {
+                from,
+                action: number as u8,
+            };
+            match next.apply(*action) {
+                Err(broken) => self.broken.push((step.from, step.action, broken)),
+                Ok(()) if is_new(known, next.print()) => {
+                    states.fetch_add(1, Ordering::Relaxed);
+                    self.reached.push((next, step));
+                }
+                Ok(()) => {}
+            }
+        }
+    }
+}
+
+/// A sequence, in words.
+fn tell(begun: &[Beginning], steps: &[Step], actions: &[Action], last: Step) -> String {
+    let mut sequence = vec![actions[usize::from(last.action)]];
+    let mut at = last.from;
+    while steps[at as usize].from != u32::MAX {
+        sequence.push(actions[usize::from(steps[at as usize].action)]);
+        at = steps[at as usize].from;
+    }
+    let beginning = &begun[at as usize];
+    let mut text = format!("  power on with {}", beginning.memory);
+    let told = beginning
+        .actions
+        .iter()
+        .copied()
+        .chain(sequence.into_iter().rev());
+    for action in told {
+        _ = write!(text, "; {action}");
+    }
+    text
+}
