@@ -216,7 +216,7 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
 #[test]
 fn every_bit_of_the_servos_hash_tells_other_servos() {
     let robot = robot();
-    let mut chip = Chip::blank();
+    let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 1), &mut chip);
     for bit in 0..32 {
         let other = Sample {

@@ -19,7 +19,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     for place in 0..4 {
         let mut servo = motion.calibration[place];
         servo.neutral = Width(servo.neutral.0 + 1000);
-        motion.calibrate(place, servo);
+        motion.calibrate(Servo::at(place), servo);
     }
     motion.settle();
     for frame in 1..=1000u16 {
