@@ -43,7 +43,7 @@ pub enum Outcome {
 struct Copies {
     /// What was found of each.
     found: [Found; 2],
-    /// The place of the one that was saved last, if any is whole.
+    /// The number of the one that was saved last, if any is whole.
     latest: usize,
 }
 
@@ -64,16 +64,14 @@ impl Copies {
         self.found[self.latest & 1] != Found::Whole
     }
 
-    fn place(&self) -> Address {
+    fn address(&self) -> Address {
         COPIES[self.latest & 1]
     }
 }
 
-/// Reads the settings to use into `settings`: those saved last, if they will do. If
-/// not, robot.toml's.
+/// Reads the settings saved last into `settings`, where they are for this robot.
 #[inline(never)]
-pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
-    *settings = Settings::of(robot);
+pub fn read<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
         return match copies.found {
@@ -81,16 +79,27 @@ pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings)
             _ => Outcome::Damaged,
         };
     }
-    copies.place().fetch(memory, settings.bytes_mut());
-    let outcome = if !settings.are_for(robot) {
+    copies.address().fetch(memory, settings.bytes_mut());
+    if !settings.are_for(robot) {
         Outcome::Foreign
-    } else if settings.unfit(robot).is_some() {
-        Outcome::Unfit
     } else if copies.found.contains(&Found::Damaged) {
-        return Outcome::Other;
+        Outcome::Other
     } else {
-        return Outcome::Latest;
-    };
+        Outcome::Latest
+    }
+}
+
+/// Reads the settings to use into `settings`: those saved last, if the gaits can be
+/// walked with them. If not, robot.toml's.
+#[inline(never)]
+pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
+    let mut outcome = read(robot, memory, settings);
+    if matches!(outcome, Outcome::Latest | Outcome::Other) {
+        if settings.unfit(robot).is_none() {
+            return outcome;
+        }
+        outcome = Outcome::Unfit;
+    }
     *settings = Settings::of(robot);
     outcome
 }
@@ -103,7 +112,7 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
         settings.set_turn(1);
         return Some(COPIES[0].write());
     }
-    let latest = copies.place();
+    let latest = copies.address();
     let turn = latest.byte(memory, TURN as u16);
     settings.set_turn(turn);
     let kept = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;

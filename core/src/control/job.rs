@@ -54,8 +54,11 @@ impl<R: Robot> Control<R> {
             None => return None,
             Some(Job::Load) => {
                 let mut kept = Settings::NONE;
-                match record::load(self.motion.robot(), memory, &mut kept) {
-                    Outcome::Latest | Outcome::Other => self.replace(&kept),
+                match record::read(self.motion.robot(), memory, &mut kept) {
+                    Outcome::Latest | Outcome::Other => match self.replace(&kept) {
+                        Err(Refusal::Unfit(_)) => Err(Refusal::NothingSaved),
+                        done => done,
+                    },
                     _ => Err(Refusal::NothingSaved),
                 }
             }

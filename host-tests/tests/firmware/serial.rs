@@ -114,30 +114,36 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 #[test]
 fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
     // The receiver has room for two bytes and one on its way; the answer tells the number
-    // that is left of four digits.
+    // that is left of five digits.
     let byte = 1_400;
     let mut bench = awake(Fidelity::DataSheet);
-    let mut lost_before = 0.0;
+    let (mut lost_before, mut overrun) = (0.0, 0);
     for n in 0..40u64 {
         let overruns = bench.uno.overruns();
         bench.uno.send(b"watch ");
         bench.run_ms(2);
-        bench.uno.send(b"1234");
+        bench.uno.send(b"01234");
         bench.uno.run_cycles(byte / 2 + n * 37);
-        bench.uno.hold(4 * byte);
+        bench.uno.hold(5 * byte);
         bench.run_ms(3);
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);
-        assert!(digits.len() < 4 && !digits.is_empty(), "{n}: {answer}");
-        let mut sent = b"1234".iter();
+        // Whether the first byte is still taken depends on where main keeps interrupts off.
+        let lost = bench.uno.overruns() > overruns;
+        assert_eq!(digits.len() < 5, lost, "{n}: {answer}");
+        overrun += usize::from(lost);
+        let mut sent = b"01234".iter();
         let in_order = digits.bytes().all(|digit| sent.any(|sent| *sent == digit));
         assert!(in_order, "{n}: {answer}");
-        assert!(bench.uno.overruns() > overruns, "{n}: nothing was lost");
-        let lost = Status::of(&mut bench).number("rx_lost");
-        assert!(lost > lost_before, "{n}: it is counted");
-        lost_before = lost;
+        let counted = Status::of(&mut bench).number("rx_lost");
+        assert_eq!(counted > lost_before, lost, "{n}: it is counted");
+        lost_before = counted;
         bench.say("watch 0");
     }
+    assert!(
+        overrun > 30,
+        "only {overrun} of 40 times something was lost"
+    );
 }
 
 #[test]
