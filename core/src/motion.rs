@@ -202,7 +202,9 @@ impl<R: Robot> Motion<R> {
         if stand {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
-            self.stance.awake = stance.awake.min(AWAKE);
+            // The next servo to wake waits as long as after any other.
+            let awake = stance.awake.min(AWAKE);
+            self.stance.awake = awake - awake % WAKE_APART;
         }
         self.settle();
         true

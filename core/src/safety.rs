@@ -140,6 +140,11 @@ impl Safety {
         self.supply.measured() == Some(Level::Good)
     }
 
+    /// Whether it does so at this moment: not while it dips.
+    pub fn allows_writing_now(&self) -> bool {
+        self.allows_writing() && self.supply.is_steady()
+    }
+
     /// What follows from an event.
     #[inline(never)]
     pub fn response(&self, event: Event, state: State) -> Response {

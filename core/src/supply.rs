@@ -187,6 +187,11 @@ impl Supply {
         self.level
     }
 
+    /// Whether the last reading is of that level. If not, it may only be a dip.
+    pub const fn is_steady(&self) -> bool {
+        self.frames == 0
+    }
+
     /// The same, once it has been measured.
     pub const fn measured(&self) -> Option<Level> {
         match self.reading.reference {

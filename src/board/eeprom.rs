@@ -21,7 +21,10 @@ pub struct Eeprom {
 }
 
 impl Eeprom {
+    /// Waits for a write that a reset has left under way, 3.4 ms at most: until then
+    /// nothing can be read.
     pub fn new(registers: EEPROM) -> Self {
+        while registers.eecr().read().eepe().bit_is_set() {}
         // Erase and write in one operation, and no interrupt; the boot loader may
         // have left something else.
         registers.eecr().reset();

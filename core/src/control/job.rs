@@ -29,7 +29,7 @@ impl<R: Robot> Control<R> {
     /// meanwhile. The pose of a rest waits for a supply that allows to write it, and
     /// nobody has to wait with it.
     pub fn is_writing(&self) -> bool {
-        self.job.is_some() || self.rested.is_some() && self.safety.allows_writing()
+        self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
     }
 
     /// Does a part of what there is to do with the memory: one byte at most. Returns
@@ -40,6 +40,10 @@ impl<R: Robot> Control<R> {
             return None;
         }
         let may_write = self.safety.allows_writing();
+        // A dip ends, or the supply's level changes.
+        if may_write && !self.safety.allows_writing_now() {
+            return None;
+        }
         if may_write && let Some(writing) = &mut self.rested {
             let pose = Settings::of_pose(self.motion.pose(), self.motion.robot());
             match writing.step(pose.bytes(), memory) {

@@ -193,8 +193,7 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
         let mut moved = 0;
         for _ in 0..200 {
             let pulses = dialogue.frame();
-            for place in 0..4 {
-                let (pulse, before) = (pulses.0[place], &mut last.0[place]);
+            for (place, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
                 if pulse.0 == 0 {
                     continue;
                 }
@@ -202,7 +201,7 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
                 let way = pulse.0.abs_diff(before.0);
                 assert!(way <= most + 1, "{setting} A{}: {way} of {most}", place + 1);
                 moved += usize::from(place == servo && way > 0);
-                *before = pulse;
+                *before = *pulse;
             }
         }
         assert!(moved > 3, "{setting}: it was undone");
