@@ -294,7 +294,8 @@ impl<'a> Script<'a> {
                 self.steps.push(Step::Reset);
             }
             72..80 => self.dip(),
-            80..86 => self.sag(),
+            80..84 => self.sag(),
+            84 | 85 => self.low(),
             86..92 => self.stall_and_more(),
             92 => self.adjust(),
             93 => {
@@ -335,12 +336,28 @@ impl<'a> Script<'a> {
             .supplies()
             .board
             .map(|volts| (1_000.0 * volts) as u16);
-        let first = self.rng.u16(stop - 100..slow + 150);
+        let first = self.rng.u16(stop - 50..slow + 50);
         let second = self.rng.u16(rest - 400..stop);
         self.steps.push(Step::Supply(first));
-        self.wait_up_to(140);
+        // Often a reading or two before the first level would count.
+        self.wait(50);
+        self.wait_up_to(100);
         self.steps.push(Step::Supply(second));
         self.wait_up_to(60);
+        self.steps.push(Step::Supply(5_000));
+    }
+
+    /// The supply allows to move and not to write, for long, and is asked for both.
+    fn low(&mut self) {
+        let [slow, stop, _] = self.robot.supplies().board.map(|volts| (1_000.0 * volts) as u16);
+        let mv = self.rng.u16(stop + 50..slow - 50);
+        self.steps.push(Step::Supply(mv));
+        self.wait(250);
+        for line in ["rest", "stand", "save"] {
+            self.wait_up_to(200);
+            self.say(line);
+        }
+        self.wait(100);
         self.steps.push(Step::Supply(5_000));
     }
 

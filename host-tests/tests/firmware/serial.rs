@@ -148,7 +148,10 @@ fn a_line_with_a_garbled_byte_is_refused_wherever_it_is_and_the_byte_is_counted(
             assert_eq!(said.as_deref(), Some(refused), "byte {place}");
         }
         let status = Status::of(&mut bench);
-        assert_eq!((status.number("speed"), status.number("rx_lost")), (100.0, 8.0));
+        assert_eq!(
+            (status.number("speed"), status.number("rx_lost")),
+            (100.0, 8.0)
+        );
         assert_eq!(bench.say("speed 90"), "ok speed 90");
     });
 }

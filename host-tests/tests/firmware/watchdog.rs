@@ -282,7 +282,10 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     assert!(before.iter().all(Vec::is_empty), "{before:?}");
     bench.uno.run_ms(2_500);
     assert_eq!(widths_now(&mut bench), neutral_widths());
-    let said = bench.lines().iter().any(|line| line.text == "# boot: stand");
+    let said = bench
+        .lines()
+        .iter()
+        .any(|line| line.text == "# boot: stand");
     assert!(said);
     bench.say("rest");
     bench.run_ms(300);
@@ -290,5 +293,8 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
     let after = pulses_in(&mut bench, 5_000);
-    assert!(after.iter().all(Vec::is_empty), "a byte has called boot off");
+    assert!(
+        after.iter().all(Vec::is_empty),
+        "a byte has called boot off"
+    );
 }

@@ -1,8 +1,9 @@
 //! `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
 //! tree, one at a time, and says which of them no test notices.
 //!
-//! Only the code of the board is in that list: it runs nowhere but in the firmware,
-//! so no tool for host crates reaches it. The tests are built once, from the tree as
+//! Most of the code in that list is the board's: it runs nowhere but in the firmware, so
+//! no tool for host crates reaches it. What is of the core is what trouble at random
+//! moments must find out in the running image. The tests are built once, from the tree as
 //! it is, and given each mistaken firmware by LIZARD_ELF.
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
@@ -201,6 +202,8 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
             "lizard-host-tests",
             "--test",
             "firmware",
+            "--test",
+            "trouble",
             "--",
         ])
         .arg(filter)
