@@ -43,12 +43,13 @@ pub fn may_begin(record: &Record, rules: &Rules, cycle: u64) -> bool {
     for (heard, done) in record.orders() {
         match (heard.text.as_str(), done) {
             (_, Some(false)) => {}
-            // An order acts with the next frame. One that trouble came before is perhaps
+            // An order acts with the next frame. One that trouble or another came before is perhaps
             // done, perhaps not.
             ("rest", _) => {
                 let end = heard.cycle + UNTIL_REST;
                 let troubled = record.starts_in(heard.cycle, end).next().is_some()
-                    || record.is_disturbed(heard.cycle, end);
+                    || record.is_disturbed(heard.cycle, end)
+                    || record.was_ordered(heard.cycle + 1, end);
                 if done.is_some() && !troubled {
                     note(end, false);
                 }
