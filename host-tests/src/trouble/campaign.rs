@@ -9,8 +9,9 @@ use std::thread;
 use lizard_robot::Robot;
 use simulated_uno::Image;
 
+use super::activity::Activity;
 use super::invariants::{INVARIANTS, Rules};
-use super::scenario::{Activity, Scenario};
+use super::scenario::Scenario;
 use super::stage::play;
 
 /// A scenario that broke an invariant.

@@ -7,6 +7,7 @@
 //! LED, what is written to the EEPROM. A scenario is made of its seed and number alone,
 //! so one that fails can be played again.
 
+mod activity;
 pub mod campaign;
 pub mod invariants;
 pub mod record;
@@ -15,6 +16,7 @@ mod setup;
 mod stage;
 pub mod step;
 
+pub use activity::Activity;
 pub use campaign::{Failure, Summary, campaign, judge};
-pub use scenario::{Activity, Scenario};
+pub use scenario::Scenario;
 pub use stage::play;

@@ -316,5 +316,5 @@ fn is_order(line: &str) -> bool {
         "boot", "deadman", "save", "load", "factory", "nonsense",
     ];
     let word = line.split(' ').next().unwrap_or_default();
-    !OTHERS.contains(&word)
+    !OTHERS.contains(&word) && line != super::scenario::NOWHERE
 }

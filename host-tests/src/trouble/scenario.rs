@@ -8,60 +8,14 @@ use lizard_host::sim::tour;
 use lizard_robot::Robot;
 use simulated_uno::CYCLES_PER_MS;
 
+use super::activity::Activity;
 use super::setup;
 use super::step::Step;
 
 const MS: u64 = CYCLES_PER_MS;
 
-/// What the robot does when trouble begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Activity {
-    /// It rests, or has just been told to.
-    Resting,
-    /// Its servos wake after a rest.
-    Waking,
-    /// It holds a pose or stands.
-    Holding,
-    /// It goes from one pose to another.
-    Moving,
-    /// It walks.
-    Cycling,
-    /// It writes the EEPROM.
-    Saving,
-    /// The program has just begun.
-    Starting,
-    /// It is asked, and answers.
-    Talking,
-}
-
-impl Activity {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::Resting,
-        Self::Waking,
-        Self::Holding,
-        Self::Moving,
-        Self::Cycling,
-        Self::Saving,
-        Self::Starting,
-        Self::Talking,
-    ];
-}
-
-impl fmt::Display for Activity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Resting => "resting",
-            Self::Waking => "waking",
-            Self::Holding => "holding",
-            Self::Moving => "moving",
-            Self::Cycling => "cycling",
-            Self::Saving => "saving",
-            Self::Starting => "just started",
-            Self::Talking => "talking",
-        })
-    }
-}
+/// A pose beyond every servo's travel, which is always refused.
+pub(super) const NOWHERE: &str = "pose 0 0 0 0";
 
 /// A scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -264,14 +218,7 @@ impl<'a> Script<'a> {
             _ => {}
         }
         for _ in 0..self.rng.u8(1..5) {
-            let lines = [
-                "status",
-                "help",
-                "cal",
-                "speed 50",
-                "nonsense",
-                "pose 0 0 0 0",
-            ];
+            let lines = ["status", "help", "cal", "speed 50", "nonsense", NOWHERE];
             let line = *self.rng.choice(&lines).unwrap_or(&"status");
             self.send(line);
         }
@@ -294,7 +241,8 @@ impl<'a> Script<'a> {
                 self.steps.push(Step::Reset);
             }
             72..80 => self.dip(),
-            80..86 => self.sag(),
+            80..84 => self.sag(),
+            84 | 85 => self.low(),
             86..92 => self.stall_and_more(),
             92 => self.adjust(),
             93 => {
@@ -335,12 +283,32 @@ impl<'a> Script<'a> {
             .supplies()
             .board
             .map(|volts| (1_000.0 * volts) as u16);
-        let first = self.rng.u16(stop - 100..slow + 150);
+        let first = self.rng.u16(stop - 50..slow + 50);
         let second = self.rng.u16(rest - 400..stop);
         self.steps.push(Step::Supply(first));
-        self.wait_up_to(140);
+        // Often a reading or two before the first level would count.
+        self.wait(50);
+        self.wait_up_to(100);
         self.steps.push(Step::Supply(second));
         self.wait_up_to(60);
+        self.steps.push(Step::Supply(5_000));
+    }
+
+    /// The supply allows to move and not to write, for long, and is asked for both.
+    fn low(&mut self) {
+        let [slow, stop, _] = self
+            .robot
+            .supplies()
+            .board
+            .map(|volts| (1_000.0 * volts) as u16);
+        let mv = self.rng.u16(stop + 50..slow - 50);
+        self.steps.push(Step::Supply(mv));
+        self.wait(250);
+        for line in ["rest", "stand", "save"] {
+            self.wait_up_to(200);
+            self.say(line);
+        }
+        self.wait(100);
         self.steps.push(Step::Supply(5_000));
     }
 
@@ -408,13 +376,7 @@ impl<'a> Script<'a> {
         self.send("");
         self.wait(150);
         self.say("status");
-        let refused = [
-            "pose 0 0 0 0",
-            "trim 1 90",
-            "speed 5",
-            "nonsense",
-            "limit 2 1 2",
-        ];
+        let refused = [NOWHERE, "trim 1 90", "speed 5", "nonsense", "limit 2 1 2"];
         let refused = *self.rng.choice(&refused).unwrap_or(&"nonsense");
         self.say(refused);
         self.say("status");

@@ -1,10 +1,11 @@
 //! `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
 //! tree, one at a time, and says which of them no test notices.
 //!
-//! Most of that list is code of the board: it runs nowhere but in the firmware, so no
-//! tool for host crates reaches it. The tests are built once, from the tree as it is, and
-//! given each mistaken firmware by LIZARD_ELF. An entry that names a package is for that
-//! package's own tests.
+//! Most of the code in that list is the board's: it runs nowhere but in the firmware, so
+//! no tool for host crates reaches it. What is of the core is what trouble at random
+//! moments must find out in the running image, or, in an entry that names a package, that
+//! package's own tests. The tests are built once, from the tree as it is, and given each
+//! mistaken firmware by LIZARD_ELF.
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
 //! sentence that says what is wrong; an entry that has one of them is tried. None: all.
@@ -232,6 +233,8 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
             "lizard-host-tests",
             "--test",
             "firmware",
+            "--test",
+            "trouble",
             "--",
         ])
         .arg(filter)

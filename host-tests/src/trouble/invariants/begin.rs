@@ -1,6 +1,6 @@
 //! When pulses may begin.
 
-use simulated_uno::ResetCause;
+use simulated_uno::{Reset, ResetCause};
 
 use super::Rules;
 use crate::trouble::record::{Begin, MS, Record};
@@ -43,12 +43,13 @@ pub fn may_begin(record: &Record, rules: &Rules, cycle: u64) -> bool {
     for (heard, done) in record.orders() {
         match (heard.text.as_str(), done) {
             (_, Some(false)) => {}
-            // An order acts with the next frame. One that trouble came before is perhaps
+            // An order acts with the next frame. One that trouble or another came before is perhaps
             // done, perhaps not.
             ("rest", _) => {
                 let end = heard.cycle + UNTIL_REST;
                 let troubled = record.starts_in(heard.cycle, end).next().is_some()
-                    || record.is_disturbed(heard.cycle, end);
+                    || record.is_disturbed(heard.cycle, end)
+                    || record.was_ordered(heard.cycle + 1, end);
                 if done.is_some() && !troubled {
                     note(end, false);
                 }
@@ -86,10 +87,17 @@ pub fn is_after_a_hang(record: &Record, begin: &Begin) -> bool {
         return false;
     };
     let (from, to) = (before.start, begin.pulse.start);
-    let causes = || record.starts_in(from, to).map(|start| start.cause);
-    let gone = |cause| matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
-    causes().any(|cause| cause == ResetCause::Watchdog)
-        && !causes().any(gone)
+    // Before its second stage the watchdog has marked that the program hung: another reset
+    // that comes first is taken for its.
+    let hung = |start: &Reset| {
+        start.cause == ResetCause::Watchdog
+            || record.is_disturbed(start.cycle.saturating_sub(300 * MS), start.cycle)
+    };
+    let gone = |start: &Reset| {
+        start.cause == ResetCause::PowerOn || start.cause == ResetCause::BrownOut && !hung(start)
+    };
+    record.starts_in(from, to).any(hung)
+        && !record.starts_in(from, to).any(gone)
         && !record.was_ordered(from, to)
         && to - from < 1_000 * MS
 }

@@ -43,8 +43,9 @@ pub fn silence_has_a_reason(record: &Record, rules: &Rules) -> Result<(), String
                 && done != Some(false)
                 && (heard.cycle..heard.cycle + 425 * MS).contains(&(at + 25 * MS))
         });
-        let cut =
-            |cut: &u64| (*cut..*cut + 25 * MS).contains(&at) || (at..at + 25 * MS).contains(cut);
+        let cut = |cut: &u64| {
+            (*cut..*cut + 25 * MS).contains(&at) || (at..at + UNTIL_RESET).contains(cut)
+        };
         let by_supply = record.low_for(rules.rest + 40.0, at.saturating_sub(600 * MS), at) > 0;
         let booted = |line: &&lizard_host::sim::lines::Line| line.text == "# boot: rest";
         let boot = record

@@ -4,7 +4,7 @@ use simulated_uno::Pulse;
 
 use super::Rules;
 use super::begin::may_begin;
-use crate::trouble::record::{MS, Record};
+use crate::trouble::record::{Heard, MS, Record};
 
 /// A pose is in the EEPROM so long after `rest`: the bytes of a record.
 const KEPT_AFTER: u64 = 400 * MS;
@@ -98,6 +98,12 @@ fn what_came(record: &Record, rules: &Rules, pair: &[Pulse]) -> Between {
         if since > KEPT_AFTER && good && calm && saved {
             return Between::ResetInRest;
         }
+        return Between::Unknown;
+    }
+    // A servo that was told to rest before it woke has no pulse to go over from.
+    let rests =
+        |(heard, _): (&Heard, _)| heard.text == "rest" && (start.cycle..to).contains(&heard.cycle);
+    if record.orders().any(rests) {
         return Between::Unknown;
     }
     // A pose beyond the travel that was saved is none to wake in.

@@ -1,0 +1,53 @@
+//! What a robot does when trouble comes.
+
+use std::fmt;
+
+/// What the robot does when trouble begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Activity {
+    /// It rests, or has just been told to.
+    Resting,
+    /// Its servos wake after a rest.
+    Waking,
+    /// It holds a pose or stands.
+    Holding,
+    /// It goes from one pose to another.
+    Moving,
+    /// It walks.
+    Cycling,
+    /// It writes the EEPROM.
+    Saving,
+    /// The program has just begun.
+    Starting,
+    /// It is asked, and answers.
+    Talking,
+}
+
+impl Activity {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Resting,
+        Self::Waking,
+        Self::Holding,
+        Self::Moving,
+        Self::Cycling,
+        Self::Saving,
+        Self::Starting,
+        Self::Talking,
+    ];
+}
+
+impl fmt::Display for Activity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Resting => "resting",
+            Self::Waking => "waking",
+            Self::Holding => "holding",
+            Self::Moving => "moving",
+            Self::Cycling => "cycling",
+            Self::Saving => "saving",
+            Self::Starting => "just started",
+            Self::Talking => "talking",
+        })
+    }
+}
