@@ -306,7 +306,7 @@ impl World {
             Ok(())
         } else if line.starts_with("err 8")
             && self.seen.since_low > 70
-            && self.running.board.converter.is_complete()
+            && self.running.motion().frames() > u32::from(BELIEVED)
         {
             broken("what the supply allows is not refused for its sake", line)
         } else {
