@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants random-robots fuzz docs clean trouble .fit .parts-test .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .fuzz .docs .trouble
+.PHONY: help fit parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz docs clean trouble .fit .parts-test .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .docs .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -67,6 +67,8 @@ random-robots: ## the image's tests on random valid robots; SEED=1 COUNT=10
 	$(call prepared,.random-robots)
 trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
+explore: ## everything that may happen to the robot, in every order; STATES=10000000
+	$(call prepared,.explore)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
 docs: ## write anew the pages and pictures that programs make
@@ -172,6 +174,9 @@ TESTS ?= --workspace
 # ONLY=4711 plays one scenario of the seed again, and says all that was said.
 .trouble: .firmware
 	@cd host && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
+
+.explore:
+	@cd host && cargo run --release --quiet -p lizard-explore -- $(or $(STATES),10000000)
 
 .fuzz:
 	@for target in $(or $(TARGET),console memory); do scripts/fuzz $$target $(or $(MINUTES),1) || exit 1; done

@@ -87,6 +87,8 @@ pub struct Supply {
     frames: u8,
     /// Of these levels the one that is nearest to the present one.
     nearest: Level,
+    /// Readings so far, up to as many as a level wants to be believed.
+    readings: u8,
 }
 
 /// A level is left for a worse one that lasts for as many frames: a servo's start pulls
@@ -174,6 +176,7 @@ impl Supply {
             level: Level::Good,
             frames: 0,
             nearest: Level::Good,
+            readings: 0,
         }
     }
 
@@ -192,11 +195,13 @@ impl Supply {
         self.frames == 0
     }
 
-    /// The same, once it has been measured.
+    /// The same, once it has been measured for as long as another one would have had
+    /// to be: until then it is only assumed.
     pub const fn measured(&self) -> Option<Level> {
-        match self.reading.reference {
-            0 => None,
-            _ => Some(self.level),
+        if self.readings < TO_WORSE {
+            None
+        } else {
+            Some(self.level)
         }
     }
 
@@ -220,6 +225,9 @@ impl Supply {
     /// frames that a change takes, so that one reading decides nothing.
     pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
+        if reading.reference > 0 && self.readings < TO_WORSE {
+            self.readings += 1;
+        }
         let worse = supplies.level(reading, 0);
         let (level, frames) = if worse > self.level {
             (worse, TO_WORSE)

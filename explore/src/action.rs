@@ -9,6 +9,8 @@ use lizard_core::restart::Cause;
 pub enum Action {
     /// A line is sent, and executed; what there is to say or to keep is still to do.
     Say(&'static str),
+    /// A line comes in which noise has changed a byte.
+    Noise,
     /// Main does the one thing that is the most urgent.
     Step,
     /// Frames pass.
@@ -70,6 +72,7 @@ impl Action {
             Self::Frames(25),
             Self::Frames(160),
             Self::Step,
+            Self::Noise,
         ];
         all.extend(LINES.map(Self::Say));
         // After the frame before, whose hand-over was 16 ms ago: main is late for
@@ -91,6 +94,7 @@ impl fmt::Display for Action {
         match self {
             Self::Say(line) => write!(f, "say `{line}`"),
             Self::Step => f.write_str("one step of main"),
+            Self::Noise => f.write_str("noise within `walk`"),
             Self::Frames(1) => f.write_str("a frame"),
             Self::Frames(count) => write!(f, "{count} frames"),
             Self::Stall(ms) => write!(f, "main does nothing for {ms} ms"),

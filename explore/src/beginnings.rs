@@ -8,8 +8,8 @@ use crate::world::World;
 
 /// A state to begin with, and how it came about.
 pub struct Beginning {
-    /// The memory at power-on.
-    pub memory: &'static str,
+    /// What is special at power-on.
+    pub with: &'static str,
     /// What happened since.
     pub actions: Vec<Action>,
     /// The state.
@@ -66,6 +66,9 @@ const MEMORIES: [(&str, &[Action]); 5] = [
     ),
 ];
 
+/// A boot loader hides what the chip knows of a reset.
+const BEHIND_A_BOOT_LOADER: &str = "a boot loader and a blank memory";
+
 /// What the robot does before the walk begins.
 const DOES: [&[Action]; 6] = [
     &[],
@@ -91,7 +94,7 @@ pub fn all(robot: &'static Small) -> Vec<Beginning> {
             for action in *actions {
                 _ = world.apply(*action);
             }
-            (*name, world.running.board.memory)
+            (*name, Eeprom::with(*world.running.board.memory.bytes()))
         })
         .collect();
     let saved = |memories: &[(&'static str, Eeprom)]| memories[1].1.clone();
@@ -103,16 +106,16 @@ pub fn all(robot: &'static Small) -> Vec<Beginning> {
         ("foreign bytes in the memory", foreign),
         ("a worn memory", worn),
     ]);
+    memories.push((BEHIND_A_BOOT_LOADER, Eeprom::blank()));
     let mut all = Vec::new();
-    for (memory, eeprom) in memories {
+    for (with, memory) in memories {
         for actions in DOES {
-            let mut eeprom = Eeprom::with(*eeprom.bytes());
-            eeprom.worn = memory == "a worn memory";
-            let mut world = World::power_on(robot, eeprom);
+            let mut world = World::power_on(robot, memory.clone());
+            world.running.board.boot_loader = with == BEHIND_A_BOOT_LOADER;
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
                 all.push(Beginning {
-                    memory,
+                    with,
                     actions,
                     world,
                 });

@@ -59,6 +59,9 @@ const A_LINE_CAME: &[(&str, &str, Rule)] = &[
     ("Console", "banner", Skip),
     ("Safety", "silence", Skip),
     ("Safety", "boot", Skip),
+    // Any line shows that somebody opened the port, which resets the board.
+    ("Control", "may_be_supply", Skip),
+    ("Control", "brown_outs", Skip),
 ];
 
 fn countdown(frames: u64) -> u64 {

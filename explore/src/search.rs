@@ -200,7 +200,7 @@ fn tell(begun: &[Beginning], steps: &[Step], actions: &[Action], last: Step) -> 
         at = steps[at as usize].from;
     }
     let beginning = &begun[at as usize];
-    let mut text = format!("  power on with {}", beginning.memory);
+    let mut text = format!("  power on with {}", beginning.with);
     let told = beginning
         .actions
         .iter()

@@ -3,6 +3,7 @@
 use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
 use lizard_core::kept::Flags;
+use lizard_core::line::GARBLED;
 use lizard_core::memory::{LENGTH, WHOLE};
 use lizard_core::motion::Activity;
 use lizard_core::pose::{Pose, Pulses};
@@ -89,6 +90,7 @@ impl World {
         let truth = board.converter.truth();
         let flags = [
             board.memory.worn,
+            board.boot_loader,
             board.memory.under_way().is_some(),
             board.is_hushed(),
             board.stack_is_intact,
@@ -109,7 +111,7 @@ impl World {
     pub fn can(&self, action: Action) -> bool {
         let board = &self.running.board;
         match action {
-            Action::Say(_) => {
+            Action::Say(_) | Action::Noise => {
                 board.waiting() == 0 && !board.transmitter.held && !self.running.is_over()
             }
             Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
@@ -132,7 +134,8 @@ impl World {
     /// The first rule that is broken by it.
     pub fn apply(&mut self, action: Action) -> Held {
         match action {
-            Action::Say(line) => self.say(line)?,
+            Action::Say(line) => self.say(line.as_bytes())?,
+            Action::Noise => self.say(&[b'w', b'a', GARBLED, b'k'])?,
             Action::Step => {
                 self.running.main.step(&mut self.running.board);
                 self.listen()?;
@@ -184,9 +187,9 @@ impl World {
     }
 
     /// A line, up to what it does at once.
-    fn say(&mut self, line: &str) -> Held {
+    fn say(&mut self, line: &[u8]) -> Held {
         let before = self.settled();
-        self.running.board.send(line.as_bytes());
+        self.running.board.send(line);
         self.running.board.send(b"\n");
         self.seen.owed += 1;
         self.seen.line_ms = 0;
@@ -201,7 +204,7 @@ impl World {
             }
         }
         if self.running.board.waiting() == 0 {
-            self.foresee(line, &before)?;
+            self.foresee(&before)?;
         }
         self.listen()
     }
@@ -216,7 +219,7 @@ impl World {
 
     /// Holds the robot to the answer that it is about to give, if it gives one at once:
     /// it has done by now what it answers.
-    fn foresee(&mut self, line: &str, before: &Running<&'static Small>) -> Held {
+    fn foresee(&mut self, before: &Running<&'static Small>) -> Held {
         let after = self.settled();
         let text = &after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
@@ -227,10 +230,7 @@ impl World {
             && (print(&after) != print(before)
                 || after.board.memory.bytes() != before.board.memory.bytes())
         {
-            return broken(
-                "a refused command changes nothing",
-                format!("{line}: {text}"),
-            );
+            return broken("a refused command changes nothing", text.clone());
         }
         self.seen.known += 1;
         self.answer(answer)
@@ -268,10 +268,12 @@ impl World {
             self.seen.since_told = 0;
             if line.contains("no line for") {
                 self.seen.stop();
-                if self.seen.deadman > 0 && self.seen.line_ms < self.seen.deadman {
+                // It was decided at the beginning of the frame.
+                let since = self.seen.line_ms.saturating_sub(19);
+                if self.seen.deadman > 0 && since < self.seen.deadman {
                     return broken(
                         "a gait ends for want of a line only if none came for as long as deadman says",
-                        format!("{} ms after the last line", self.seen.line_ms),
+                        format!("{since} ms after the last line"),
                     );
                 }
             }
@@ -304,7 +306,7 @@ impl World {
             Ok(())
         } else if line.starts_with("err 8")
             && self.seen.since_low > 70
-            && self.running.board.converter.is_complete()
+            && self.running.motion().frames() > u32::from(BELIEVED)
         {
             broken("what the supply allows is not refused for its sake", line)
         } else {
