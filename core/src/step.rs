@@ -157,6 +157,8 @@ impl<R: Robot> Main<R> {
             let counters = board.counters();
             let out = board.writer();
             let Ok(()) = self.console.write_line(&mut self.control, out, counters);
+        } else if self.control.waits_for_supply() {
+            return Step::Idle(self.ticks);
         } else if self.control.is_writing() {
             if let Some(outcome) = self.control.write_memory(board.memory()) {
                 self.console.done(outcome);

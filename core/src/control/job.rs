@@ -32,18 +32,20 @@ impl<R: Robot> Control<R> {
         self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
     }
 
+    /// True while an order waits for a dip of the supply to end, or to be a low supply:
+    /// nothing can be done before the next frame.
+    pub fn waits_for_supply(&self) -> bool {
+        self.job.is_some() && self.safety.allows_writing() && !self.safety.allows_writing_now()
+    }
+
     /// Does a part of what there is to do with the memory: one byte at most. Returns
     /// what has come of an order, once it is done.
     #[inline(never)]
     pub fn write_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
-        if !memory.is_ready() {
+        if !memory.is_ready() || self.waits_for_supply() {
             return None;
         }
-        let may_write = self.safety.allows_writing();
-        // A dip ends, or the supply's level changes.
-        if may_write && !self.safety.allows_writing_now() {
-            return None;
-        }
+        let may_write = self.safety.allows_writing_now();
         if may_write && let Some(writing) = &mut self.rested {
             let pose = Settings::of_pose(self.motion.pose(), self.motion.robot());
             match writing.step(pose.bytes(), memory) {
