@@ -124,7 +124,7 @@ fn without_permission_it_says_which_group_to_join() {
     let as_nobody = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
         // Nobody else can be asked, but a port that its owner may not open either will do.
-        fs::set_permissions(&port, Permissions::from_mode(0)).expect("it is ours");
+        fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("it is ours");
         let (said, goes_on) = check_as(&[], ports.path(), None);
         assert!(!goes_on);
         assert!(said.contains("may not open"), "{said}");

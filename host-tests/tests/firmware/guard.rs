@@ -273,23 +273,27 @@ fn barred_way() -> Option<[[f64; 4]; 2]> {
     let barred = |from: [f64; 4], to: [f64; 4]| {
         let (from, to) = (steps(from), steps(to));
         let unsafe_at = |n: &u32| {
-            let share = f64::from(*n) / 200.0;
+            let share = f64::from(*n) / 100.0;
             let at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
             let pose = Sweeps(std::array::from_fn(at));
             Clearance::of(firmware, &pose).hazard(firmware).is_some()
         };
-        (0..=200).filter(unsafe_at).count()
+        (0..=100).filter(unsafe_at).count()
     };
     let neutral = robot().servos().map(|servo| servo.neutral);
     let mut edges: Vec<[f64; 4]> = Vec::new();
-    for _ in 0..3000 {
+    for _ in 0..2000 {
         let pose = far(&mut rng);
         if barred(neutral, pose) == 0 && barred(pose, neutral) == 0 {
-            let found = edges.iter().find(|edge| barred(**edge, pose) > 40);
+            let found = edges.iter().find(|edge| barred(**edge, pose) > 20);
             if let Some(edge) = found {
                 return Some([*edge, pose]);
             }
-            edges.push(pose);
+            // A few, in all directions: of a robot without such a way each is tried with
+            // each.
+            if edges.len() < 40 {
+                edges.push(pose);
+            }
         }
     }
     None
