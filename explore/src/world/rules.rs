@@ -82,11 +82,10 @@ impl World {
 
     /// What the answer to an order promises.
     fn answer(&mut self, line: &str) -> Held {
-        let moves = ["ok walk", "ok trot", "ok stray", "ok pose", "ok center"];
         if line == "ok stand" {
             self.seen.order();
             self.stands_after(line)
-        } else if moves.iter().any(|answer| line.starts_with(answer)) {
+        } else if is_order(line) {
             self.seen.order();
             self.has_pulses_after(line)
         } else if line == "ok rest" {
@@ -191,12 +190,16 @@ impl World {
         let wakes = |servo: &usize| widths[*servo] > 0 && !was_on[*servo];
         let woken: Vec<usize> = (0..4).filter(wakes).collect();
         if self.seen.rests && self.seen.silent > 0 && widths.iter().any(|width| *width > 0) {
-            // Nobody may have heard that it boots.
+            // Nobody may have heard that it boots, or obeys.
             let mut heard = self.running.clone();
             heard.board.transmitter.held = false;
             heard.settle();
-            if heard.board.transmitter.text.contains("# boot: ") {
-                self.seen.rests = false;
+            let text = &heard.board.transmitter.text;
+            if text
+                .lines()
+                .any(|line| line.starts_with("# boot: ") || is_order(line))
+            {
+                self.seen.order();
                 return self.seen_frame(&begun, main_ran);
             }
             return broken(
@@ -260,4 +263,17 @@ impl World {
         }
         Ok(())
     }
+}
+
+/// Whether a line answers that a motion which was ordered begins.
+fn is_order(line: &str) -> bool {
+    let orders = [
+        "ok stand",
+        "ok walk",
+        "ok trot",
+        "ok stray",
+        "ok pose",
+        "ok center",
+    ];
+    orders.iter().any(|order| line.starts_with(order))
 }
