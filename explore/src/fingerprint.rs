@@ -9,17 +9,23 @@
 
 use std::fmt::{self, Write};
 
+/// What makes a number coarser.
+type Coarser = fn(u64) -> u64;
+
 /// What becomes of a field.
 #[derive(Clone, Copy)]
 enum Rule {
     Skip,
-    Coarse(fn(u64) -> u64),
+    Coarse(Coarser),
 }
 
 use Rule::{Coarse, Skip};
 
+/// What a field is in, its name, and what becomes of it.
+type Field = (&'static str, &'static str, Rule);
+
 /// Fields, by the name of what they are in.
-const RULES: &[(&str, &str, Rule)] = &[
+const RULES: &[Field] = &[
     ("Main", "ticks", Skip),
     // What the last line was; the next byte begins a new one.
     ("Console", "line", Skip),
@@ -52,7 +58,7 @@ const RULES: &[(&str, &str, Rule)] = &[
 ];
 
 /// What a command that is refused may change: that a line came.
-const A_LINE_CAME: &[(&str, &str, Rule)] = &[
+const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
     ("Console", "answer", Skip),
@@ -90,7 +96,7 @@ pub fn but_for_the_line(value: &impl fmt::Debug) -> u64 {
     print(value, A_LINE_CAME)
 }
 
-fn print(value: &impl fmt::Debug, rules: &'static [(&str, &str, Rule)]) -> u64 {
+fn print(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
     let mut reader = Reader {
         rules,
         print: Print::default(),
@@ -125,7 +131,7 @@ impl Print {
 /// Reads what `Debug` writes: it writes a name, a brace, a field's name, a colon and a
 /// value, each by itself.
 struct Reader {
-    rules: &'static [(&'static str, &'static str, Rule)],
+    rules: &'static [Field],
     print: Print,
     /// What the value is in: the hash of a struct's name, 0 for what has no fields.
     within: Vec<u64>,
@@ -134,7 +140,7 @@ struct Reader {
     /// Whether the next piece is a field's name.
     names_field: bool,
     /// What becomes of the numbers of the field that is this deep.
-    number: Option<(fn(u64) -> u64, usize)>,
+    number: Option<(Coarser, usize)>,
     /// How deep the value is that is left out.
     skipped: Option<usize>,
 }

@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
 use std::hash::{BuildHasherDefault, Hasher};
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -16,7 +17,7 @@ use std::vec;
 use crate::action::Action;
 use crate::beginnings::{self, Beginning};
 use crate::small::Small;
-use crate::world::{Broken, World};
+use crate::world::{Broken, Held, World};
 
 /// Numbers of states are random as they are.
 #[derive(Default)]
@@ -82,6 +83,9 @@ pub fn search(robot: &'static Small, most: usize) -> Found {
         }
     }
     let states = AtomicUsize::new(now.len());
+    // Each is told as a rule that is broken.
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
     while !now.is_empty() && states.load(Ordering::Relaxed) < most {
         found.longest += 1;
         let queue = Mutex::new(now.into_iter());
@@ -118,6 +122,7 @@ pub fn search(robot: &'static Small, most: usize) -> Found {
             })
             .collect();
     }
+    panic::set_hook(hook);
     found.closed = now.is_empty();
     found.states = states.into_inner();
     found
@@ -179,7 +184,7 @@ impl Part {
                 from,
                 action: number as u8,
             };
-            match next.apply(*action) {
+            match happens(&mut next, *action) {
                 Err(broken) => self.broken.push((step.from, step.action, broken)),
                 Ok(()) if is_new(known, next.print()) => {
                     states.fetch_add(1, Ordering::Relaxed);
@@ -189,6 +194,19 @@ impl Part {
             }
         }
     }
+}
+
+/// What happens; a panic is one of the things that must not.
+fn happens(world: &mut World, action: Action) -> Held {
+    let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
+    applied.unwrap_or_else(|why| {
+        let said = why.downcast_ref::<String>().cloned();
+        let said = said.or_else(|| why.downcast_ref::<&str>().map(ToString::to_string));
+        Err(Broken {
+            rule: "main comes to rest, and uses the board as the board allows",
+            seen: said.unwrap_or_default(),
+        })
+    })
 }
 
 /// A sequence, in words.

@@ -105,6 +105,7 @@ impl Seen {
     pub fn order(&mut self) {
         self.rests = false;
         self.is_sent_to_rest = false;
+        self.silent = 0;
         self.stopped = 0;
         self.brown_outs = 0;
     }

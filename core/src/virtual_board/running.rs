@@ -68,7 +68,7 @@ impl<R: Robot> Running<R> {
         if self.is_over() {
             return;
         }
-        for _ in 0..1_000_000 {
+        for _ in 0..100_000 {
             let step = self.main.step(&mut self.board);
             if step != Step::Worked || self.board.memory.is_asked_in_vain() {
                 return;
