@@ -16,6 +16,7 @@ use crate::motion::Activity;
 use crate::pose::{Pose, Pulses};
 use crate::restart::{Cause, Restart, Stance};
 use crate::sample::{GAITS, Sample};
+use crate::settings::Settings;
 use crate::step::Step;
 use crate::units::Width;
 use crate::virtual_board::{Eeprom, is_final, reading};

@@ -238,10 +238,18 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
 #[test]
 fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
     let names = ["walk 1", "walk 2", "walk 3", "walk 4"];
-    let robot = || names.iter().fold(Sample::odd(), |robot, name| robot.with_gait(name));
+    let robot = || {
+        names
+            .iter()
+            .fold(Sample::odd(), |robot, name| robot.with_gait(name))
+    };
     for name in names {
-        let mut dialogue = Dialogue::awake(robot());
-        assert_eq!(dialogue.say(&format!("boot {name}")), format!("ok boot {name}"));
+        let mut dialogue = Dialogue::power_on(robot());
+        dialogue.run(30);
+        assert_eq!(
+            dialogue.say(&format!("boot {name}")),
+            format!("ok boot {name}")
+        );
         assert_eq!(dialogue.say("save"), "ok save");
         let memory = dialogue.board.memory.clone();
         let mut again = Dialogue::with(robot(), memory, Restart::NONE);
@@ -268,10 +276,16 @@ fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
     dialogue.say("sway left");
     dialogue.run(150);
     // Far outside of all gaits. The gait brakes first, so the pose is only to come.
-    assert_eq!(dialogue.say("pose 152 50 311 224.5"), "ok pose 152 50 311 224.5");
+    assert_eq!(
+        dialogue.say("pose 152 50 311 224.5"),
+        "ok pose 152 50 311 224.5"
+    );
     dialogue.run(2);
     let refused = dialogue.say("limit 1 115 150");
-    assert!(refused.starts_with("err 3 A1 would not reach where it is"), "{refused}");
+    assert!(
+        refused.starts_with("err 3 A1 would not reach where it is"),
+        "{refused}"
+    );
     dialogue.run(300);
     assert_eq!(dialogue.status("pose"), "152.00,50.00,311.00,224.50");
     dialogue.say("stand");
@@ -290,7 +304,10 @@ fn after_a_calibration_a_gait_gathers_its_pace_again() {
     for _ in 0..100 {
         phases.push(phase_of_a_frame(&mut dialogue));
     }
-    let first = phases.iter().position(|phase| *phase > 0).expect("it goes on");
+    let first = phases
+        .iter()
+        .position(|phase| *phase > 0)
+        .expect("it goes on");
     assert!(first > 0 && phases[first] < full / 4, "{phases:?}");
     assert_eq!(phases.last(), Some(&full));
 }
