@@ -97,7 +97,8 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     use Event::{Boot, Empty, LateEdge, Move, Rest, Save, Silence, Stack, Stand, Stop, TooLow, Unsafe};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
     let enough_to_move = matches!(supply, None | Some(Level::Good | Level::Slow));
-    let enough_to_write = matches!(supply, Some(Level::Good));
+    // Before it has been measured, writing waits for that.
+    let enough_to_write = matches!(supply, None | Some(Level::Good));
     let [resting, still, walking] = match event {
         // what happens              resting                  still                    walking
         Stand if enough_to_move  => [Obey,                    Obey,                    Obey],

@@ -152,21 +152,3 @@ fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
         assert_eq!(Assembly::new(&robot).fits(), Ok(()), "{name}");
     }
 }
-
-#[test]
-fn zz_work() {
-    let extra = std::env::var("EXTRA").unwrap_or_default();
-    for name in NAMES {
-        eprintln!("ROBOT {name}");
-        let robot = Robot::parse(&format!("{}\n{extra}", text(name))).expect(name);
-        let proof = Assembly::new(&robot).prove(|_, _| ());
-        eprintln!(
-            "{:?} regions {}",
-            proof.judge().map_err(|e| e.to_string()),
-            proof.regions
-        );
-        if !extra.is_empty() {
-            break;
-        }
-    }
-}

@@ -19,7 +19,7 @@ use crate::sample::{GAITS, Sample};
 use crate::settings::Settings;
 use crate::step::Step;
 use crate::units::Width;
-use crate::virtual_board::{Eeprom, is_final, reading};
+use crate::virtual_board::{Eeprom, VirtualBoard, is_final, reading};
 use dialogue::{Dialogue, awake, pairs, standing, widths};
 
 /// The neutral pose of the odd robot, as a command.

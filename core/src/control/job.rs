@@ -12,6 +12,10 @@ use crate::refusal::Refusal;
 use crate::robot::Robot;
 use crate::safety::Notice;
 use crate::settings::Settings;
+use crate::supply::Level;
+
+/// Frames after which the supplies have been measured, or never will be.
+const MEASURED_BY: u32 = 25;
 
 /// What an order has the memory do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,10 +36,15 @@ impl<R: Robot> Control<R> {
         self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits for a dip of the supply to end, or to be a low supply:
-    /// nothing can be done before the next frame.
+    /// True while an order waits for the supply: to be measured, or for a dip to end or
+    /// to be a low supply. Nothing can be done before the next frame.
     pub fn waits_for_supply(&self) -> bool {
-        self.job.is_some() && self.safety.allows_writing() && !self.safety.allows_writing_now()
+        let supply = self.safety.supply();
+        let soon = match supply.measured() {
+            None => self.motion.frames() < MEASURED_BY,
+            Some(level) => level == Level::Good && !supply.is_steady(),
+        };
+        self.job.is_some() && soon
     }
 
     /// Does a part of what there is to do with the memory: one byte at most. Returns

@@ -29,7 +29,11 @@ impl<R: Robot> Running<R> {
     /// The same with what a memory holds and why the program begins.
     pub fn with(robot: R, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
-        let truth = reading(&supplies, 5_000, 6_000);
+        // A rail well above what it needs.
+        let rail = supplies
+            .rail
+            .map_or(0, |rail| u32::from(rail.thresholds.slow) + 1_000);
+        let truth = reading(&supplies, 5_000, rail.max(6_000));
         let board = VirtualBoard {
             converter: Converter::new(truth, supplies.rail.is_some()),
             ..VirtualBoard::new(memory).restarted(restart)

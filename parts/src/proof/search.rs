@@ -29,9 +29,7 @@ const SHARE_MEETING: f64 = 0.5;
 const NARROW: f64 = 0.002;
 /// So many regions are looked at, at most.
 pub const MANY: u64 = 100_000;
-/// And so many times a shape is bounded in one of them.
-const MUCH: u64 = 100_000_000;
-/// So many regions once an overlap is known: how deep it is at most changes no verdict.
+/// And so many once an overlap is known: how deep it is at most changes no verdict.
 const FEW: u64 = 1_000;
 
 /// What is known of the least distance.
@@ -110,8 +108,6 @@ struct Search<'a, const N: usize> {
     seen: Option<(Solution, f64)>,
     by: u32,
     regions: u64,
-    /// How many times a shape was bounded in one of them.
-    bounded: u64,
 }
 
 impl<'a, const N: usize> Search<'a, N> {
@@ -129,7 +125,6 @@ impl<'a, const N: usize> Search<'a, N> {
             seen: None,
             by: 0,
             regions: 0,
-            bounded: 0,
         }
     }
 
@@ -150,8 +145,7 @@ impl<'a, const N: usize> Search<'a, N> {
                 return self.found(part.low.min(high), None);
             }
             let most = if high < 0.0 { FEW } else { most };
-            let narrow = part.region.half.iter().all(|half| *half < NARROW);
-            if narrow || self.regions >= most || self.bounded >= MUCH {
+            if part.region.half.iter().all(|half| *half < NARROW) || self.regions >= most {
                 return self.found(part.low, Some(&part));
             }
             for half in part.region.halves(part.across) {
@@ -163,13 +157,6 @@ impl<'a, const N: usize> Search<'a, N> {
     }
 
     fn found(self, proved: f64, doubt: Option<&Part<N>>) -> Found {
-        eprintln!(
-            "WORK {:?} {} {} {} heap",
-            self.task.mounts,
-            self.task.solids.len(),
-            self.regions,
-            self.bounded
-        );
         let by = match (&self.seen, doubt) {
             (None, Some(part)) => part.by,
             _ => self.by,
@@ -237,7 +224,6 @@ impl<'a, const N: usize> Search<'a, N> {
                 if apart < nearest.0 {
                     nearest = (apart, index);
                 }
-                self.bounded += 1;
                 let low = solid.apart_within(&place, &bounds, &region);
                 if low.is_nan() { f64::NEG_INFINITY } else { low }
             };

@@ -431,3 +431,21 @@ fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
     assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
     assert_eq!(dialogue.frame(), Pulses::default());
 }
+
+#[test]
+fn a_save_right_after_the_start_waits_for_the_supply_and_no_longer_than_half_a_second() {
+    let mut dialogue = Dialogue::power_on(Sample::odd());
+    dialogue.lines();
+    dialogue.board.send(b"save\r");
+    let said = dialogue.run(5);
+    assert!(
+        said.is_empty() && dialogue.board.memory.log.is_empty(),
+        "{said:?}"
+    );
+    assert_eq!(dialogue.run(15), ["ok save"]);
+    let mut never = Dialogue::on(Sample::odd(), VirtualBoard::default());
+    never.lines();
+    never.board.send(b"save\r");
+    assert_eq!(never.run(30), ["err 8 the supply is too low"]);
+    assert!(never.board.memory.log.is_empty());
+}
