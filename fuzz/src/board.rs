@@ -26,7 +26,11 @@ impl Board {
     /// If it never falls silent.
     #[must_use]
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
-        let running = Running::with(robot.firmware(), memory, Restart::default());
+        let mut running = Running::with(robot.firmware(), memory, Restart::default());
+        // Until the supplies have been measured, a `save` waits.
+        for _ in 0..30 {
+            running.frame();
+        }
         let mut board = Self {
             robot,
             running,

@@ -19,10 +19,22 @@ const ELF: &str = concat!(
     "/../target/avr-atmega328p/release/lizard.elf"
 );
 
+/// The robot that the image is built for, as the other tests find it: the file that
+/// `LIZARD_ROBOT` names, seen from the root of the project, or robot.toml.
+fn robot() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    root.join(given.unwrap_or_else(|| "robot.toml".into()))
+}
+
 fn lizard(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(arguments);
+    // A simulated board needs the voltages that the image's robot measures.
+    if arguments.contains(&"--elf") {
+        command.arg("--robot").arg(robot());
+    }
     command
-        .args(arguments)
         .current_dir(folder)
         .env("XDG_STATE_HOME", folder)
         .env("TERM", "xterm");
