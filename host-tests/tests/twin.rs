@@ -4,6 +4,7 @@ use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::play;
 use lizard_host::sim::spans::spans;
+use lizard_host::sim::supplies;
 use lizard_host::twin::html::page;
 use lizard_host::twin::replay::Replay;
 use lizard_host::twin::report::Report;
@@ -22,6 +23,7 @@ fn walk_all(model: ServoModel) -> Replay {
     }
     let script = Script { steps, end_ms: ms };
     let mut uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the firmware");
+    supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));
     let recording = recording.expect("nothing is written");
     let spans = spans(&script, &recording.answers);
