@@ -343,7 +343,8 @@ mod tests {
                 }
             }
         }
-        let kinds: [(&str, fn(&Check) -> bool); 4] = [
+        type IsKind = fn(&Check) -> bool;
+        let kinds: [(&str, IsKind); 4] = [
             ("type-2", |what| {
                 matches!(what, Check::Type2Head | Check::Type2Tail)
             }),
