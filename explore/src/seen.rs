@@ -154,7 +154,11 @@ impl Seen {
         self.too_low = count(self.too_low, below[1]);
         self.since_low = count(self.since_low, !below[0]);
         self.since_too_low = count(self.since_too_low, !below[1]);
-        self.far_too_low = count(self.far_too_low, below[2]);
+        // A reading stands for two frames, so the last one may be later than its end.
+        self.far_too_low = match below[2] {
+            true => count(self.far_too_low, true),
+            false => self.far_too_low.saturating_sub(2),
+        };
     }
 
     /// Itself, as coarse as tells states apart.
