@@ -41,7 +41,7 @@ const LINES: [&str; 25] = [
     "stray",
     "stop",
     "rest",
-    "pose 142 41.41 318.59 221.41",
+    "pose 155 41.41 318.59 221.41",
     "pose 138.59 170 318.59 221.41",
     "center",
     "speed 50",

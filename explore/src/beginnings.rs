@@ -2,7 +2,7 @@
 
 use lizard_core::virtual_board::Eeprom;
 
-use crate::action::Action::{self, Frames, LosePower, Say, Stall};
+use crate::action::Action::{self, Frames, LosePower, Say, Stall, Supply};
 use crate::small::Small;
 use crate::world::World;
 
@@ -32,7 +32,7 @@ const MEMORIES: [(&str, &[Action]); 5] = [
     (
         "a saved rest",
         &[
-            Say("pose 142 41.41 318.59 221.41"),
+            Say("pose 155 41.41 318.59 221.41"),
             Frames(160),
             Say("rest"),
             Frames(25),
@@ -70,12 +70,18 @@ const MEMORIES: [(&str, &[Action]); 5] = [
 const BEHIND_A_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
 /// What the robot does before the walk begins.
-const DOES: [&[Action]; 6] = [
+const DOES: [&[Action]; 8] = [
     &[],
     &[Frames(160)],
     &[Frames(160), Say("walk"), Frames(25)],
     &[Frames(160), Say("rest"), Frames(25)],
     &[Frames(160), Say("trim 1 8"), Frames(25)],
+    &[
+        Frames(160),
+        Say("pose 155 41.41 318.59 221.41"),
+        Frames(160),
+    ],
+    &[Frames(160), Supply(4_100), Frames(5)],
     &[Frames(25), Stall(240), Frames(5)],
 ];
 

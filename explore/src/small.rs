@@ -27,6 +27,10 @@ pub struct Small {
     waves: Vec<Wave>,
 }
 
+/// A third of the paper's speed, 1/65536 turn in a frame: servos that begin elsewhere than
+/// they are leap by more than that.
+const PER_FRAME: u16 = 364;
+
 /// Every gait needs no more than this of a servo.
 const NEED: i16 = 1_000;
 
@@ -54,9 +58,9 @@ impl Small {
         // A cycle of sixteen frames.
         let increment = (1 << 24) / 16;
         small.add("stand", increment, 0, [0; 4]);
-        small.add("walk", increment, 0, [4_000, -3_000, 2_000, 1_000]);
-        small.add("trot", -increment, 0, [-2_000, 2_000, 1_000, 3_000]);
-        small.add("stray", increment / 4, 1, [16_384, 0, 0, 0]);
+        small.add("walk", increment, 0, [7_000, -6_000, 5_000, 4_000]);
+        small.add("trot", -increment, 0, [-5_000, 6_000, 4_000, 7_000]);
+        small.add("stray", increment / 12, 1, [16_384, 0, 0, 0]);
         small
     }
 
@@ -102,7 +106,7 @@ impl Robot for Small {
     }
 
     fn slew(&self) -> Slew {
-        self.firmware.slew()
+        Slew::new(PER_FRAME)
     }
 
     fn neutral(&self) -> [Angle; 4] {
