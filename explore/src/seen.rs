@@ -6,6 +6,9 @@ use lizard_core::pose::Pulses;
 /// Milliseconds of a frame.
 const FRAME_MS: u16 = 20;
 
+/// Frames in which servos that were held get their pulses again after a reset.
+const TAKING_OVER: u8 = 25;
+
 /// What has been seen so far.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
@@ -13,6 +16,11 @@ pub struct Seen {
     pub width: [u16; 4],
     /// Whether the servo still is where that pulse put it.
     pub is_placed: [bool; 4],
+    /// Whether it may still be there: a servo that waits for its turn after a reset has
+    /// not been let go of.
+    pub is_there: [bool; 4],
+    /// Frames since a reset, up to 200.
+    pub since_reset: u8,
     /// Whether it had a pulse in the last frame.
     pub is_on: [bool; 4],
     /// Whether the robot rests: nobody has ordered pulses since they ended.
@@ -60,6 +68,7 @@ impl Seen {
     #[must_use]
     pub fn new() -> Self {
         Self {
+            since_reset: 200,
             since_told: 200,
             since_low: 200,
             since_too_low: 200,
@@ -83,6 +92,7 @@ impl Seen {
     /// The processor begins anew; servos stay where they are.
     pub fn reset(&mut self) {
         self.is_on = [false; 4];
+        self.since_reset = 0;
         self.is_sent_to_rest = false;
         self.silent = 0;
         self.owed = 0;
@@ -103,6 +113,9 @@ impl Seen {
 
     /// A person has ordered a motion, and the robot has taken the order.
     pub fn order(&mut self) {
+        if self.is_on == [false; 4] {
+            self.is_there = [false; 4];
+        }
         self.rests = false;
         self.is_sent_to_rest = false;
         self.silent = 0;
@@ -118,11 +131,14 @@ impl Seen {
             if width > 0 {
                 self.width[servo] = width;
                 self.is_placed[servo] = true;
+                self.is_there[servo] = true;
             } else if main_ran {
                 self.is_placed[servo] = false;
+                self.is_there[servo] &= self.since_reset <= TAKING_OVER && !self.rests;
             }
         }
         if main_ran {
+            self.since_reset = self.since_reset.saturating_add(1).min(200);
             self.rests |= self.is_sent_to_rest;
             self.is_sent_to_rest = false;
             self.late_frames = 0;
@@ -177,6 +193,7 @@ impl Seen {
             late_frames: self.late_frames.min(2),
             stopped: frames(self.stopped),
             since_told: self.since_told.min(20) / 20,
+            since_reset: u8::from(self.since_reset > TAKING_OVER),
             low: frames(self.low),
             too_low: frames(self.too_low),
             since_low: frames(self.since_low),

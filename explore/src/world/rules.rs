@@ -220,7 +220,7 @@ impl World {
                 .saturating_add(ROUNDING)
                 .saturating_mul(1 + self.seen.late_frames);
             let leap = widths[servo].abs_diff(self.seen.width[servo]);
-            if widths[servo] > 0 && self.seen.is_placed[servo] && leap > most {
+            if widths[servo] > 0 && self.seen.is_there[servo] && leap > most {
                 return broken(
                     "no pulse leaps farther than the slew limit, also across a reset",
                     format!("A{} by {leap} cycles, {most} allowed", servo + 1),
