@@ -1,8 +1,9 @@
 //! Where a walk begins: memories of every kind, and robots that already do something.
 
+use lizard_core::restart::Cause;
 use lizard_core::virtual_board::Eeprom;
 
-use crate::action::Action::{self, Frames, LosePower, Say, Stall, Supply};
+use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};
 use crate::small::Small;
 use crate::world::World;
 
@@ -80,6 +81,7 @@ const DOES: [&[Action]; 8] = [
         Frames(160),
         Say("pose 155 41.41 318.59 221.41"),
         Frames(160),
+        Reset(Cause::External),
     ],
     &[Frames(160), Supply(4_100), Frames(5)],
     &[Frames(25), Stall(240), Frames(5)],
