@@ -271,7 +271,8 @@ impl<R: Robot> Motion<R> {
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        if self.stance.awake < AWAKE {
+        let waking = self.stance.awake < AWAKE;
+        if waking {
             self.stance.awake += 1;
         } else if !self.settling {
             self.proceed();
@@ -287,7 +288,9 @@ impl<R: Robot> Motion<R> {
             let mut width = servo.width(self.stance.pose.0[place]);
             if self.settling {
                 let mut way = servo.slew(per_frame);
-                if sleeps && self.resumed {
+                // A servo's first pulse after a reset is its last one before: that may
+                // have been on its way when the reset came.
+                if waking && self.resumed && self.stance.awake <= wakes_at {
                     way = 0;
                 }
                 let wanted = width.0;

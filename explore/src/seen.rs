@@ -113,7 +113,8 @@ impl Seen {
 
     /// A person has ordered a motion, and the robot has taken the order.
     pub fn order(&mut self) {
-        if self.is_on == [false; 4] {
+        // Whoever sends `rest` lets go of the servos, also right before `stand`.
+        if self.is_on == [false; 4] || self.is_sent_to_rest {
             self.is_there = [false; 4];
         }
         self.rests = false;
@@ -158,7 +159,7 @@ impl Seen {
     }
 
     /// A frame has passed with the supply below what writing, moving and holding want.
-    pub fn supply(&mut self, below: [bool; 3]) {
+    pub fn supply(&mut self, below: [bool; 3], main_ran: bool) {
         let count = |frames: u8, below: bool| {
             if below {
                 frames.saturating_add(1).min(200)
@@ -173,6 +174,8 @@ impl Seen {
         // A reading stands for two frames, so the last one may be later than its end.
         self.far_too_low = match below[2] {
             true => count(self.far_too_low, true),
+            // Main has still to read it.
+            false if !main_ran => self.far_too_low,
             false => self.far_too_low.saturating_sub(2),
         };
     }

@@ -282,7 +282,7 @@ impl World {
         }
         self.listen()?;
         self.written()?;
-        self.supply();
+        self.supply(true);
         let hears = !self.running.board.transmitter.held && !self.running.is_over();
         if self.seen.stopped > 3 && !self.seen.is_told && hears && self.seen.late_frames == 0 {
             return broken(
@@ -310,8 +310,8 @@ impl World {
         [board.slow, board.stop, board.rest].map(|level| mv < u32::from(level))
     }
 
-    fn supply(&mut self) {
-        self.seen.supply(self.is_below());
+    fn supply(&mut self, main_ran: bool) {
+        self.seen.supply(self.is_below(), main_ran);
         if self.seen.too_low > BELIEVED {
             self.seen.stop();
         }
@@ -326,7 +326,7 @@ impl World {
                 return self.listen();
             }
             self.pulses(was_on, false)?;
-            self.supply();
+            self.supply(false);
         }
         let left = ms % 20;
         if left > 0 {
@@ -339,7 +339,7 @@ impl World {
                 return self.listen();
             }
             self.pulses(was_on, left < 5)?;
-            self.supply();
+            self.supply(false);
         }
         self.running.settle();
         self.listen()

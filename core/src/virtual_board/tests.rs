@@ -1,6 +1,8 @@
 //! The board does what the UNO's does.
 
 use super::*;
+use std::format;
+
 use crate::memory::{ERASED, Memory};
 use crate::sample::Sample;
 use crate::step::{Main, Step};
@@ -127,4 +129,33 @@ fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
     main.begin(&mut board);
     while main.step(&mut board) == Step::Worked {}
     assert_eq!(board.waiting(), 0);
+}
+
+#[test]
+fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
+    // A setting that comes before the servos wake turns them at the slew limit from
+    // where they were, not from a frame farther.
+    let mut running = Running::power_on(Sample::odd());
+    running.run(200);
+    running.say("sway");
+    running.run(60);
+    let before = running.board.begun();
+    running.board.pass(running.board.until_tick());
+    running.settle();
+    running.reset(Cause::External);
+    let on_its_way = *running.motion().sent();
+    assert_ne!(before, on_its_way, "a frame was on its way");
+    for servo in 1..=4 {
+        running.say(&format!("scale {servo} 9.3"));
+    }
+    let mut first = [None; 4];
+    while first.contains(&None) {
+        let begun = running.frame();
+        for (first, width) in first.iter_mut().zip(begun.0) {
+            if width.0 > 0 {
+                first.get_or_insert(width);
+            }
+        }
+    }
+    assert_eq!(first, on_its_way.0.map(Some));
 }
