@@ -74,8 +74,6 @@ pub struct Motion<R> {
     settling: bool,
     /// What the servos do; they rest in [`State::Resting`] alone.
     stance: Stance,
-    /// Whether servos that sleep are where a program before this one held them.
-    resumed: bool,
     hazard: Option<Hazard>,
     frames: u32,
 }
@@ -103,7 +101,6 @@ impl<R: Robot> Motion<R> {
             slow: false,
             settling: false,
             stance: Stance::RESTING,
-            resumed: false,
             hazard: None,
             frames: 0,
         }
@@ -141,9 +138,7 @@ impl<R: Robot> Motion<R> {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
         }
-        // Before the first pulse there is nothing to go over from, unless a program
-        // before this one left it.
-        self.settling = self.resumed || self.stance.awake > 0;
+        self.settling = true;
     }
 
     /// True where a servo would have to leave the travel of another calibration, where
@@ -183,6 +178,7 @@ impl<R: Robot> Motion<R> {
             && self.may_hold(&stance.pose)
         {
             self.stance.pose = stance.pose;
+            self.stance.sent = stance.sent;
         }
     }
 
@@ -197,7 +193,6 @@ impl<R: Robot> Motion<R> {
         }
         self.stance.pose = stance.pose;
         self.stance.sent = stance.sent;
-        self.resumed = true;
         self.freeze(State::Holding { asked: false });
         if stand {
             self.next = Some(Target::Gait(GaitId::STAND));
@@ -271,9 +266,9 @@ impl<R: Robot> Motion<R> {
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        let waking = self.stance.awake < AWAKE;
-        if waking {
-            self.stance.awake += 1;
+        let before = self.stance.awake;
+        if before < AWAKE {
+            self.stance.awake = before + 1;
         } else if !self.settling {
             self.proceed();
         }
@@ -286,15 +281,15 @@ impl<R: Robot> Motion<R> {
             let sent = &mut self.stance.sent.0[place];
             let sleeps = self.stance.awake < wakes_at;
             let mut width = servo.width(self.stance.pose.0[place]);
-            if self.settling {
-                let mut way = servo.slew(per_frame);
-                // A servo's first pulse after a reset is its last one before: that may
-                // have been on its way when the reset came.
-                if waking && self.resumed && self.stance.awake <= wakes_at {
-                    way = 0;
-                }
+            if self.settling && sent.0 != 0 {
+                // A servo's first pulse is the last one that it had, in a program before
+                // this one, too: that may have been on its way when a reset came.
+                let slept = before < wakes_at;
+                let way = if slept { 0 } else { servo.slew(per_frame) };
                 let wanted = width.0;
-                width.0 = wanted.clamp(sent.0.saturating_sub(way), sent.0.saturating_add(way));
+                width.0 = wanted
+                    .max(sent.0.saturating_sub(way))
+                    .min(sent.0.saturating_add(way));
                 under_way |= width.0 != wanted;
             }
             *sent = width;
@@ -371,8 +366,9 @@ impl<R: Robot> Motion<R> {
             self.state = State::Holding { asked: false };
             self.stance.resting = false;
             self.stance.awake = 0;
-            self.resumed = false;
-            self.settling = false;
+            // They were let go of where their last pulses put them, if they ever had any;
+            // what was set since must not throw them elsewhere.
+            self.settling = true;
         }
         self.next = Some(target);
     }

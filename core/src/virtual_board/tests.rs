@@ -159,3 +159,48 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     }
     assert_eq!(first, on_its_way.0.map(Some));
 }
+
+/// How far the pulses of each servo are from the one before, at most, cycles.
+fn leaps(running: &mut Running<Sample>, frames: usize) -> [u16; 4] {
+    let mut last = *running.motion().sent();
+    let mut leaps = [0; 4];
+    for _ in 0..frames {
+        let begun = running.frame();
+        for (servo, width) in begun.0.iter().enumerate() {
+            if width.0 > 0 {
+                leaps[servo] = leaps[servo].max(width.0.abs_diff(last.0[servo].0));
+                last.0[servo] = *width;
+            }
+        }
+    }
+    leaps
+}
+
+#[test]
+fn what_is_set_while_the_robot_rests_turns_no_servo_faster_than_the_slew_limit() {
+    let robot = Sample::odd();
+    let per_frame = robot.slew.per_frame;
+    let most = robot.calibration.map(|servo| servo.slew(per_frame));
+    for reset in [None, Some(Cause::External), Some(Cause::Watchdog)] {
+        let mut running = standing();
+        running.say("sway");
+        running.run(60);
+        running.say("rest");
+        running.run(60);
+        let before = *running.motion().sent();
+        for servo in 1..=4 {
+            assert!(running.say(&format!("trim {servo} 6")).starts_with("ok"));
+        }
+        if let Some(cause) = reset {
+            running.reset(cause);
+            running.run(60);
+        }
+        running.say("stand");
+        let leaps = leaps(&mut running, 200);
+        for servo in 0..4 {
+            assert!(leaps[servo] <= most[servo], "{leaps:?}, {most:?}");
+            assert!(leaps[servo] > 0, "it stands elsewhere than it rested");
+        }
+        assert_ne!(*running.motion().sent(), before);
+    }
+}

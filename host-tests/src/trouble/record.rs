@@ -82,6 +82,8 @@ pub struct Begin {
     pub servo: usize,
     /// The pulse.
     pub pulse: Pulse,
+    /// Whether a reset or the supply has cut it.
+    pub cut: bool,
     /// The servo's last whole pulse before it.
     pub before: Option<Pulse>,
 }
@@ -179,6 +181,7 @@ impl Record {
                     begins.push(Begin {
                         servo,
                         pulse: *pulse,
+                        cut: *cut,
                         before: whole,
                     });
                 }

@@ -10,9 +10,9 @@ use crate::trouble::record::{MS, Record};
 /// clock is as exact as the simulation's, and a frame.
 const UNTIL_RESET: u64 = 160 * MS;
 
-/// A stall that is shorter resets nothing: the watchdog's two stages, less the frame in
-/// which it was fed.
-const HARMLESS: u64 = 220 * MS;
+/// A stall that is shorter resets nothing: the watchdog's first stage, less the frame in
+/// which it was fed. That stage ends the pulses, and then the reset is waited for.
+const HARMLESS: u64 = 100 * MS;
 
 /// Held after a hang, in the pose of the last frame.
 pub fn held_where_it_was(record: &Record, rules: &Rules) -> Result<(), String> {
@@ -20,7 +20,7 @@ pub fn held_where_it_was(record: &Record, rules: &Rules) -> Result<(), String> {
         let Some(before) = begin.before else { continue };
         let leap = begin.pulse.width.abs_diff(before.width);
         // One frame may have been computed and not yet played.
-        if is_after_a_hang(record, &begin) && leap > 2 * rules.way[begin.servo] {
+        if is_after_a_hang(record, &begin) && !begin.cut && leap > 2 * rules.way[begin.servo] {
             return Err(format!(
                 "A{} had {} cycles before and {} after, at {} ms",
                 begin.servo + 1,
@@ -86,7 +86,7 @@ pub fn no_reset_without_need(record: &Record, _: &Rules) -> Result<(), String> {
             .filter(hung)
             .map(|span| span.end - span.start)
             .sum();
-        if total < HARMLESS / 2 {
+        if total < HARMLESS {
             return Err(format!(
                 "a reset at {} ms, stalled for {} ms",
                 start.cycle / MS,
