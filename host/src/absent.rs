@@ -6,7 +6,9 @@ use crate::Failure;
 
 const SIMULATOR: [&str; 4] = ["sim", "twin", "tune", "bench"];
 /// `replay` needs the simulator's pictures, too.
-const CONSOLE: [&str; 6] = [
+const CONSOLE: [&str; 8] = [
+    "flash",
+    "image",
     "console",
     "calibrate",
     "backup",

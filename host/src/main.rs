@@ -18,14 +18,14 @@ use clap::{Parser, Subcommand};
     feature = "parts"
 )))]
 use lizard_host::absent;
-#[cfg(feature = "console")]
-use lizard_host::console;
 #[cfg(feature = "parts")]
 use lizard_host::parts;
 #[cfg(all(feature = "simulator", feature = "paper"))]
 use lizard_host::tune;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
+#[cfg(feature = "console")]
+use lizard_host::{console, flash};
 use lizard_host::{draw, gaits, spring};
 #[cfg(feature = "paper")]
 use lizard_host::{paper, prove};
@@ -82,6 +82,10 @@ enum Command {
     Spring(spring::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
+    #[cfg(feature = "console")]
+    Flash(flash::Args),
+    #[cfg(feature = "console")]
+    Image(flash::file::Args),
     #[cfg(feature = "console")]
     Console(console::interactive::ConsoleArgs),
     #[cfg(feature = "console")]
@@ -142,6 +146,10 @@ fn main() -> ExitCode {
         Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),
+        #[cfg(feature = "console")]
+        Command::Flash(args) => flash::run(args),
+        #[cfg(feature = "console")]
+        Command::Image(args) => flash::file::run(args),
         #[cfg(feature = "console")]
         Command::Console(args) => console::interactive::console(args),
         #[cfg(feature = "console")]

@@ -1,0 +1,336 @@
+//! What is written into the flash of a UNO: the code from its first byte, and the
+//! robot as a section of its own behind it.
+//!
+//! Flash is written in pages, and its last 512 bytes hold the boot loader, which writes all
+//! others and cannot write itself. So an image ends before it.
+
+use std::ops::Range;
+
+use ihex::Record;
+
+/// Bytes that the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
+pub const PAGE: usize = 128;
+/// Where the robot's section begins. Code ends before it.
+pub const SECTION: usize = 0x6a00;
+/// Where the boot loader of a UNO begins.
+pub const BOOT: usize = 0x7e00;
+/// A byte of flash that was never written.
+pub const BLANK: u8 = 0xff;
+
+/// Bytes of a line of Intel HEX, as avr-objcopy has them.
+const LINE: usize = 16;
+
+/// Code and robot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    code: Vec<u8>,
+    section: Vec<u8>,
+}
+
+/// A page of flash that an image fills, or a part of which it fills.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Page {
+    /// Of its first byte.
+    pub address: usize,
+    /// [`BLANK`] where the image has none.
+    pub bytes: [u8; PAGE],
+}
+
+/// Why bytes are no image.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ImageError {
+    /// A chip starts at address 0.
+    #[error("there is no code at address 0, where the chip starts")]
+    NoStart,
+    /// The code reaches into the robot's section.
+    #[error("the code has {0} bytes; {SECTION} fit before the robot")]
+    LongCode(usize),
+    /// The robot's section reaches into the boot loader.
+    #[error("the robot takes {0} bytes of flash; {room} fit before the boot loader", room = BOOT - SECTION)]
+    LongSection(usize),
+    /// A line is no Intel HEX.
+    #[error("line {line} is no Intel HEX: {reason}")]
+    Line {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: ihex::ReaderError,
+    },
+    /// The last line is missing, and so perhaps others before it.
+    #[error("the HEX file has no end: only a part of it is there")]
+    NoEnd,
+    /// One address, two values.
+    #[error("line {line} gives another value to address {address:#06x}")]
+    Twice {
+        /// Counted from 1.
+        line: usize,
+        /// In flash.
+        address: usize,
+    },
+    /// The boot loader cannot write itself.
+    #[error(
+        "line {line} is for address {address:#06x}; the boot loader, which is never written, \
+         begins at {BOOT:#06x}"
+    )]
+    BootLoader {
+        /// Counted from 1.
+        line: usize,
+        /// Of its last byte.
+        address: usize,
+    },
+}
+
+impl Image {
+    /// An image of code, from address 0, and of the robot's section, from [`SECTION`]. The
+    /// section may be empty.
+    ///
+    /// # Errors
+    /// There is no code, or one of them is too long.
+    pub fn new(code: Vec<u8>, section: Vec<u8>) -> Result<Self, ImageError> {
+        if code.is_empty() {
+            return Err(ImageError::NoStart);
+        }
+        if code.len() > SECTION {
+            return Err(ImageError::LongCode(code.len()));
+        }
+        if section.len() > BOOT - SECTION {
+            return Err(ImageError::LongSection(section.len()));
+        }
+        Ok(Self { code, section })
+    }
+
+    /// Reads Intel HEX. What it has below [`SECTION`] is the code.
+    ///
+    /// # Errors
+    /// The text is no Intel HEX, is cut off, contradicts itself, or is not for this chip.
+    pub fn from_hex(text: &str) -> Result<Self, ImageError> {
+        let mut flash = vec![None; BOOT];
+        let mut base = 0;
+        let mut ended = false;
+        for (index, record) in text.lines().map(str::trim).enumerate() {
+            let line = index + 1;
+            if record.is_empty() || ended {
+                continue;
+            }
+            let record = Record::from_record_string(record)
+                .map_err(|reason| ImageError::Line { line, reason })?;
+            match record {
+                Record::Data { offset, value } => {
+                    let start = base + usize::from(offset);
+                    put(&mut flash, start, &value, line)?;
+                }
+                Record::EndOfFile => ended = true,
+                Record::ExtendedLinearAddress(upper) => base = usize::from(upper) << 16,
+                Record::ExtendedSegmentAddress(segment) => base = usize::from(segment) << 4,
+                // The chip starts at 0, whatever they say.
+                Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
+            }
+        }
+        if !ended {
+            return Err(ImageError::NoEnd);
+        }
+        if flash[0].is_none() {
+            return Err(ImageError::NoStart);
+        }
+        let part = |range: Range<usize>| -> Vec<u8> {
+            let part = &flash[range];
+            let end = part
+                .iter()
+                .rposition(Option::is_some)
+                .map_or(0, |at| at + 1);
+            part[..end].iter().map(|it| it.unwrap_or(BLANK)).collect()
+        };
+        Self::new(part(0..SECTION), part(SECTION..BOOT))
+    }
+
+    /// The image as Intel HEX.
+    ///
+    /// # Panics
+    /// Never: all addresses have 16 bits, and lines are short.
+    #[must_use]
+    pub fn to_hex(&self) -> String {
+        let mut records = Vec::new();
+        for (start, bytes) in [(0, &self.code), (SECTION, &self.section)] {
+            for (index, line) in bytes.chunks(LINE).enumerate() {
+                records.push(Record::Data {
+                    offset: (start + index * LINE) as u16,
+                    value: line.to_vec(),
+                });
+            }
+        }
+        records.push(Record::EndOfFile);
+        let text = ihex::create_object_file_representation(&records);
+        text.expect("short lines and one end") + "\n"
+    }
+
+    /// The image as flash holds it from address 0 on, up to its last byte.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = self.code.clone();
+        if !self.section.is_empty() {
+            bytes.resize(SECTION, BLANK);
+            bytes.extend(&self.section);
+        }
+        bytes
+    }
+
+    /// The pages of the code, from address 0 on.
+    #[must_use]
+    pub fn code(&self) -> Vec<Page> {
+        pages(0, &self.code)
+    }
+
+    /// The pages of the robot's section.
+    #[must_use]
+    pub fn section(&self) -> Vec<Page> {
+        pages(SECTION, &self.section)
+    }
+}
+
+impl Page {
+    /// Which bytes of flash it is.
+    #[must_use]
+    pub fn range(&self) -> Range<usize> {
+        self.address..self.address + PAGE
+    }
+}
+
+fn put(
+    flash: &mut [Option<u8>],
+    start: usize,
+    bytes: &[u8],
+    line: usize,
+) -> Result<(), ImageError> {
+    let end = start + bytes.len();
+    let Some(there) = flash.get_mut(start..end) else {
+        let address = end - 1;
+        return Err(ImageError::BootLoader { line, address });
+    };
+    for (index, (there, byte)) in there.iter_mut().zip(bytes).enumerate() {
+        if there.is_some_and(|there| there != *byte) {
+            let address = start + index;
+            return Err(ImageError::Twice { line, address });
+        }
+        *there = Some(*byte);
+    }
+    Ok(())
+}
+
+fn pages(start: usize, bytes: &[u8]) -> Vec<Page> {
+    let page = |(index, part): (usize, &[u8])| {
+        let mut bytes = [BLANK; PAGE];
+        bytes[..part.len()].copy_from_slice(part);
+        let address = start + index * PAGE;
+        Page { address, bytes }
+    };
+    bytes.chunks(PAGE).enumerate().map(page).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first lines of a file of avr-objcopy, and one behind a gap.
+    const HEX: &str = "\
+:100000000C9434000C943E000C943E000C943E0082\n\
+:0400100001020304E2\n\
+:026A0000AABB2F\n\
+:00000001FF\n";
+
+    fn complaint(text: &str) -> String {
+        Image::from_hex(text)
+            .expect_err("it is no image")
+            .to_string()
+    }
+
+    #[test]
+    fn a_hex_file_is_code_below_the_section_and_the_robot_in_it() {
+        let image = Image::from_hex(HEX).expect("it is an image");
+        assert_eq!(image.code.len(), 20);
+        assert_eq!(image.code[..3], [0x0c, 0x94, 0x34]);
+        assert_eq!(image.code[16..], [1, 2, 3, 4]);
+        assert_eq!(image.section, [0xaa, 0xbb]);
+    }
+
+    #[test]
+    fn an_image_is_the_same_after_the_way_through_a_hex_file() {
+        let code: Vec<u8> = (0..1000).map(|at| (at * 7) as u8).collect();
+        let image = Image::new(code, vec![1; 200]).expect("it fits");
+        let text = image.to_hex();
+        assert_eq!(Image::from_hex(&text), Ok(image));
+        assert_eq!(Image::from_hex(HEX).expect("an image").to_hex(), HEX);
+    }
+
+    #[test]
+    fn as_bytes_the_section_is_at_its_address() {
+        let image = Image::from_hex(HEX).expect("it is an image");
+        let bytes = image.to_bytes();
+        assert_eq!(bytes.len(), 0x6a02);
+        assert_eq!(bytes[0x6a00..], [0xaa, 0xbb]);
+        assert!(bytes[20..0x6a00].iter().all(|&byte| byte == 0xff));
+    }
+
+    #[test]
+    fn a_page_that_is_filled_in_part_is_blank_behind_it() {
+        let image = Image::new(vec![5; 130], vec![6]).expect("it fits");
+        let code = image.code();
+        assert_eq!([code[0].address, code[1].address], [0, 128]);
+        assert_eq!(code.len(), 2);
+        assert_eq!(code[1].bytes[..3], [5, 5, 0xff]);
+        let section = image.section();
+        assert_eq!(section.len(), 1);
+        assert_eq!(section[0].range(), 0x6a00..0x6a80);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_its_size() {
+        let words = |code, section| {
+            let error = Image::new(vec![0; code], vec![0; section]).expect_err("too long");
+            error.to_string()
+        };
+        assert_eq!(
+            words(27_137, 0),
+            "the code has 27137 bytes; 27136 fit before the robot"
+        );
+        assert_eq!(
+            words(1, 5_121),
+            "the robot takes 5121 bytes of flash; 5120 fit before the boot loader"
+        );
+        assert!(Image::new(vec![0; 27_136], vec![0; 5_120]).is_ok());
+    }
+
+    #[test]
+    fn a_hex_file_that_is_wrong_is_refused_with_its_line() {
+        let second = |line: &str| complaint(&HEX.replacen(":0400100001020304E2", line, 1));
+        assert!(second(":0400100001020304E3").starts_with("line 2 is no Intel HEX: invalid check"));
+        assert!(second("<html>").starts_with("line 2 is no Intel HEX: missing start"));
+        assert_eq!(
+            second(":01000400956B\n"),
+            "line 2 gives another value to address 0x0004"
+        );
+        assert_eq!(
+            second(":027DFF0001027F"),
+            "line 2 is for address 0x7e00; the boot loader, which is never written, begins at \
+             0x7e00"
+        );
+        // In a file for a larger chip, beyond the first 64 KiB.
+        assert_eq!(
+            second(":020000040001F9\n:0100000005FA"),
+            "line 3 is for address 0x10000; the boot loader, which is never written, begins at \
+             0x7e00"
+        );
+    }
+
+    #[test]
+    fn half_a_hex_file_is_refused() {
+        let half = HEX.lines().take(2).collect::<Vec<_>>().join("\n");
+        assert_eq!(
+            complaint(&half),
+            "the HEX file has no end: only a part of it is there"
+        );
+        assert_eq!(
+            complaint(":0100100005EA\n:00000001FF"),
+            "there is no code at address 0, where the chip starts"
+        );
+    }
+}
