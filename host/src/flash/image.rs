@@ -305,7 +305,7 @@ mod tests {
         assert!(second(":0400100001020304E3").starts_with("line 2 is no Intel HEX: invalid check"));
         assert!(second("<html>").starts_with("line 2 is no Intel HEX: missing start"));
         assert_eq!(
-            second(":01000400956B\n"),
+            second(":010004009566\n"),
             "line 2 gives another value to address 0x0004"
         );
         assert_eq!(
