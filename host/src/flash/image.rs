@@ -160,7 +160,7 @@ impl Image {
         }
         records.push(Record::EndOfFile);
         let text = ihex::create_object_file_representation(&records);
-        text.expect("short lines and one end") + "\n"
+        text.expect("short lines and one end")
     }
 
     /// The image as flash holds it from address 0 on, up to its last byte.
