@@ -9,10 +9,10 @@ mod shell;
 use std::sync::LazyLock;
 
 use desk::{BOOT, Desk, boot_loader};
-use lizard_host_tests::{FirmwareBench, avr_gcc, root};
+use lizard_host_tests::{FirmwareBench, avr_gcc};
 use lizard_time_limit::LIMIT;
 use shell::Shell;
-use simulated_uno::{Fidelity, Image, Port, Uno};
+use simulated_uno::{Fidelity, Image, Uno};
 
 /// Where the robot begins in flash.
 const ROBOT: usize = 0x6a00;
@@ -176,7 +176,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
         half && !shell.has_ended(),
         "the upload has begun:\n{screen}"
     );
-    desk.port = Port::new().expect("a pseudo terminal");
+    desk.unplug();
     let screen = end(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(
@@ -193,9 +193,28 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     assert!(desk.uno.transmitted().is_empty(), "it says nothing");
     let edges = desk.uno.take_edges();
     assert!(edges.is_empty(), "no pin moves: {edges:?}");
+    // These seconds were none on the wall, which a port goes by.
+    desk.unplug();
 
     let shell = lizard_flash(&desk, &[]);
     let screen = end(&mut desk, &shell);
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
+    let mut desk = Desk::with_a_new_board();
+    let shell = lizard_flash(&desk, &[]);
+    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let screen = shell.screen();
+    assert!(
+        half && !shell.has_ended(),
+        "the upload has begun:\n{screen}"
+    );
+    desk.uno.reset();
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("all begins again"), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     assert_written(&desk);
 }

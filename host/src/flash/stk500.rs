@@ -68,7 +68,7 @@ impl Default for Patience {
 #[derive(Debug, thiserror::Error)]
 pub enum Trouble {
     /// No answer, or a part of one.
-    #[error("the board has stopped answering")]
+    #[error("the board does not answer")]
     Silent,
     /// An answer of another form.
     #[error("the board's answers are garbled")]
