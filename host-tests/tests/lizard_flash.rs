@@ -12,7 +12,7 @@ use desk::{BOOT, Desk, boot_loader};
 use lizard_host_tests::{FirmwareBench, avr_gcc};
 use lizard_time_limit::LIMIT;
 use shell::Shell;
-use simulated_uno::{Fidelity, Image, Uno};
+use simulated_uno::{Fidelity, Image, Port, Uno};
 
 /// Where the robot begins in flash.
 const ROBOT: usize = 0x6a00;
@@ -48,6 +48,11 @@ fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
     let name = desk.name();
     let arguments = [&["flash", name.as_str()], arguments].concat();
     Shell::start(&lizard, &arguments, &[])
+}
+
+/// The cable is pulled and put into another port.
+fn unplug(desk: &mut Desk) {
+    desk.port = Port::new().expect("a pseudo terminal");
 }
 
 /// Lets the board live until the program has ended. Returns the screen.
@@ -176,7 +181,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
         half && !shell.has_ended(),
         "the upload has begun:\n{screen}"
     );
-    desk.unplug();
+    unplug(&mut desk);
     let screen = end(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(
@@ -194,7 +199,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     let edges = desk.uno.take_edges();
     assert!(edges.is_empty(), "no pin moves: {edges:?}");
     // These seconds were none on the wall, which a port goes by.
-    desk.unplug();
+    unplug(&mut desk);
 
     let shell = lizard_flash(&desk, &[]);
     let screen = end(&mut desk, &shell);

@@ -40,11 +40,6 @@ impl Desk {
         self.port.path().display().to_string()
     }
 
-    /// The cable is pulled and put into another port.
-    pub fn unplug(&mut self) {
-        self.port = Port::new().expect("a pseudo terminal");
-    }
-
     /// Lets the board live until the condition holds. False if it never does.
     pub fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
         LIMIT.comes(|| {
