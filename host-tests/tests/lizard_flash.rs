@@ -14,9 +14,6 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Image, Port, Uno};
 
-/// Where the robot begins in flash.
-const ROBOT: usize = 0x6a00;
-
 /// Another program, which never stops talking at the boot loader's speed.
 static TALKER: LazyLock<Image> = LazyLock::new(|| {
     avr_gcc::c(
@@ -132,7 +129,7 @@ fn a_board_that_has_the_image_is_left_as_it_is() {
     let shell = lizard_flash(&desk, &[]);
     let screen = end(&mut desk, &shell);
     assert!(
-        screen.contains("this firmware and this robot already"),
+        screen.contains("the board has this firmware already"),
         "{screen}"
     );
     assert!(screen.contains("nothing to write: all"), "{screen}");
@@ -141,32 +138,19 @@ fn a_board_that_has_the_image_is_left_as_it_is() {
 }
 
 #[test]
-fn a_robot_alone_is_one_page_where_one_page_differs() {
+fn one_page_that_differs_is_written_alone() {
     let mut desk = with_firmware();
-    let old = desk.uno.flash()[ROBOT + 5];
-    desk.uno.set_flash((ROBOT + 5) as u16, &[old ^ 0x10]);
-    let shell = lizard_flash(&desk, &["--only-robot"]);
+    let old = desk.uno.flash()[0x2005];
+    desk.uno.set_flash(0x2005, &[old ^ 0x10]);
+    let shell = lizard_flash(&desk, &[]);
     let screen = end(&mut desk, &shell);
+    assert!(screen.contains("the board has another program"), "{screen}");
+    // It, and the page where the chip starts.
     assert!(
-        screen.contains("this firmware, with another robot"),
-        "{screen}"
-    );
-    assert!(
-        screen.contains("\n128 bytes written and verified"),
+        screen.contains("\n256 bytes written and verified"),
         "{screen}"
     );
     assert_written(&desk);
-}
-
-#[test]
-fn a_robot_alone_is_not_put_behind_another_program() {
-    let mut desk = Desk::with_a_new_board();
-    desk.uno.set_flash(0, &TALKER.flash());
-    let before = desk.uno.flash().to_vec();
-    let shell = lizard_flash(&desk, &["--only-robot"]);
-    let screen = end(&mut desk, &shell);
-    assert!(screen.contains("run without --only-robot"), "{screen}");
-    assert!(desk.uno.flash() == before, "nothing was written");
 }
 
 #[test]

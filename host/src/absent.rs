@@ -6,9 +6,8 @@ use crate::Failure;
 
 const SIMULATOR: [&str; 4] = ["sim", "twin", "tune", "bench"];
 /// `replay` needs the simulator's pictures, too.
-const CONSOLE: [&str; 8] = [
+const CONSOLE: [&str; 7] = [
     "flash",
-    "image",
     "console",
     "calibrate",
     "backup",

@@ -85,8 +85,6 @@ enum Command {
     #[cfg(feature = "console")]
     Flash(flash::Args),
     #[cfg(feature = "console")]
-    Image(flash::file::Args),
-    #[cfg(feature = "console")]
     Console(console::interactive::ConsoleArgs),
     #[cfg(feature = "console")]
     Calibrate(console::calibrate::Args),
@@ -148,8 +146,6 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(args),
         #[cfg(feature = "console")]
         Command::Flash(args) => flash::run(args),
-        #[cfg(feature = "console")]
-        Command::Image(args) => flash::file::run(args),
         #[cfg(feature = "console")]
         Command::Console(args) => console::interactive::console(args),
         #[cfg(feature = "console")]

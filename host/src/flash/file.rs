@@ -1,49 +1,26 @@
-//! Where an image comes from, and an image as a file: `lizard image`.
+//! Where an image comes from.
 
-use std::ffi::OsStr;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lizard_robot::Robot;
 
 use super::image::Image;
-use crate::{Failure, RobotFile, whole_file};
+use crate::Failure;
 
 /// What `make firmware` leaves.
 const BUILT: &str = "target/avr-atmega328p/release/lizard.hex";
-
-/// Write firmware and robot into a file, to be written to a UNO by another program
-///
-/// The name's end tells the form: .hex is Intel HEX, .bin is flash from address 0, byte by
-/// byte.
-#[derive(clap::Args, Debug)]
-pub struct Args {
-    /// The file: x.hex or x.bin
-    #[arg(long, short, value_name = "FILE", default_value = "lizard.hex")]
-    output: PathBuf,
-    #[command(flatten)]
-    robot: RobotFile,
-}
-
-/// Writes the file.
-///
-/// # Errors
-/// No firmware, a wrong robot.toml, or a file that cannot be written.
-pub fn run(args: Args) -> Result<(), Failure> {
-    let image = image(&args.robot.load()?)?;
-    save(&image, &args.output)?;
-    let (bytes, name) = (image.to_bytes().len(), args.output.display());
-    writeln!(io::stdout(), "{name}: an image of {bytes} bytes of flash")?;
-    Ok(())
-}
 
 /// The image of a robot: the one that `make firmware` has left in this folder or one above
 /// it.
 ///
 /// # Errors
-/// There is none, or it is no image for a UNO.
-pub fn image(_robot: &Robot) -> Result<Image, Failure> {
+/// There is none, it is for another robot, or it is no image for a UNO.
+pub fn image(robot: &Robot) -> Result<Image, Failure> {
     let here = std::env::current_dir()?;
+    image_of(robot, &here)
+}
+
+fn image_of(robot: &Robot, here: &Path) -> Result<Image, Failure> {
     let found = here
         .ancestors()
         .map(|folder| folder.join(BUILT))
@@ -53,7 +30,22 @@ pub fn image(_robot: &Robot) -> Result<Image, Failure> {
             "there is no firmware at {BUILT}; build it with `make firmware`"
         ))
     };
-    read(&found.ok_or_else(missing)?)
+    let path = found.ok_or_else(missing)?;
+    // What the build found out about the gaits is beside the firmware, with the robot's hash.
+    let wanted = format!("tables {:08x}", robot.firmware().hash());
+    let gaits = std::fs::read_to_string(path.with_file_name("gaits.txt")).unwrap_or_default();
+    if !gaits
+        .lines()
+        .next()
+        .is_some_and(|line| line.ends_with(&wanted))
+    {
+        return Err(Failure::Input(format!(
+            "{}: the firmware there was built for another robot; build it for this one, \
+             `make firmware ROBOT=...`, without ROBOT= for robot.toml",
+            path.display()
+        )));
+    }
+    read(&path)
 }
 
 /// Reads an image from a file of Intel HEX.
@@ -67,50 +59,46 @@ pub fn read(path: &Path) -> Result<Image, Failure> {
     Image::from_hex(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 
-/// Writes an image into a file, whole or not at all.
-fn save(image: &Image, path: &Path) -> Result<(), Failure> {
-    match path.extension().and_then(OsStr::to_str) {
-        Some("hex") => whole_file::write(path, image.to_hex().as_bytes()),
-        Some("bin") => whole_file::write(path, &image.to_bytes()),
-        _ => Err(Failure::Input(format!(
-            "{}: the name must end in .hex or .bin",
-            path.display()
-        ))),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn image() -> Image {
-        Image::new(vec![7; 300], vec![8; 20]).expect("it fits")
-    }
-
     #[test]
-    fn an_image_is_saved_in_the_form_that_the_name_tells() {
+    fn firmware_that_was_built_for_another_robot_is_refused() {
         let folder = tempfile::tempdir().expect("a folder");
-        let hex = folder.path().join("a.hex");
-        save(&image(), &hex).expect("it is saved");
-        assert_eq!(read(&hex).expect("it is read"), image());
-        let bin = folder.path().join("a.bin");
-        save(&image(), &bin).expect("it is saved");
-        let bytes = std::fs::read(&bin).expect("it is read");
-        assert_eq!(bytes.len(), 0x6a00 + 20);
-        assert_eq!((bytes[299], bytes[300], bytes[0x6a00]), (7, 0xff, 8));
-    }
-
-    #[test]
-    fn another_form_and_a_device_are_refused() {
-        let words = |path: &str| {
-            let error = save(&image(), Path::new(path)).expect_err("it is not saved");
+        let built = folder.path().join(BUILT);
+        let beside = built.with_file_name("gaits.txt");
+        let robot = |name: &str| {
+            let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+            Robot::load(Path::new(&path)).expect("it is right")
+        };
+        let [paper, other] = ["paper", "unequal"].map(robot);
+        let words = || {
+            let error = image_of(&paper, folder.path()).expect_err("it is refused");
             error.to_string()
         };
-        assert_eq!(words("a.elf"), "a.elf: the name must end in .hex or .bin");
-        assert_eq!(
-            words("/dev/null"),
-            "/dev/null: the name must end in .hex or .bin"
+        assert!(words().starts_with("there is no firmware at target/"));
+        std::fs::create_dir_all(built.parent().expect("a folder")).expect("it is made");
+        let image = Image::new(vec![7; 300]).expect("it fits");
+        std::fs::write(&built, image.to_hex()).expect("it is written");
+        assert!(
+            words().contains("was built for another robot"),
+            "{}",
+            words()
         );
+        for robot in [&other, &paper] {
+            let line = format!("9 gaits, tables {:08x}\n\ngait\n", robot.firmware().hash());
+            std::fs::write(&beside, line).expect("it is written");
+            let found = image_of(&paper, folder.path());
+            assert_eq!(
+                found.is_ok(),
+                robot.firmware().hash() == paper.firmware().hash(),
+                "{found:?}"
+            );
+        }
+        let inside = folder.path().join("a/b");
+        std::fs::create_dir_all(&inside).expect("it is made");
+        assert_eq!(image_of(&paper, &inside).expect("it is found"), image);
     }
 
     #[test]

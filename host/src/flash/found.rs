@@ -4,17 +4,15 @@
 
 use std::fmt;
 
-use super::image::{BLANK, Image, Page};
+use super::image::{BLANK, Image};
 
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
     /// Nothing: as a chip is sold.
     Blank,
-    /// This code and this robot.
+    /// The image.
     Same,
-    /// This code with another robot.
-    OtherRobot,
     /// Something else.
     OtherProgram {
         /// Up to its last byte.
@@ -26,15 +24,12 @@ impl Found {
     /// What `flash`, from address 0 to the boot loader, holds in comparison with an image.
     #[must_use]
     pub fn in_flash(flash: &[u8], image: &Image) -> Self {
-        let holds = |pages: Vec<Page>| {
-            let mut pages = pages.iter();
-            pages.all(|page| flash[page.range()] == page.bytes)
-        };
-        if holds(image.code()) {
-            return match holds(image.section()) {
-                true => Self::Same,
-                false => Self::OtherRobot,
-            };
+        if image
+            .pages()
+            .iter()
+            .all(|page| flash[page.range()] == page.bytes)
+        {
+            return Self::Same;
         }
         match flash.iter().rposition(|&byte| byte != BLANK) {
             None => Self::Blank,
@@ -47,8 +42,7 @@ impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Blank => f.write_str("the board has no program"),
-            Self::Same => f.write_str("the board has this firmware and this robot already"),
-            Self::OtherRobot => f.write_str("the board has this firmware, with another robot"),
+            Self::Same => f.write_str("the board has this firmware already"),
             Self::OtherProgram { bytes } => {
                 write!(f, "the board has another program, of {bytes} bytes")
             }
@@ -62,8 +56,8 @@ mod tests {
     use crate::flash::image::BOOT;
 
     #[test]
-    fn flash_is_blank_or_has_the_same_another_robot_or_another_program() {
-        let image = Image::new(vec![1, 2, 3], vec![4]).expect("it fits");
+    fn flash_is_blank_or_has_the_same_or_another_program() {
+        let image = Image::new(vec![1, 2, 3]).expect("it fits");
         let found = |changes: &[(usize, u8)]| {
             let mut flash = vec![0xff; BOOT];
             for (address, byte) in changes {
@@ -72,15 +66,13 @@ mod tests {
             Found::in_flash(&flash, &image).to_string()
         };
         assert_eq!(found(&[]), "the board has no program");
-        let code = [(0, 1), (1, 2), (2, 3)];
-        let with = |address, byte| [code.as_slice(), &[(address, byte)]].concat();
         assert_eq!(
-            found(&with(0x6a00, 4)),
-            "the board has this firmware and this robot already"
+            found(&[(0, 1), (1, 2), (2, 3)]),
+            "the board has this firmware already"
         );
         assert_eq!(
-            found(&with(0x6a00, 5)),
-            "the board has this firmware, with another robot"
+            found(&[(0, 1), (1, 2), (2, 4)]),
+            "the board has another program, of 3 bytes"
         );
         assert_eq!(
             found(&[(0, 1), (0x1fff, 7)]),

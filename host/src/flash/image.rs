@@ -1,5 +1,4 @@
-//! What is written into the flash of a UNO: the code from its first byte, and the
-//! robot as a section of its own behind it.
+//! What is written into the flash of a UNO, from its first byte on.
 //!
 //! Flash is written in pages, and its last 512 bytes hold the boot loader, which writes all
 //! others and cannot write itself. So an image ends before it.
@@ -10,8 +9,6 @@ use ihex::Record;
 
 /// Bytes that the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
 pub const PAGE: usize = 128;
-/// Where the robot's section begins. Code ends before it.
-pub const SECTION: usize = 0x6a00;
 /// Where the boot loader of a UNO begins.
 pub const BOOT: usize = 0x7e00;
 /// A byte of flash that was never written.
@@ -20,11 +17,10 @@ pub const BLANK: u8 = 0xff;
 /// Bytes of a line of Intel HEX, as avr-objcopy has them.
 const LINE: usize = 16;
 
-/// Code and robot.
+/// The firmware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
-    code: Vec<u8>,
-    section: Vec<u8>,
+    bytes: Vec<u8>,
 }
 
 /// A page of flash that an image fills, or a part of which it fills.
@@ -42,12 +38,9 @@ pub enum ImageError {
     /// A chip starts at address 0.
     #[error("there is no code at address 0, where the chip starts")]
     NoStart,
-    /// The code reaches into the robot's section.
-    #[error("the code has {0} bytes; {SECTION} fit before the robot")]
-    LongCode(usize),
-    /// The robot's section reaches into the boot loader.
-    #[error("the robot takes {0} bytes of flash; {room} fit before the boot loader", room = BOOT - SECTION)]
-    LongSection(usize),
+    /// The code reaches into the boot loader.
+    #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
+    Long(usize),
     /// A line is no Intel HEX.
     #[error("line {line} is no Intel HEX: {reason}")]
     Line {
@@ -81,25 +74,19 @@ pub enum ImageError {
 }
 
 impl Image {
-    /// An image of code, from address 0, and of the robot's section, from [`SECTION`]. The
-    /// section may be empty.
+    /// An image of these bytes, from address 0 on.
     ///
     /// # Errors
-    /// There is no code, or one of them is too long.
-    pub fn new(code: Vec<u8>, section: Vec<u8>) -> Result<Self, ImageError> {
-        if code.is_empty() {
-            return Err(ImageError::NoStart);
+    /// There are none, or too many.
+    pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
+        match bytes.len() {
+            0 => Err(ImageError::NoStart),
+            1..=BOOT => Ok(Self { bytes }),
+            long => Err(ImageError::Long(long)),
         }
-        if code.len() > SECTION {
-            return Err(ImageError::LongCode(code.len()));
-        }
-        if section.len() > BOOT - SECTION {
-            return Err(ImageError::LongSection(section.len()));
-        }
-        Ok(Self { code, section })
     }
 
-    /// Reads Intel HEX. What it has below [`SECTION`] is the code.
+    /// Reads Intel HEX.
     ///
     /// # Errors
     /// The text is no Intel HEX, is cut off, contradicts itself, or is not for this chip.
@@ -132,15 +119,9 @@ impl Image {
         if flash[0].is_none() {
             return Err(ImageError::NoStart);
         }
-        let part = |range: Range<usize>| -> Vec<u8> {
-            let part = &flash[range];
-            let end = part
-                .iter()
-                .rposition(Option::is_some)
-                .map_or(0, |at| at + 1);
-            part[..end].iter().map(|it| it.unwrap_or(BLANK)).collect()
-        };
-        Self::new(part(0..SECTION), part(SECTION..BOOT))
+        let end = flash.iter().rposition(Option::is_some);
+        let bytes = flash[..=end.unwrap_or(0)].iter();
+        Self::new(bytes.map(|byte| byte.unwrap_or(BLANK)).collect())
     }
 
     /// The image as Intel HEX.
@@ -150,13 +131,11 @@ impl Image {
     #[must_use]
     pub fn to_hex(&self) -> String {
         let mut records = Vec::new();
-        for (start, bytes) in [(0, &self.code), (SECTION, &self.section)] {
-            for (index, line) in bytes.chunks(LINE).enumerate() {
-                records.push(Record::Data {
-                    offset: (start + index * LINE) as u16,
-                    value: line.to_vec(),
-                });
-            }
+        for (index, line) in self.bytes.chunks(LINE).enumerate() {
+            records.push(Record::Data {
+                offset: (index * LINE) as u16,
+                value: line.to_vec(),
+            });
         }
         records.push(Record::EndOfFile);
         let text = ihex::create_object_file_representation(&records);
@@ -165,25 +144,20 @@ impl Image {
 
     /// The image as flash holds it from address 0 on, up to its last byte.
     #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = self.code.clone();
-        if !self.section.is_empty() {
-            bytes.resize(SECTION, BLANK);
-            bytes.extend(&self.section);
-        }
-        bytes
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
-    /// The pages of the code, from address 0 on.
+    /// Its pages, from address 0 on.
     #[must_use]
-    pub fn code(&self) -> Vec<Page> {
-        pages(0, &self.code)
-    }
-
-    /// The pages of the robot's section.
-    #[must_use]
-    pub fn section(&self) -> Vec<Page> {
-        pages(SECTION, &self.section)
+    pub fn pages(&self) -> Vec<Page> {
+        let page = |(index, part): (usize, &[u8])| {
+            let mut bytes = [BLANK; PAGE];
+            bytes[..part.len()].copy_from_slice(part);
+            let address = index * PAGE;
+            Page { address, bytes }
+        };
+        self.bytes.chunks(PAGE).enumerate().map(page).collect()
     }
 }
 
@@ -216,25 +190,14 @@ fn put(
     Ok(())
 }
 
-fn pages(start: usize, bytes: &[u8]) -> Vec<Page> {
-    let page = |(index, part): (usize, &[u8])| {
-        let mut bytes = [BLANK; PAGE];
-        bytes[..part.len()].copy_from_slice(part);
-        let address = start + index * PAGE;
-        Page { address, bytes }
-    };
-    bytes.chunks(PAGE).enumerate().map(page).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The first lines of a file of avr-objcopy, and one behind a gap.
+    /// Two lines of a file of avr-objcopy.
     const HEX: &str = "\
 :100000000C9434000C943E000C943E000C943E0082\n\
 :0400100001020304E2\n\
-:026A0000AABB2F\n\
 :00000001FF\n";
 
     fn complaint(text: &str) -> String {
@@ -244,59 +207,46 @@ mod tests {
     }
 
     #[test]
-    fn a_hex_file_is_code_below_the_section_and_the_robot_in_it() {
+    fn a_hex_file_is_bytes_from_address_0_and_blank_where_it_has_none() {
         let image = Image::from_hex(HEX).expect("it is an image");
-        assert_eq!(image.code.len(), 20);
-        assert_eq!(image.code[..3], [0x0c, 0x94, 0x34]);
-        assert_eq!(image.code[16..], [1, 2, 3, 4]);
-        assert_eq!(image.section, [0xaa, 0xbb]);
+        assert_eq!(image.bytes().len(), 20);
+        assert_eq!(image.bytes()[..3], [0x0c, 0x94, 0x34]);
+        assert_eq!(image.bytes()[16..], [1, 2, 3, 4]);
+        let apart = HEX.replace(":0400100001020304E2", ":026A0000AABB2F");
+        let image = Image::from_hex(&apart).expect("it is an image");
+        assert_eq!(image.bytes().len(), 0x6a02);
+        assert!(image.bytes()[16..0x6a00].iter().all(|&byte| byte == 0xff));
+        assert_eq!(image.bytes()[0x6a00..], [0xaa, 0xbb]);
     }
 
     #[test]
     fn an_image_is_the_same_after_the_way_through_a_hex_file() {
-        let code: Vec<u8> = (0..1000).map(|at| (at * 7) as u8).collect();
-        let image = Image::new(code, vec![1; 200]).expect("it fits");
+        let bytes: Vec<u8> = (0..1000).map(|at| (at * 7) as u8).collect();
+        let image = Image::new(bytes).expect("it fits");
         let text = image.to_hex();
         assert_eq!(Image::from_hex(&text), Ok(image));
         assert_eq!(Image::from_hex(HEX).expect("an image").to_hex(), HEX);
     }
 
     #[test]
-    fn as_bytes_the_section_is_at_its_address() {
-        let image = Image::from_hex(HEX).expect("it is an image");
-        let bytes = image.to_bytes();
-        assert_eq!(bytes.len(), 0x6a02);
-        assert_eq!(bytes[0x6a00..], [0xaa, 0xbb]);
-        assert!(bytes[20..0x6a00].iter().all(|&byte| byte == 0xff));
-    }
-
-    #[test]
     fn a_page_that_is_filled_in_part_is_blank_behind_it() {
-        let image = Image::new(vec![5; 130], vec![6]).expect("it fits");
-        let code = image.code();
-        assert_eq!([code[0].address, code[1].address], [0, 128]);
-        assert_eq!(code.len(), 2);
-        assert_eq!(code[1].bytes[..3], [5, 5, 0xff]);
-        let section = image.section();
-        assert_eq!(section.len(), 1);
-        assert_eq!(section[0].range(), 0x6a00..0x6a80);
+        let image = Image::new(vec![5; 130]).expect("it fits");
+        let pages = image.pages();
+        assert_eq!([pages[0].address, pages[1].address], [0, 128]);
+        assert_eq!(pages.len(), 2);
+        assert_eq!(pages[1].bytes[..3], [5, 5, 0xff]);
+        assert_eq!(pages[1].range(), 128..256);
     }
 
     #[test]
     fn what_does_not_fit_is_refused_with_its_size() {
-        let words = |code, section| {
-            let error = Image::new(vec![0; code], vec![0; section]).expect_err("too long");
-            error.to_string()
-        };
+        let error = Image::new(vec![0; 32_257]).expect_err("too long");
         assert_eq!(
-            words(27_137, 0),
-            "the code has 27137 bytes; 27136 fit before the robot"
+            error.to_string(),
+            "the firmware has 32257 bytes; 32256 fit before the boot loader"
         );
-        assert_eq!(
-            words(1, 5_121),
-            "the robot takes 5121 bytes of flash; 5120 fit before the boot loader"
-        );
-        assert!(Image::new(vec![0; 27_136], vec![0; 5_120]).is_ok());
+        assert!(Image::new(vec![0; 32_256]).is_ok());
+        assert_eq!(Image::new(Vec::new()), Err(ImageError::NoStart));
     }
 
     #[test]

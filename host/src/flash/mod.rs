@@ -1,5 +1,4 @@
-//! `lizard flash`: firmware and robot into a UNO, by the boot loader that every UNO has; and
-//! `lizard image`: the same as a file.
+//! `lizard flash`: the firmware into a UNO, by the boot loader that every UNO has.
 //!
 //! A boot loader is talked to over the same USB cable as the console, but within a second
 //! after a reset, without checksums, and a part of flash is wrong whenever a cable is pulled in
@@ -31,21 +30,18 @@ use crate::{Failure, RobotFile};
 use image::{Image, PAGE};
 use serial_board::SerialBoard;
 use stk500::{Loader, Patience};
-use upload::{Done, Event, Part, Step};
+use upload::{Done, Event, Step};
 
-/// Write firmware and robot to a UNO on USB, by its boot loader
+/// Write the firmware to a UNO on USB, by its boot loader
 ///
-/// Says what the board has, writes the pages that differ, reads them back and starts the
+/// That is what `make firmware` has left for this robot. Says what the board has, writes the pages that differ, reads them back and starts the
 /// firmware. The EEPROM, and the calibration in it, is left as it is.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The board's serial port [default: the one that has a UNO, or the only one]
     port: Option<String>,
-    /// Write only the robot; the board must have this program's firmware already
-    #[arg(long)]
-    only_robot: bool,
-    /// Write this file of Intel HEX instead of firmware and robot
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "only_robot"])]
+    /// Write this file of Intel HEX instead of what `make firmware` has left
+    #[arg(long, value_name = "FILE", conflicts_with = "path")]
     image: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotFile,
@@ -60,10 +56,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Some(path) => file::read(path)?,
         None => file::image(&args.robot.load()?)?,
     };
-    let part = match args.only_robot {
-        true => Part::OnlyRobot,
-        false => Part::All,
-    };
     let (port, name) = match args.port {
         Some(port) => (port.clone(), port),
         None => {
@@ -74,7 +66,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
     let at = |sentence: String| Failure::Impossible(format!("{name}: {sentence}"));
-    let board = write(board, &image, part).map_err(|error| at(error.to_string()))?;
+    let board = write(board, &image).map_err(|error| at(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         at(format!(
             "the flash is written and verified, but the firmware is not heard: {error}"
@@ -100,12 +92,12 @@ fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
 
 /// Writes the board and says what is done, with a bar meanwhile. Returns the board, its
 /// firmware starting.
-fn write(board: SerialBoard, image: &Image, part: Part) -> Result<SerialBoard, Failure> {
+fn write(board: SerialBoard, image: &Image) -> Result<SerialBoard, Failure> {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %").expect("a template");
     let bar = ProgressBar::new(0).with_style(style);
     let mut loader = Loader::new(board, Patience::default());
     let begin = Instant::now();
-    let done = upload::upload(&mut loader, image, part, &mut |event| match event {
+    let done = upload::upload(&mut loader, image, &mut |event| match event {
         Event::Found(found) => bar.suspend(|| println(&found.to_string())),
         Event::Again(trouble) => {
             bar.suspend(|| {

@@ -3,8 +3,7 @@
 //! A cable may be pulled at any moment, and the chip then starts whatever is in flash: half
 //! a program may drive the servos anywhere. So, before code is changed, the page where the chip
 //! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
-//! other pages are written and read back, and that first page comes last. A robot's section alone
-//! needs no such care: the firmware does not take one whose checksum is wrong.
+//! other pages are written and read back, and that first page comes last.
 //!
 //! Pages that are right already are left alone: it saves time, and flash wears out (10 000 times,
 //! ATmega328P data sheet, "Features").
@@ -13,22 +12,13 @@ use std::fmt;
 
 use super::chip::Chip;
 use super::found::Found;
-use super::image::{BLANK, BOOT, Image, PAGE, Page, SECTION};
+use super::image::{BLANK, BOOT, Image, PAGE, Page};
 use super::stk500::{Board, Loader, Trouble};
 
 /// How often a board is reset and all is begun again, when bytes were lost on the way.
 const ATTEMPTS: usize = 3;
 /// `rjmp .-2`: a jump to itself.
 const IDLE: [u8; 2] = [0xff, 0xcf];
-
-/// Which pages are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
-    /// Code and robot.
-    All,
-    /// The robot's section alone, behind the image's own code.
-    OnlyRobot,
-}
 
 /// What is being done with pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,12 +64,6 @@ pub enum UploadError {
     /// Not the chip of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
-    /// Only the robot was to be written.
-    #[error(
-        "the board has another program, or another version of this one: at address {0:#06x} its \
-         code differs. Nothing was written; run without --only-robot"
-    )]
-    OtherCode(usize),
     /// A byte was written twice and is still another.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
@@ -112,8 +96,6 @@ pub enum Left {
     AsBefore,
     /// The loop that does nothing, and a part of the code.
     Idle,
-    /// Its code, and a part of the robot.
-    HalfRobot,
 }
 
 impl fmt::Display for Left {
@@ -123,10 +105,6 @@ impl fmt::Display for Left {
             Self::Idle => {
                 "The board has half a program now, and does nothing. Its boot loader is still \
                  there: run this command again"
-            }
-            Self::HalfRobot => {
-                "The board has half a robot now, which its firmware refuses. Its boot loader is \
-                 still there: run this command again"
             }
         })
     }
@@ -146,13 +124,11 @@ impl From<UploadError> for crate::Failure {
 pub fn upload<B: Board>(
     loader: &mut Loader<B>,
     image: &Image,
-    part: Part,
     tell: &mut dyn FnMut(Event<'_>),
 ) -> Result<Done, UploadError> {
     let mut upload = Upload {
         loader,
         image,
-        part,
         tell,
         answered: false,
         found: None,
@@ -170,7 +146,7 @@ pub fn upload<B: Board>(
         }
         (upload.tell)(Event::Again(&trouble));
     }
-    let pages = upload.goal().len();
+    let pages = image.pages().len();
     let written = written.into_iter().filter(|it| *it).count();
     Ok(Done {
         written,
@@ -193,7 +169,6 @@ impl From<Trouble> for Stop {
 struct Upload<'a, B> {
     loader: &'a mut Loader<B>,
     image: &'a Image,
-    part: Part,
     tell: &'a mut dyn FnMut(Event<'_>),
     /// The loader has answered once.
     answered: bool,
@@ -211,27 +186,23 @@ impl<B: Board> Upload<'_, B> {
             return Err(Stop::Error(UploadError::Chip(chip)));
         }
         let flash = self.look()?;
-        let mut goal = self.goal();
+        let mut goal = self.image.pages();
         goal.retain(|page| flash[page.range()] != page.bytes);
-        let code = goal.iter().any(|page| page.address < SECTION);
-        for page in &goal {
-            written[page.address / PAGE] = true;
-        }
-        if code {
+        if !goal.is_empty() {
+            for page in &goal {
+                written[page.address / PAGE] = true;
+            }
             // Where the chip starts, there was the loop meanwhile.
             written[0] = true;
-            self.write_code(goal, &flash)?;
-        } else if !goal.is_empty() {
-            self.left = Left::HalfRobot;
-            self.write(&goal)?;
+            self.write_pages(goal, &flash)?;
         }
         // All is written; the program starts after a second in any case.
         let _ = self.loader.leave();
         Ok(())
     }
 
-    /// Writes pages that code is among: the first of flash comes last.
-    fn write_code(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
+    /// Writes pages: the first of flash comes last.
+    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
         let mut idle = [BLANK; PAGE];
         idle[..IDLE.len()].copy_from_slice(&IDLE);
         goal.retain(|page| page.address != 0);
@@ -240,36 +211,17 @@ impl<B: Board> Upload<'_, B> {
             self.write_page(0, &idle)?;
         }
         self.write(&goal)?;
-        let first = self.image.code().into_iter().take(1);
+        let first = self.image.pages().into_iter().take(1);
         self.write(&first.collect::<Vec<_>>())
     }
 
-    /// The pages that the board is to have.
-    fn goal(&self) -> Vec<Page> {
-        let section = self.image.section();
-        match self.part {
-            Part::All => [self.image.code(), section].concat(),
-            Part::OnlyRobot => section,
-        }
-    }
-
-    /// Reads flash: all of it but the boot loader, or only what the image has.
+    /// Reads flash: all of it but the boot loader.
     fn look(&mut self) -> Result<Vec<u8>, Stop> {
         let mut flash = vec![BLANK; BOOT];
-        let addresses: Vec<usize> = match self.part {
-            Part::All => (0..BOOT).step_by(PAGE).collect(),
-            Part::OnlyRobot => {
-                let pages = [self.image.code(), self.image.section()].concat();
-                pages.iter().map(|page| page.address).collect()
-            }
-        };
-        for (done, &address) in addresses.iter().enumerate() {
-            let page = self.loader.read_page(address)?;
-            flash[address..address + PAGE].copy_from_slice(&page);
-            if self.part == Part::OnlyRobot {
-                self.hold_code(address, &mut flash)?;
-            }
-            (self.tell)(Event::Progress(Step::Reading, done + 1, addresses.len()));
+        let pages = BOOT / PAGE;
+        for (done, bytes) in flash.chunks_mut(PAGE).enumerate() {
+            bytes.copy_from_slice(&self.loader.read_page(done * PAGE)?);
+            (self.tell)(Event::Progress(Step::Reading, done + 1, pages));
         }
         if self.found.is_none() {
             let found = Found::in_flash(&flash, self.image);
@@ -277,23 +229,6 @@ impl<B: Board> Upload<'_, B> {
             (self.tell)(Event::Found(found));
         }
         Ok(flash)
-    }
-
-    /// Refuses a page of other code than the image's.
-    fn hold_code(&mut self, address: usize, flash: &mut [u8]) -> Result<(), Stop> {
-        let code = self.image.code();
-        let Some(page) = code.get(address / PAGE) else {
-            return Ok(());
-        };
-        if flash[page.range()] != page.bytes {
-            // Read again: a byte may have changed on the way.
-            let again = self.loader.read_page(address)?;
-            flash[page.range()].copy_from_slice(&again);
-        }
-        match difference(&flash[page.range()], &page.bytes) {
-            Some(at) => Err(Stop::Error(UploadError::OtherCode(address + at))),
-            None => Ok(()),
-        }
     }
 
     /// Writes pages and reads them back. One that has changed on the way is written again.

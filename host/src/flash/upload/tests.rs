@@ -6,14 +6,13 @@ use super::super::double::Double;
 use super::super::stk500::Patience;
 use super::*;
 
-/// Code of three pages, the third in part, and a robot of two.
+/// Five pages, the last in part.
 fn image() -> Image {
-    Image::new(bytes(300, 3), bytes(200, 5)).expect("it fits")
+    Image::new(bytes(600, 3)).expect("it fits")
 }
 
 /// The pages of [`image`].
-const CODE: [usize; 3] = [0, 0x80, 0x100];
-const ROBOT: [usize; 2] = [0x6a00, 0x6a80];
+const PAGES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
 
 fn bytes(count: usize, factor: usize) -> Vec<u8> {
     (0..count).map(|at| (at * factor + 1) as u8).collect()
@@ -21,7 +20,7 @@ fn bytes(count: usize, factor: usize) -> Vec<u8> {
 
 /// A board that has the image.
 fn with_image() -> Double {
-    Double::with(&image().to_bytes())
+    Double::with(image().bytes())
 }
 
 /// An upload, what it has told, and the board afterwards.
@@ -32,7 +31,7 @@ struct Run {
     board: Double,
 }
 
-fn run(board: Double, part: Part) -> Run {
+fn run(board: Double) -> Run {
     let patience = Patience {
         blinks: Duration::ZERO,
         call: Duration::from_millis(2),
@@ -41,7 +40,7 @@ fn run(board: Double, part: Part) -> Run {
     };
     let mut loader = Loader::new(board, patience);
     let (mut found, mut again) = (Vec::new(), 0);
-    let result = upload(&mut loader, &image(), part, &mut |event| match event {
+    let result = upload(&mut loader, &image(), &mut |event| match event {
         Event::Found(what) => found.push(what),
         Event::Again(_) => again += 1,
         Event::Progress(_, done, of) => assert!((1..=of).contains(&done), "{done} of {of}"),
@@ -60,8 +59,7 @@ impl Run {
     fn is_right(&self) -> Done {
         let done = *self.result.as_ref().expect("it is written");
         let (flash, blank) = (&self.board.flash, Double::blank().flash);
-        assert_eq!(flash[..300], bytes(300, 3));
-        assert_eq!(flash[0x6a00..0x6ac8], bytes(200, 5));
+        assert_eq!(flash[..600], bytes(600, 3));
         assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
         assert!(self.board.left, "the program is started");
         done
@@ -80,26 +78,25 @@ impl Run {
 
 #[test]
 fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
-    let run = run(Double::blank(), Part::All);
+    let run = run(Double::blank());
     let done = run.is_right();
     assert_eq!((done.written, done.kept), (5, 0));
     assert_eq!(run.found, [Found::Blank]);
-    assert!(run.board.flash[0x180..0x6a00].iter().all(|&it| it == 0xff));
+    assert!(run.board.flash[0x280..0x7e00].iter().all(|&it| it == 0xff));
     assert_eq!((run.board.resets, run.again), (1, 0));
 }
 
 #[test]
 fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
-    let run = run(Double::with(&[9; 5000]), Part::All);
+    let run = run(Double::with(&[9; 5000]));
     run.is_right();
     assert_eq!(run.found, [Found::OtherProgram { bytes: 5000 }]);
-    let [others, robot] = [&CODE[1..], &ROBOT];
-    assert_eq!(run.board.written, [&[0], others, robot, &[0]].concat());
+    assert_eq!(run.board.written, [&PAGES[..], &[0]].concat());
 }
 
 #[test]
 fn a_board_that_has_the_image_is_only_started() {
-    let run = run(with_image(), Part::All);
+    let run = run(with_image());
     let done = run.is_right();
     assert_eq!((done.written, done.kept), (0, 5));
     assert_eq!(run.found, [Found::Same]);
@@ -110,46 +107,17 @@ fn a_board_that_has_the_image_is_only_started() {
 fn only_pages_that_differ_are_written() {
     let mut board = with_image();
     board.flash[0x105] ^= 1;
-    let run = run(board, Part::All);
+    let run = run(board);
     let done = run.is_right();
     assert_eq!(run.board.written, [0, 0x100, 0]);
     assert_eq!((done.written, done.kept), (2, 3));
 }
 
 #[test]
-fn another_robot_leaves_the_code_alone() {
-    for part in [Part::All, Part::OnlyRobot] {
-        let mut board = with_image();
-        board.flash[0x6a90] ^= 1;
-        let run = run(board, part);
-        run.is_right();
-        assert_eq!(run.found, [Found::OtherRobot]);
-        assert_eq!(run.board.written, [0x6a80]);
-    }
-}
-
-#[test]
-fn a_robot_alone_is_not_put_behind_other_code() {
-    let mut board = with_image();
-    board.flash[0x105] ^= 1;
-    let before = board.flash.clone();
-    let other = run(board, Part::OnlyRobot);
-    assert!(
-        other.words().contains("at address 0x0105"),
-        "{}",
-        other.words()
-    );
-    assert!(other.words().ends_with("run without --only-robot"));
-    assert_eq!(other.board.flash, before);
-    let blank = run(Double::blank(), Part::OnlyRobot);
-    assert!(matches!(blank.result, Err(UploadError::OtherCode(0))));
-}
-
-#[test]
 fn a_loader_that_hears_only_the_third_call_is_waited_for() {
     let mut board = Double::blank();
     board.deaf = 2;
-    let run = run(board, Part::All);
+    let run = run(board);
     run.is_right();
     assert_eq!(run.board.resets, 1);
 }
@@ -159,14 +127,14 @@ fn what_the_old_program_says_before_the_answer_is_passed_over() {
     let mut board = Double::with(&[9; 500]);
     // The two bytes of an answer are among it, not beside each other.
     board.garbage = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
-    run(board, Part::All).is_right();
+    run(board).is_right();
 }
 
 #[test]
 fn a_board_that_never_answers_is_called_after_three_resets_and_not_written() {
     let mut board = Double::with(&[9; 500]);
     board.mute = true;
-    let run = run(board, Part::All);
+    let run = run(board);
     assert!(matches!(run.result, Err(UploadError::Nobody)));
     assert!(
         run.words()
@@ -205,7 +173,7 @@ fn a_board_that_talks_without_end_is_no_boot_loader() {
             ..Patience::default()
         };
         let mut loader = Loader::new(Talker, patience);
-        upload(&mut loader, &image(), Part::All, &mut |_| {})
+        upload(&mut loader, &image(), &mut |_| {})
     });
     assert!(matches!(result, Err(UploadError::Nobody)));
 }
@@ -215,7 +183,7 @@ fn another_chip_is_named_and_not_written() {
     let words = |signature| {
         let mut board = Double::blank();
         board.signature = signature;
-        let run = run(board, Part::All);
+        let run = run(board);
         assert!(run.board.written.is_empty());
         run.words()
     };
@@ -230,17 +198,16 @@ fn another_chip_is_named_and_not_written() {
 #[test]
 fn any_one_byte_that_is_lost_on_the_way_to_the_board_is_made_up_for() {
     let old = [9; 500];
-    let whole = run(Double::with(&old), Part::All).board;
+    let whole = run(Double::with(&old)).board;
     assert!(whole.received > 2000, "{} bytes", whole.received);
     // A page is read by 9 bytes: with steps of 7, each of them has its turn.
     for at in (0..whole.received).step_by(7) {
         let mut board = Double::with(&old);
         board.lost_to = Some(at);
-        let run = run(board, Part::All);
+        let run = run(board);
         assert!(run.result.is_ok(), "byte {at}: {}", run.words());
         let flash = &run.board.flash;
-        assert!(flash[..300] == bytes(300, 3), "byte {at}: the code");
-        assert!(flash[0x6a00..0x6ac8] == bytes(200, 5), "byte {at}: robot");
+        assert!(flash[..600] == bytes(600, 3), "byte {at}");
         assert_eq!(run.found.len(), 1, "byte {at}: told once what was found");
     }
 }
@@ -248,13 +215,13 @@ fn any_one_byte_that_is_lost_on_the_way_to_the_board_is_made_up_for() {
 #[test]
 fn any_one_byte_that_is_lost_on_the_way_from_the_board_is_made_up_for() {
     let old = [9; 500];
-    let whole = run(Double::with(&old), Part::All).board;
+    let whole = run(Double::with(&old)).board;
     assert!(whole.sent > 30_000, "{} bytes", whole.sent);
     // The call and the first pages byte by byte, the rest here and there.
     for at in (0..300).chain((300..whole.sent).step_by(101)) {
         let mut board = Double::with(&old);
         board.lost_from = Some(at);
-        let run = run(board, Part::All);
+        let run = run(board);
         assert!(run.result.is_ok(), "byte {at}: {}", run.words());
         run.is_right();
     }
@@ -263,9 +230,9 @@ fn any_one_byte_that_is_lost_on_the_way_from_the_board_is_made_up_for() {
 #[test]
 fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     let mut board = Double::with(&[9; 500]);
-    let right = image().to_bytes()[0x85];
+    let right = image().bytes()[0x85];
     board.worn = Some((0x85, right & right.wrapping_neg()));
-    let run = run(board, Part::All);
+    let run = run(board);
     let words = run.words();
     assert!(words.contains("the byte at address 0x0085"), "{words}");
     assert!(words.ends_with("run this command again"), "{words}");
@@ -278,7 +245,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_and_is_written_by_the_next_uploa
     for pages in 1..=5 {
         let mut board = Double::with(&[9; 500]);
         board.unplugged_after = Some(pages);
-        let cut = run(board, Part::All);
+        let cut = run(board);
         let words = cut.words();
         assert!(words.starts_with("the port is gone"), "{words}");
         assert!(
@@ -288,7 +255,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_and_is_written_by_the_next_uploa
         assert!(cut.does_nothing(), "after {pages} pages");
         let mut board = cut.board;
         board.unplugged_after = None;
-        run(board, Part::All).is_right();
+        run(board).is_right();
     }
 }
 
@@ -296,20 +263,10 @@ fn a_board_unplugged_in_the_middle_does_nothing_and_is_written_by_the_next_uploa
 fn a_board_unplugged_before_the_first_page_has_what_it_had() {
     let mut board = Double::with(&[9; 500]);
     board.unplugged_after = Some(0);
-    let run = run(board, Part::All);
+    let run = run(board);
     assert!(
         run.words()
             .ends_with("Nothing was written: the board has what it had")
     );
     assert_eq!(run.board.flash[..500], [9; 500]);
-}
-
-#[test]
-fn a_board_unplugged_within_a_robot_has_its_code() {
-    let mut board = with_image();
-    board.flash[0x6a00..0x6b00].fill(0);
-    board.unplugged_after = Some(1);
-    let run = run(board, Part::OnlyRobot);
-    assert!(run.words().contains("half a robot"), "{}", run.words());
-    assert_eq!(run.board.flash[..300], bytes(300, 3));
 }
