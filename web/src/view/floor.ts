@@ -5,7 +5,8 @@ import { drawLizard } from './lizard';
 import { palette } from './palette';
 
 const GRID = 50;
-const LEAST_ZOOM = 0.15;
+/** CSS pixels in a mm: the robot, some 250 mm long, stays larger than 60 pixels. */
+const LEAST_ZOOM = 0.25;
 const MOST_ZOOM = 8;
 /** What is to be seen at first, mm. */
 const VIEW = 420;
@@ -31,7 +32,11 @@ export class Floor {
   constructor(onHome: () => void) {
     element('zoom-in').addEventListener('click', () => this.zoomBy(1.25));
     element('zoom-out').addEventListener('click', () => this.zoomBy(0.8));
-    element('home').addEventListener('click', onHome);
+    element('home').addEventListener('click', () => {
+      onHome();
+      this.zoom = 0;
+      this.follow(true);
+    });
     this.followButton.addEventListener('click', () => this.follow(!this.following));
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
@@ -44,6 +49,8 @@ export class Floor {
     this.canvas.addEventListener(
       'wheel',
       (event) => {
+        // Without Ctrl it scrolls the page, which the floor is in the way of.
+        if (!event.ctrlKey && !event.metaKey) return;
         event.preventDefault();
         this.zoomBy(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
       },
