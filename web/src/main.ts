@@ -74,7 +74,9 @@ async function start(): Promise<void> {
       margins.robot(description);
       maps.robot(robot);
       drive.take(description);
-      const strange = unknownWords(description.words);
+      // A board that stays connected does what it did.
+      drive.doing(session.gait);
+      const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
       lengths.take(description.lengths);
       floor.clear();

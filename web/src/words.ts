@@ -19,7 +19,7 @@ export const WORDS = {
   factory: 'factory',
 } as const;
 
-/** Words of the page that are not among the core's. */
-export function unknownWords(core: string[]): string[] {
-  return Object.values(WORDS).filter((word) => !core.includes(word));
+/** Words of the page and of its buttons that are not among the core's. */
+export function unknownWords(buttons: string[], core: string[]): string[] {
+  return [...new Set([...Object.values(WORDS), ...buttons])].filter((word) => !core.includes(word));
 }

@@ -1,4 +1,5 @@
 // The link to a board on USB, by Web Serial. Chromium and its kin have it, over https or on localhost.
+import { sentence } from '../trouble';
 import type { Link } from './link';
 
 /** The parts of Web Serial that are used; TypeScript's own library does not have them. */
@@ -54,7 +55,11 @@ export class PortLink implements Link {
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
       throw error;
     }
-    await port.open({ baudRate: BAUD, bufferSize: 4096 });
+    try {
+      await port.open({ baudRate: BAUD, bufferSize: 4096 });
+    } catch (error) {
+      throw new Error(`${sentence(error)} Another program may have the port: close that, and connect again.`);
+    }
     const link = new PortLink(port);
     void link.listen();
     return link;

@@ -23,6 +23,8 @@ export class Drive {
   private readonly outlooks = new Map<string, Outlook>();
 
   private readonly said = element('drive-said');
+  /** What the buttons of index.html send, which every robot has. */
+  readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
   /** `send` sends a line and ends with its answer, null without one. */
   constructor(private readonly send: (line: string) => Promise<Answer | null>) {

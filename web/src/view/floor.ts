@@ -14,6 +14,9 @@ const VIEW = 420;
 const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
 
+/** A finger that has moved so far aside drags the floor, CSS pixels. */
+const SLOP = 12;
+
 interface Touch {
   x: number;
   y: number;
@@ -28,6 +31,8 @@ export class Floor {
   private following = true;
   private track: { x: number; y: number }[] = [];
   private readonly touches = new Map<number, Touch>();
+  /** Whether the one pointer that is down drags the floor. */
+  private dragging = false;
 
   constructor(onHome: () => void) {
     element('zoom-in').addEventListener('click', () => this.zoomBy(1.25));
@@ -44,7 +49,10 @@ export class Floor {
     });
     this.canvas.addEventListener('pointermove', (event) => this.drag(event));
     for (const kind of ['pointerup', 'pointercancel'] as const) {
-      this.canvas.addEventListener(kind, (event) => this.touches.delete(event.pointerId));
+      this.canvas.addEventListener(kind, (event) => {
+        this.touches.delete(event.pointerId);
+        this.dragging = false;
+      });
     }
     this.canvas.addEventListener(
       'wheel',
@@ -83,6 +91,9 @@ export class Floor {
       this.centre.x += (frame.place.x - this.centre.x) * 0.08;
       this.centre.y += (frame.place.y - this.centre.y) * 0.08;
     }
+    // The picture's scale, for whoever cannot measure it.
+    const zoom = this.zoom.toFixed(4);
+    if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     pen.fillStyle = palette().floor;
     pen.fillRect(0, 0, width, height);
     pen.translate(width / 2, height / 2);
@@ -184,6 +195,9 @@ export class Floor {
       const apart = (a: Touch) => Math.hypot(a.x - other.x, a.y - other.y);
       this.zoomBy(apart(now) / Math.max(1, apart(before)), (now.x + other.x) / 2, (now.y + other.y) / 2);
     } else {
+      // A finger that means to scroll the page moves a little before the browser takes it away.
+      this.dragging ||= event.pointerType !== 'touch' || Math.abs(now.x - before.x) > SLOP;
+      if (!this.dragging) return;
       this.pan(now.x - before.x, now.y - before.y);
     }
     this.touches.set(event.pointerId, now);
