@@ -234,13 +234,15 @@ export class Session {
   /** Whether this firmware is there: not every port resets its board. */
   private async answers(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
-    return answer !== null && status(answer.text) !== null;
+    const read = answer && status(answer.text);
+    if (read) this.doing(read.gait.replaceAll('-', ' '));
+    return read !== null;
   }
 
   /** Says what a board is that does not have this firmware, as its boot loader knows. */
   private async identify(link: Link): Promise<void> {
     this.has(null);
-    let said = 'The board is an Arduino UNO, and this firmware is not on it.';
+    let said = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
     this.dialogue.end();
     try {
       await identify(link);
@@ -269,7 +271,10 @@ export class Session {
 
   /** Whether a board walks that nobody would see any more if the page were closed. */
   get walksAlone(): boolean {
-    return this.isReal && this.description.gaits.some(({ command, moves }) => moves && command === this.gait);
+    const { stop, rest, center, pose } = WORDS;
+    // A board may have the image of another robot, with gaits that this one does not know.
+    const known = this.description.gaits.find(({ command }) => command === this.gait);
+    return this.isReal && (known ? known.moves : !['', stop, rest, center, pose].includes(this.gait));
   }
 
   /** Stops a board that is about to be left; whether it says so, or was not of this firmware. */

@@ -31,7 +31,7 @@ async function walking() {
 
 test('a new UNO is named after some seconds, and is given the firmware by one button', async () => {
   const opened = await connected(null, 5000);
-  await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, and this firmware is not on it.' }).waitFor();
+  await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
   await opened.getByRole('button', { name: 'Write the image of robot.toml to it' }).click();
   for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
@@ -50,6 +50,18 @@ test('a board that nothing answers from is asked about', async () => {
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(6000);
   await opened.locator('#trouble', { hasText: 'Is it the right port, and an UNO?' }).waitFor();
+});
+
+test('a board that its port does not reset is asked what it does, and followed', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => (window.awake = true));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(5000);
+  await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
+  assert.match(await text(opened, '#where'), /^on a board on USB that has not begun anew/);
+  assert.equal(await text(opened, '#doing'), 'stand');
+  assert.equal(await opened.locator('#trouble').isVisible(), false);
 });
 
 test('a robot is chosen for a board that is connected, and the board stays', async () => {

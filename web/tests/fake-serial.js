@@ -2,7 +2,8 @@
 
 /**
  * With `window.flashed` set to the name of an image, or to null for none, the board has that one;
- * `window.pick` throws in place of a choice of the port.
+ * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
+ * of the port.
  */
 export function fakeSerial() {
   let board;
@@ -15,6 +16,8 @@ export function fakeSerial() {
       const name = window.flashed === undefined ? 'robot' : window.flashed;
       const hex = async (name) => (await fetch(`files/${name}.hex`)).text();
       board = new first.constructor(name && (await hex(name)), await hex('optiboot'));
+      // What it says before the port is open goes nowhere.
+      if (window.awake) board.run(16_000 * 4000);
       let out;
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });
       window.unplug = () => {
@@ -24,14 +27,14 @@ export function fakeSerial() {
       };
       port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
       board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
-      board.reset('external');
+      if (!window.awake) board.reset('external');
       window.otherBoard = board;
       window.heard = '';
       board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
       port.timer = setInterval(() => board.run(16_000 * 2), 2);
     },
     async setSignals({ dataTerminalReady }) {
-      if (dataTerminalReady) board.reset('external');
+      if (dataTerminalReady && !window.awake) board.reset('external');
     },
     async close() {
       clearInterval(port.timer);

@@ -71,7 +71,7 @@ export class FlashView {
     element('flash-what').textContent =
       `${file.name}, ${this.chosen.length} bytes. ${what} Write it to the ${this.session().link.name}?`;
     this.question.hidden = false;
-    element('flash-yes').focus();
+    element('flash-no').focus();
   }
 
   private forget(): void {
