@@ -9,6 +9,7 @@ import { Session } from './session';
 import { sentence } from './trouble';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
+import { download } from './view/download';
 import { Drive, short } from './view/drive';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
@@ -43,6 +44,8 @@ async function start(): Promise<void> {
   const choices: RobotFile[] = await files.robots();
   const now = () => session;
 
+  const select = element<HTMLSelectElement>('robot');
+  const connect = element<HTMLButtonElement>('connect');
   const scope = new ScopeView();
   const margins = new MarginsView();
   const maps = new MapsView();
@@ -66,7 +69,12 @@ async function start(): Promise<void> {
   const health = new Health(now);
   const lengths = new Lengths(now);
   const calibrate = new Calibrate(now);
-  const flash = new FlashView(now, (busy) => (health.held = busy));
+  let writing = false;
+  const flash = new FlashView(now, (busy) => {
+    writing = health.held = busy;
+    // The line belongs to the boot loader: what would take it away waits.
+    for (const control of [select, connect]) control.disabled = busy || (control === connect && !hasSerial());
+  });
 
   const session: Session = new Session(robot, {
     robot(description) {
@@ -154,7 +162,6 @@ async function start(): Promise<void> {
     put('refusal', refusal ?? '');
   }
 
-  const select = element<HTMLSelectElement>('robot');
   // Those that are for the tests come last, and are named so.
   const tests = document.createElement('optgroup');
   tests.label = 'for tests';
@@ -179,7 +186,6 @@ async function start(): Promise<void> {
 
   element('reset').addEventListener('click', () => void session.reset());
 
-  const connect = element<HTMLButtonElement>('connect');
   if (!hasSerial()) {
     connect.disabled = true;
     element('no-serial').textContent = NO_SERIAL;
@@ -189,10 +195,11 @@ async function start(): Promise<void> {
     const change = session.isReal ? session.disconnect() : session.connect();
     change.catch((error: unknown) => troubles.say('port', `No board is connected: ${sentence(error)}`));
   });
-  // A board goes on walking when its page is closed: it is stopped, and the browser asks.
+  // A board goes on walking when its page is closed: it is stopped, and the browser asks. It asks, too, before half
+  // an image is left on a board.
   addEventListener('beforeunload', (event) => {
-    if (!session.walksAlone) return;
-    void session.stop();
+    if (session.walksAlone) void session.stop();
+    else if (!(writing && session.isReal)) return;
     event.preventDefault();
   });
 
@@ -200,7 +207,9 @@ async function start(): Promise<void> {
   if (before && choices.some(({ name }) => name === before.file)) select.value = before.file;
   await choose();
   if (before && session.file === before.file && !(await session.recall(before))) {
-    troubles.say('robot', `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`);
+    const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
+    const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
+    troubles.say('robot', said, remedy);
   }
   window.lizard = session;
   void calibrate;

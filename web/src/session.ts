@@ -123,7 +123,9 @@ export class Session {
       this.file = name;
       this.keep();
     } catch (error) {
-      if (choice === this.choices) this.file = before;
+      // What another choice has overtaken is of no interest any more.
+      if (choice !== this.choices) return;
+      this.file = before;
       throw error;
     }
   }

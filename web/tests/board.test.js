@@ -34,10 +34,15 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
   await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
   await opened.getByRole('button', { name: 'Write the image of robot.toml to it' }).click();
+  await opened.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
+  for (const control of ['#robot', '#connect']) {
+    assert.ok(await opened.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
+  }
   for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
   assert.equal(await text(opened, '#flash-said'), 'written and verified');
   await opened.clock.runFor(8000);
   assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  for (const control of ['#robot', '#connect']) assert.ok(await opened.locator(control).isEnabled(), control);
   assert.equal(await opened.locator('#trouble').isVisible(), false, 'it greets: the trouble is over');
   await opened.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
 });

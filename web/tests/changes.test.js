@@ -14,9 +14,9 @@ async function slide(opened, label, value) {
   await opened.getByLabel(label).fill(value);
 }
 
-async function downloaded(opened) {
+async function downloaded(opened, button = 'Download robot.toml') {
   const coming = opened.waitForEvent('download');
-  await opened.getByRole('button', { name: 'Download robot.toml' }).click();
+  await opened.getByRole('button', { name: button }).click();
   const file = await (await coming).path();
   return readFile(file, 'utf8');
 }
@@ -95,6 +95,8 @@ test('changes of a file that is another now are not taken, and that is said', as
   await opened.waitForFunction(() => window.lizard);
   await opened.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
   assert.equal(await opened.evaluate(() => window.lizard.link.name), 'simulated UNO');
+  const lost = await downloaded(opened, 'Download what was changed');
+  assert.deepEqual([number(lost, 'leg', 'crank'), number(lost, 'body', 'mass')], [40, 412], 'they are not lost');
 });
 
 test('the pace slider has what the robot has, after a typed line and after a reset', async () => {

@@ -2,6 +2,7 @@
 import { isRefused, type Length, type Refused } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { download } from './download';
 
 export class Lengths {
   private readonly list = element('lengths');
@@ -79,15 +80,8 @@ export class Lengths {
 
   private download(): void {
     const { robot, toml, floor } = this.session();
-    const whole = robot.editFloor(toml, floor);
-    const refused = isRefused(whole) ? whole : whole.refusal;
+    const refused = download(robot, toml, floor);
     if (refused) this.say(`This robot.toml has not what Springs and floor are set to: ${refused.refused}`);
-    const text = isRefused(whole) || refused ? toml : whole.text;
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([text], { type: 'application/toml' }));
-    link.download = 'robot.toml';
-    link.click();
-    URL.revokeObjectURL(link.href);
   }
 
   private say(sentence: string | null): void {
