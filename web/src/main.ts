@@ -1,6 +1,6 @@
 // The page: a session, and the views that show it.
 import { run } from './clock';
-import { files, isForTests, type RobotFile } from './files';
+import { files } from './files';
 import { kept } from './kept';
 import { hasSerial, NO_SERIAL } from './link/port-link';
 import { Predictor } from './predictor';
@@ -9,6 +9,7 @@ import { Session } from './session';
 import { sentence } from './trouble';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
+import { Choice } from './view/choice';
 import { download } from './view/download';
 import { Drive, short } from './view/drive';
 import { FlashView } from './view/flash';
@@ -41,10 +42,9 @@ const troubles = new Troubles();
 async function start(): Promise<void> {
   const module = await files.wasm();
   const robot = await Robot.load(module);
-  const choices: RobotFile[] = await files.robots();
+  const choice = await Choice.load();
   const now = () => session;
 
-  const select = element<HTMLSelectElement>('robot');
   const connect = element<HTMLButtonElement>('connect');
   const scope = new ScopeView();
   const margins = new MarginsView();
@@ -73,7 +73,8 @@ async function start(): Promise<void> {
   const flash = new FlashView(now, (busy) => {
     writing = health.held = busy;
     // The line belongs to the boot loader: what would take it away waits.
-    for (const control of [select, connect]) control.disabled = busy || (control === connect && !hasSerial());
+    choice.enabled = !busy;
+    connect.disabled = busy || !hasSerial();
   });
 
   const session: Session = new Session(robot, {
@@ -162,27 +163,18 @@ async function start(): Promise<void> {
     put('refusal', refusal ?? '');
   }
 
-  // Those that are for the tests come last, and are named so.
-  const tests = document.createElement('optgroup');
-  tests.label = 'for tests';
-  const tomls = await Promise.all(choices.map(({ name }) => files.toml(name).catch(() => '')));
-  choices.forEach(({ name, image }, n) => {
-    const option = new Option(`${name}.toml${image ? '' : ' (no image)'}`, name);
-    if (isForTests(tomls[n])) tests.append(option);
-    else select.add(option);
-  });
-  if (tests.childElementCount > 0) select.append(tests);
   const choose = async () => {
-    const choice = choices.find(({ name }) => name === select.value) ?? choices[0];
+    const { name, image } = choice.robot;
     try {
-      await session.choose(choice.name, choice.image);
+      await session.choose(name, image);
       troubles.say('robot', null);
     } catch (error) {
-      select.value = session.file;
+      choice.show(session.file);
+      if (!session.link) element('where').textContent = 'No robot could be read.';
       troubles.say('robot', sentence(error));
     }
   };
-  select.addEventListener('change', () => void choose());
+  choice.onChange(() => void choose());
 
   element('reset').addEventListener('click', () => void session.reset());
 
@@ -204,7 +196,7 @@ async function start(): Promise<void> {
   });
 
   const before = kept.get();
-  if (before && choices.some(({ name }) => name === before.file)) select.value = before.file;
+  if (before) choice.show(before.file);
   await choose();
   if (before && session.file === before.file && !(await session.recall(before))) {
     const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page, standing, tidy, type } from './browser.js';
+import { address, advance, blank, close, complaints, open, page, standing, tidy, type } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -30,6 +30,19 @@ test('a robot file that cannot be read stays said while the robot of before goes
   assert.equal(await trouble(opened).isVisible(), false, 'a robot that can be read ends it');
   // The browser itself complains of what the test took away.
   complaints.splice(0, complaints.length, ...complaints.filter((said) => !/404/.test(said)));
+});
+
+test('a page whose first robot cannot be read says so, and takes another one', async () => {
+  const opened = await blank();
+  await opened.route('**/files/robot.hex', (route) => route.fulfill({ status: 404 }));
+  await opened.goto(address());
+  await trouble(opened).getByText('files/robot.hex is not there (404)').waitFor();
+  assert.equal(await text(opened, '#where'), 'No robot could be read.');
+  await opened.locator('#robot').selectOption('paper');
+  await opened.waitForFunction(() => window.lizard?.file === 'paper');
+  await advance(opened, 2500);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+  assert.equal(await trouble(opened).isVisible(), false);
 });
 
 test('a port that is busy stays said until a person puts it away', async () => {
