@@ -7,6 +7,16 @@ export interface RobotFile {
   image: boolean;
 }
 
+/** A robot.toml says in the comment at its top what it is for. */
+const FOR_TESTS = /\bIt is for the tests\b/;
+
+/** Whether a robot.toml says of itself that it is for tests first of all. */
+export function isForTests(toml: string): boolean {
+  const lines = toml.split('\n');
+  const end = lines.findIndex((line) => !line.startsWith('#'));
+  return FOR_TESTS.test(lines.slice(0, Math.max(0, end)).map((line) => line.slice(1).trim()).join(' '));
+}
+
 async function get(path: string): Promise<Response> {
   const response = await fetch(new URL(path, document.baseURI));
   if (!response.ok) throw new Error(`${path} is not there (${response.status}); was the page built by make web?`);

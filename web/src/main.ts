@@ -1,12 +1,16 @@
 // The page: a session, and the views that show it.
 import { run } from './clock';
-import { files, type RobotFile } from './files';
-import { hasSerial } from './link/port-link';
+import { files } from './files';
+import { kept } from './kept';
+import { hasSerial, NO_SERIAL } from './link/port-link';
 import { Predictor } from './predictor';
 import { Robot } from './robot';
 import { Session } from './session';
+import { sentence } from './trouble';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
+import { Choice } from './view/choice';
+import { download } from './view/download';
 import { Drive, short } from './view/drive';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
@@ -15,8 +19,11 @@ import { Lengths } from './view/lengths';
 import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
+import { Pace } from './view/pace';
 import { ScopeView } from './view/scope';
+import { Troubles } from './view/troubles';
 import { World } from './view/world';
+import { unknownWords } from './words';
 
 /** Texts that follow the robot are written so many times a second. */
 const TEXTS = 10;
@@ -30,19 +37,15 @@ declare global {
   }
 }
 
-function trouble(sentence: string | null): void {
-  const box = element('trouble');
-  if (box.textContent === (sentence ?? '')) return;
-  box.hidden = sentence === null;
-  box.textContent = sentence ?? '';
-}
+const troubles = new Troubles();
 
 async function start(): Promise<void> {
   const module = await files.wasm();
   const robot = await Robot.load(module);
-  const choices: RobotFile[] = await files.robots();
+  const choice = await Choice.load();
   const now = () => session;
 
+  const connect = element<HTMLButtonElement>('connect');
   const scope = new ScopeView();
   const margins = new MarginsView();
   const maps = new MapsView();
@@ -51,7 +54,8 @@ async function start(): Promise<void> {
     session.home();
     floor.clear();
   });
-  const drive = new Drive((command) => void session.ask(command));
+  const drive = new Drive((line) => session.ask(line));
+  const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, outlook) => {
     drive.predicted(gait, outlook);
     texts();
@@ -65,7 +69,13 @@ async function start(): Promise<void> {
   const health = new Health(now);
   const lengths = new Lengths(now);
   const calibrate = new Calibrate(now);
-  const flash = new FlashView(now, (busy) => (health.held = busy));
+  let writing = false;
+  const flash = new FlashView(now, (busy) => {
+    writing = health.held = busy;
+    // The line belongs to the boot loader: what would take it away waits.
+    choice.enabled = !busy;
+    connect.disabled = busy || !hasSerial();
+  });
 
   const session: Session = new Session(robot, {
     robot(description) {
@@ -73,6 +83,10 @@ async function start(): Promise<void> {
       margins.robot(description);
       maps.robot(robot);
       drive.take(description);
+      // A board that stays connected does what it did.
+      drive.doing(session.gait);
+      const strange = unknownWords([...drive.words], description.words);
+      if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
       lengths.take(description.lengths);
       floor.clear();
       world.take();
@@ -93,21 +107,31 @@ async function start(): Promise<void> {
       drive.doing(gait);
       texts();
     },
-    tables(hash) {
+    tables(tables) {
       const { link, description } = session;
+      const text: Record<string, string> = {
+        null: `on a ${link.name} without this firmware`,
+        unknown: `on a ${link.name} that has not begun anew: its reset button makes it say which robot it is`,
+        [description.hash]: `on a ${link.name}, tables ${tables}`,
+      };
       element('where').textContent = !link.canFlash
-        ? `${link.name}: no image has these lengths, tables ${hash}`
-        : hash === description.hash
-          ? `on a ${link.name}, tables ${hash}`
-          : `on a ${link.name} with the image of another robot, tables ${hash}: choose that robot, or flash this one's`;
+        ? `${link.name}: no image has these lengths, tables ${tables}`
+        : text[String(tables)] ??
+          `on a ${link.name} with the image of another robot, tables ${tables}: choose that robot, or flash this one's`;
     },
+    speed: (percent) => pace.show(percent),
     link(link) {
       latest = 0;
+      scope.link(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
       element('connect').textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
       flash.update();
     },
-    trouble,
+    trouble(cause, said) {
+      // A board without this firmware can have it.
+      const remedy = { label: `Write the image of ${session.file}.toml to it`, act: () => flash.writeOwn() };
+      troubles.say(cause, said, cause === 'board' && session.image !== null ? remedy : null);
+    },
   });
   let latest = 0;
 
@@ -139,40 +163,46 @@ async function start(): Promise<void> {
     put('refusal', refusal ?? '');
   }
 
-  const select = element<HTMLSelectElement>('robot');
-  for (const { name, image } of choices) {
-    select.add(new Option(`${name}.toml${image ? '' : ' (no image)'}`, name));
-  }
   const choose = async () => {
-    const choice = choices.find(({ name }) => name === select.value) ?? choices[0];
+    const { name, image } = choice.robot;
     try {
-      await session.choose(choice.name, choice.image);
-      trouble(null);
+      await session.choose(name, image);
+      troubles.say('robot', null);
     } catch (error) {
-      trouble(error instanceof Error ? error.message : String(error));
+      choice.show(session.file);
+      if (!session.link) element('where').textContent = 'No robot could be read.';
+      troubles.say('robot', sentence(error));
     }
   };
-  select.addEventListener('change', () => void choose());
+  choice.onChange(() => void choose());
 
   element('reset').addEventListener('click', () => void session.reset());
 
-  const connect = element<HTMLButtonElement>('connect');
   if (!hasSerial()) {
     connect.disabled = true;
-    connect.title = 'This browser has no Web Serial; Chromium, Chrome and Edge have it.';
+    element('no-serial').textContent = NO_SERIAL;
+    element('no-serial').hidden = false;
   }
   connect.addEventListener('click', () => {
-    const change = session.isReal ? session.simulate() : session.connect();
-    change.catch((error: unknown) => trouble(error instanceof Error ? error.message : String(error)));
+    const change = session.isReal ? session.disconnect() : session.connect();
+    change.catch((error: unknown) => troubles.say('port', `No board is connected: ${sentence(error)}`));
+  });
+  // A board goes on walking when its page is closed: it is stopped, and the browser asks. It asks, too, before half
+  // an image is left on a board.
+  addEventListener('beforeunload', (event) => {
+    if (session.walksAlone) void session.stop();
+    else if (!(writing && session.isReal)) return;
+    event.preventDefault();
   });
 
-  const speed = element<HTMLInputElement>('speed');
-  const showSpeed = () => (element('speed-out').textContent = `${speed.value} %`);
-  speed.addEventListener('input', showSpeed);
-  speed.addEventListener('change', () => void session.ask(`speed ${speed.value}`));
-  showSpeed();
-
+  const before = kept.get();
+  if (before) choice.show(before.file);
   await choose();
+  if (before && session.file === before.file && !(await session.recall(before))) {
+    const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
+    const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
+    troubles.say('robot', said, remedy);
+  }
   window.lizard = session;
   void calibrate;
   let sinceTexts = 0;
@@ -183,6 +213,8 @@ async function start(): Promise<void> {
       session.advance(ms);
     },
     () => {
+      // Where no robot could be read, there is nothing to draw.
+      if (!session.description) return;
       floor.draw(session.description.plate, session.last);
       pictures += 1;
       if (pictures % PANELS === 0) {
@@ -200,4 +232,7 @@ async function start(): Promise<void> {
   );
 }
 
-start().catch((error: unknown) => trouble(error instanceof Error ? error.message : String(error)));
+start().catch((error: unknown) => {
+  element('where').textContent = 'The page cannot begin.';
+  troubles.say('page', sentence(error));
+});

@@ -43,6 +43,8 @@ export interface Description {
   rail: [number, number] | null;
   floor: Floor;
   models: ServoModel[];
+  /** The words of the console. */
+  words: string[];
 }
 
 /** The chassis from above, mm. */
@@ -156,6 +158,7 @@ interface Exports {
   lizard_output_length(): number;
   lizard_read(): void;
   lizard_edit(value: number): void;
+  lizard_edit_floor(friction: number, ratio: number, mass: number, stiffness: number, preload: number): void;
   lizard_pulses(a1: number, a2: number, a3: number, a4: number): void;
   lizard_pose(a1: number, a2: number, a3: number, a4: number, frames: number): void;
   lizard_restart(): void;
@@ -197,6 +200,13 @@ export class Robot {
   edit(toml: string, key: string, value: number): { text: string; refusal: Refused | null } | Refused {
     this.give(`${key}\n${toml}`);
     this.wasm.lizard_edit(value);
+    return this.answer();
+  }
+
+  /** A robot.toml with this floor, weight and these springs, and whether it will do. */
+  editFloor(toml: string, { friction, ratio, mass, stiffness, preload }: Floor): { text: string; refusal: Refused | null } | Refused {
+    this.give(toml);
+    this.wasm.lizard_edit_floor(friction, ratio, mass, stiffness ?? Infinity, preload);
     return this.answer();
   }
 

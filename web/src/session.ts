@@ -1,11 +1,12 @@
 // The robot that the page shows, and what is at the other end of its serial line. Views only
 // look at it and ask it to do things.
 import { files } from './files';
+import { type Kept, kept } from './kept';
 import { CoreLink } from './link/core-link';
-import { Dialogue, Forgotten } from './link/dialogue';
+import { type Answer, Dialogue, Forgotten } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
-import { flash, imageOf, type Progress } from './link/stk500';
+import { flash, identify, type Progress } from './link/stk500';
 import { UnoLink } from './link/uno-link';
 import {
   type Description,
@@ -17,17 +18,26 @@ import {
   type Robot,
 } from './robot';
 import { type Status, status, watched } from './status';
+import { type Cause, sentence } from './trouble';
 import { SimulatedBoard, FREQUENCY } from './uno/board';
+import { WORDS } from './words';
 
 /** How often a board on USB says where it is, in frames of 20 ms. */
 const WATCH = 2;
-/** A board that has not greeted within this, ms, is asked nevertheless. */
-const PATIENCE = 8000;
+/** A board with this firmware has greeted so long after its reset, ms. */
+const GREETS = 2500;
+/** One that was not reset by its port answers within this, ms. */
+const ANSWERS = 500;
+/** A board that is left has stopped within this, ms. */
+const STOPS = 1000;
 /** `boot` acts three seconds after a reset, ms. */
 const BOOTS = 4000;
 const FRAME_SECONDS = 0.02;
 /** The way of the last seconds that is kept to measure a cycle. */
 const KEPT_SECONDS = 12;
+
+/** The hash that a banner says, `unknown` where the firmware answers but has not greeted, null without this firmware. */
+export type Tables = string | 'unknown' | null;
 
 export interface Listener {
   /** Another robot, or the same with other lengths. */
@@ -38,11 +48,14 @@ export interface Listener {
   came(line: string): void;
   /** What the robot does, as its answers say. */
   doing(gait: string): void;
-  /** The hash of the tables that the image has, as its banner says. */
-  tables(hash: string): void;
+  /** The tables that the other end has. */
+  tables(tables: Tables): void;
+  /** The pace that the robot has, percent. */
+  speed(percent: number): void;
   /** Another end of the line. */
   link(link: Link): void;
-  trouble(sentence: string | null): void;
+  /** What is wrong; null where that is so no more. */
+  trouble(cause: Cause, sentence: string | null): void;
 }
 
 /** The last cycle: mm ahead and left, seen from its start, deg, and how far a leg was behind its servo at most, deg. */
@@ -79,57 +92,93 @@ export class Session {
   private time = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
+  /** The tables of the image at the other end; undefined until that is known. */
+  private tables: Tables | undefined;
+  /** Whether a board on USB says where it is. */
+  private watching = false;
+  /** Counts what was chosen: a file that comes late is not taken. */
+  private choices = 0;
 
   constructor(
     readonly robot: Robot,
     private readonly listener: Listener,
   ) {}
 
-  /** Takes a robot of the files, on a simulated UNO if it has an image. */
+  /**
+   * Takes a robot of the files, on a simulated UNO if it has an image; a board on USB stays connected. Throws
+   * a sentence, and then the robot of before stays.
+   */
   async choose(name: string, hasImage: boolean): Promise<void> {
+    const choice = ++this.choices;
+    const before = this.file;
     this.file = '';
-    this.set = null;
-    this.toml = await files.toml(name);
-    this.original = this.toml;
-    this.image = hasImage ? await files.image(name) : null;
-    this.originalImage = this.image;
-    const refused = this.take();
-    if (refused) throw new Error(refused.refused);
-    await this.simulate();
-    this.file = name;
+    try {
+      const [toml, image] = await Promise.all([files.toml(name), hasImage ? files.image(name) : null]);
+      if (choice !== this.choices) return;
+      const refused = this.take(toml, image, null);
+      if (refused) throw new Error(`${name}.toml: ${refused.refused}`);
+      this.original = toml;
+      this.originalImage = image;
+      await this.begin();
+      this.file = name;
+      this.keep();
+    } catch (error) {
+      // What another choice has overtaken is of no interest any more.
+      if (choice !== this.choices) return;
+      this.file = before;
+      throw error;
+    }
   }
 
   /** Takes a changed robot.toml; the core runs it, unless it is that of the file. */
   async change(toml: string): Promise<Refused | null> {
-    const before = this.toml;
-    this.toml = toml;
-    const refused = this.take();
-    if (refused) {
-      this.toml = before;
-      return refused;
-    }
-    this.image = toml === this.original ? this.originalImage : null;
-    if (!this.isReal) await this.simulate();
+    const refused = this.take(toml, toml === this.original ? this.originalImage : null);
+    if (refused) return refused;
+    await this.begin();
+    this.keep();
     return null;
+  }
+
+  /** Takes again what was changed before a reload, if its robot's file is still the same; whether it was. */
+  async recall({ original, toml, floor, servos, volts }: Kept): Promise<boolean> {
+    if (original !== this.original) return false;
+    this.setServos(servos);
+    this.setSupply(volts);
+    if (this.take(toml, toml === original ? this.originalImage : null, floor)) return false;
+    await this.begin();
+    this.keep();
+    return true;
+  }
+
+  private keep(): void {
+    const { file, original, toml, set: floor, servos, volts } = this;
+    if (file !== '') kept.put({ file, original, toml, floor, servos, volts });
   }
 
   /** Back to the robot of the file. */
   async restore(): Promise<void> {
-    this.toml = this.original;
-    this.image = this.originalImage;
-    this.take();
-    if (!this.isReal) await this.simulate();
+    await this.change(this.original);
   }
 
-  private take(): Refused | null {
-    const answer = this.robot.read(this.toml);
+  private take(toml: string, image: string | null, set = this.set): Refused | null {
+    const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
+    [this.toml, this.image, this.set] = [toml, image, set];
     this.description = answer;
     this.robot.setFloor(this.floor);
     this.way = [];
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
     this.listener.robot(answer);
     return null;
+  }
+
+  /** Has the robot at the other end: a simulation begins anew, a board goes on with its own tables. */
+  private async begin(): Promise<void> {
+    if (!this.isReal) await this.simulate();
+    else {
+      this.listener.link(this.link);
+      if (this.tables !== undefined) this.listener.tables(this.tables);
+    }
   }
 
   get isReal(): boolean {
@@ -160,24 +209,93 @@ export class Session {
     this.simulated?.supply(this.volts);
   }
 
-  /** Takes a board on USB. */
+  /** Takes a board on USB, if a person picks one, and says what it is. Throws a sentence. */
   async connect(): Promise<void> {
     const link = await PortLink.open();
+    if (!link) return;
     link.onGone = (why) => {
-      void this.simulate().then(() => this.listener.trouble(`The board is gone: ${why} The simulation goes on.`));
+      void this.simulate().then(() => this.listener.trouble('port', `The board is gone: ${why} The simulation goes on.`));
     };
     await this.attach(link);
+    this.listener.trouble('port', null);
     // Opening the port has reset the board. What comes before its banner goes to the boot loader.
-    await Promise.race([new Promise<void>((greeted) => (this.onBanner = greeted)), link.wait(PATIENCE)]);
-    await this.ask(`watch ${WATCH}`);
+    const greeted = await this.greeting();
+    if (this.link !== link) return;
+    if (!greeted && (await this.answers())) this.has('unknown');
+    if (this.link !== link) return;
+    if (this.tables) await this.watch();
+    else await this.identify(link);
+  }
+
+  /** Whether a board that was begun anew greets in time. */
+  async greeting(): Promise<boolean> {
+    const greeted = new Promise<boolean>((yes) => (this.onBanner = () => yes(true)));
+    return Promise.race([greeted, this.link.wait(GREETS).then(() => false)]);
+  }
+
+  /** Whether this firmware is there: not every port resets its board. */
+  private async answers(): Promise<boolean> {
+    const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
+    const read = answer && status(answer.text);
+    if (read) this.doing(read.gait.replaceAll('-', ' '));
+    return read !== null;
+  }
+
+  /** Says what a board is that does not have this firmware, as its boot loader knows. */
+  private async identify(link: Link): Promise<void> {
+    this.has(null);
+    let said = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
+    this.dialogue.end();
+    try {
+      await identify(link);
+    } catch (error) {
+      said = `The board does not speak as this firmware does, and asked for its boot loader ${sentence(error)}. Is it the right port, and an UNO?`;
+    } finally {
+      if (this.link === link) this.listen();
+    }
+    if (this.link === link) this.listener.trouble('board', said);
+  }
+
+  /** Has a board say where it is. */
+  private async watch(): Promise<void> {
+    this.watching = true;
+    await this.ask(`${WORDS.watch} ${WATCH}`);
+  }
+
+  /** Leaves a board, which stops, for the simulation. */
+  async disconnect(): Promise<void> {
+    const stopped = await this.stop();
+    await this.simulate();
+    if (!stopped) {
+      this.listener.trouble('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
+    }
+  }
+
+  /** Whether a board walks that nobody would see any more if the page were closed. */
+  get walksAlone(): boolean {
+    const { stop, rest, center, pose } = WORDS;
+    // A board may have the image of another robot, with gaits that this one does not know.
+    const known = this.description.gaits.find(({ command }) => command === this.gait);
+    return this.isReal && (known ? known.moves : !['', stop, rest, center, pose].includes(this.gait));
+  }
+
+  /** Stops a board that is about to be left; whether it says so, or was not of this firmware. */
+  async stop(): Promise<boolean> {
+    if (!this.isReal || !this.tables) return true;
+    const answer = await this.dialogue.ask(WORDS.stop, false, STOPS).catch(() => null);
+    return answer !== null;
   }
 
   private async attach(link: Link): Promise<void> {
     this.dialogue?.end();
     await this.link?.close();
     this.link = link;
+    this.tables = undefined;
+    this.watching = false;
+    this.mayAsk = false;
     this.listen();
     this.doing('');
+    for (const cause of ['line', 'board'] as const) this.listener.trouble(cause, null);
     this.listener.link(link);
   }
 
@@ -189,29 +307,42 @@ export class Session {
   }
 
   private came(line: string): void {
-    const pose = watched(line);
-    if (pose && this.isReal) {
-      this.pose(pose);
+    const angles = watched(line);
+    if (angles && this.isReal) {
+      this.pose(angles);
       return;
     }
     this.listener.came(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
-    const doing = [...this.description.gaits.map(({ command }) => command), 'stop', 'rest', 'center'];
+    const { stop, rest, center, pose, speed } = WORDS;
+    const doing = [...this.description.gaits.map(({ command }) => command), stop, rest, center];
     if (doing.includes(word)) this.doing(word);
-    else if (word.startsWith('pose ')) this.doing('pose');
+    else if (word.startsWith(`${pose} `)) this.doing(pose);
+    else if (word.startsWith(`${speed} `)) this.listener.speed(Number(word.slice(speed.length)));
     else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
     else if (line.startsWith('# lizard ')) this.greeted(line);
-    else if (line.startsWith('# fault')) this.doing('stop');
+    else if (line.startsWith('# fault')) this.doing(stop);
   }
 
   private greeted(banner: string): void {
+    const { link } = this;
     this.doing('stand');
+    this.watching = false;
+    this.listener.trouble('board', null);
+    this.has(/ tables ([0-9a-f]{8})/.exec(banner)?.[1] ?? 'unknown');
     this.onBanner();
-    const tables = / tables ([0-9a-f]{8})/.exec(banner)?.[1];
-    if (tables !== undefined) this.listener.tables(tables);
     // A byte would call off what `boot` is set to.
     this.mayAsk = false;
-    void this.link.wait(BOOTS).then(() => (this.mayAsk = true));
+    void link.wait(BOOTS).then(() => {
+      if (this.link !== link) return;
+      this.mayAsk = true;
+      if (this.isReal && !this.watching) void this.watch();
+    });
+  }
+
+  private has(tables: Tables): void {
+    this.tables = tables;
+    this.listener.tables(tables);
   }
 
   private doing(gait: string): void {
@@ -221,22 +352,23 @@ export class Session {
   }
 
   /** Asks the robot; what goes wrong is shown. */
-  async ask(line: string, quiet = false): Promise<{ ok: boolean; text: string; notes: string[] } | null> {
+  async ask(line: string, quiet = false): Promise<Answer | null> {
     if (!quiet) this.mayAsk = true;
     try {
       const answer = await this.dialogue.ask(line, quiet);
-      this.listener.trouble(null);
+      this.listener.trouble('line', null);
       return answer;
     } catch (error) {
-      if (error instanceof Forgotten) return null;
-      this.listener.trouble(error instanceof Error ? `${error.message}.` : String(error));
+      if (!(error instanceof Forgotten)) this.listener.trouble('line', `${sentence(error)}.`);
       return null;
     }
   }
 
   async status(): Promise<Status | null> {
-    const answer = await this.ask('status', true);
-    return answer && status(answer.text);
+    const answer = await this.ask(WORDS.status, true);
+    const read = answer && status(answer.text);
+    if (read && read.speed !== null) this.listener.speed(read.speed);
+    return read;
   }
 
   /** Presses the reset button of the board. */
@@ -247,15 +379,32 @@ export class Session {
   }
 
   /** Writes an image by the boot loader and starts it. Throws a sentence. */
-  async flash(hex: string, progress: Progress): Promise<void> {
-    const image = imageOf(hex);
+  async flash(image: Uint8Array, progress: Progress): Promise<void> {
+    const { link } = this;
     this.dialogue.end();
+    this.tables = undefined;
+    this.watching = false;
+    this.mayAsk = false;
     try {
-      await flash(this.link, image, progress);
+      await flash(link, image, progress);
     } finally {
-      this.listen();
-      this.doing('');
+      if (this.link === link) {
+        this.listen();
+        this.doing('');
+      }
     }
+  }
+
+  /** Whether a board whose image was just written greets; says so if not. */
+  async begins(): Promise<boolean> {
+    const { link } = this;
+    const greeted = await this.greeting();
+    if (this.link !== link) return true;
+    if (!greeted) {
+      this.has(null);
+      this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it does not greet.`);
+    }
+    return greeted;
   }
 
   private get simulated(): Simulated | null {
@@ -267,7 +416,7 @@ export class Session {
     try {
       this.simulated?.advance(ms);
     } catch (error) {
-      this.listener.trouble(`The simulated UNO has stopped: ${error instanceof Error ? error.message : String(error)}`);
+      this.listener.trouble('simulation', `The simulated UNO has stopped: ${sentence(error)}`);
       throw error;
     }
   }
@@ -320,15 +469,18 @@ export class Session {
   setFloor(floor: Floor | null): void {
     this.set = floor;
     this.robot.setFloor(this.floor);
+    this.keep();
   }
 
   setServos(name: string): void {
     this.servos = name;
     this.robot.setServos(name);
+    this.keep();
   }
 
   setSupply(volts: number): void {
     this.volts = volts;
     this.simulated?.supply(volts);
+    this.keep();
   }
 }

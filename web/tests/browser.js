@@ -71,18 +71,27 @@ export async function close() {
   server?.close();
 }
 
-/**
- * The page, loaded; `before` runs in it before anything else, and then its timers only run when
- * the test says so.
- */
-export async function page(options = {}, before = undefined) {
+/** Where the page is. */
+export const address = () => `http://127.0.0.1:${server.address().port}${FOLDER}`;
+
+/** A page of the browser with nothing in it yet. */
+export async function blank(options = {}) {
   const opened = await within('a new page', browser.newPage(options));
   pages.push(opened);
   limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
   limit(opened.clock, 'clock', ['install', 'runFor']);
   limit(opened.keyboard, 'keyboard', ['press']);
-  limit(opened.mouse, 'mouse', ['move', 'down', 'up']);
+  limit(opened.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
   opened.setDefaultTimeout(PATIENCE);
+  return opened;
+}
+
+/**
+ * The page, loaded; `before` runs in it before anything else, and then its timers only run when
+ * the test says so.
+ */
+export async function page(options = {}, before = undefined) {
+  const opened = await blank(options);
   opened.on('console', (message) => {
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
@@ -91,7 +100,7 @@ export async function page(options = {}, before = undefined) {
     await opened.clock.install();
     await opened.addInitScript(before);
   }
-  await opened.goto(`http://127.0.0.1:${server.address().port}${FOLDER}`);
+  await opened.goto(address());
   await opened.waitForFunction(() => window.lizard);
   return opened;
 }

@@ -4,6 +4,7 @@ import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
 import { advance, close, complaints, open, page, standing, tidy, type } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
 
 before(open);
 afterEach(tidy);
@@ -87,8 +88,10 @@ test('changed lengths build the gaits anew', async () => {
   await base.press('Enter');
   const refusal = opened.locator('#lengths-refusal');
   await refusal.waitFor();
+  assert.match(await refusal.innerText(), /^15 is refused, links\.l2 stays 50 mm, links\.l3 stays 50 mm: /);
   assert.match(await refusal.innerText(), /links\.l[23] is 15 mm, which is short beside the rest of its loop/);
   assert.equal(await base.getAttribute('aria-invalid'), 'true');
+  assert.equal(await base.inputValue(), '50', 'the box has what the file has');
   assert.equal((await ways(opened, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
 
   await opened.getByRole('button', { name: 'Lengths of the file' }).click();
@@ -169,6 +172,8 @@ test('a refused setting shows why and takes the slider back', async () => {
 async function flashes(opened, forward) {
   await opened.getByText('Flash', { exact: true }).click();
   await opened.getByLabel('HEX file').setInputFiles(new URL('large.hex', FILES).pathname);
+  await opened.locator('#flash-what', { hasText: /^large\.hex, \d+ bytes\. It is a firmware of a lizard\./ }).waitFor();
+  await opened.getByRole('button', { name: 'Write it', exact: true }).click();
   const said = opened.locator('#flash-said');
   for (let n = 0; n < 400; n++) {
     await forward(100);
@@ -201,41 +206,6 @@ test('a HEX file that is none is refused before anything is written', async () =
   await opened.locator('#flash-said', { hasText: 'not written: line 1 of the HEX file is no record' }).waitFor();
   assert.equal((await type(opened, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
 });
-
-/** A Web Serial whose one port is a second simulated UNO. */
-function fakeSerial() {
-  let board;
-  const port = {
-    readable: null,
-    writable: null,
-    async open() {
-      const { board: first } = window.lizard.link;
-      const [image, loader] = await Promise.all(
-        ['robot', 'optiboot'].map(async (name) => (await fetch(`files/${name}.hex`)).text()),
-      );
-      board = new first.constructor(image, loader);
-      let out;
-      port.readable = new ReadableStream({ start: (controller) => (out = controller) });
-      window.unplug = () => {
-        clearInterval(port.timer);
-        port.readable = null;
-        out.error(new Error('The device has been lost.'));
-      };
-      port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
-      board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
-      board.reset('external');
-      window.otherBoard = board;
-      port.timer = setInterval(() => board.run(16_000 * 2), 2);
-    },
-    async setSignals({ dataTerminalReady }) {
-      if (dataTerminalReady) board.reset('external');
-    },
-    async close() {
-      clearInterval(port.timer);
-    },
-  };
-  Object.defineProperty(navigator, 'serial', { value: { requestPort: async () => port } });
-}
 
 test('a board by Web Serial is driven, mirrored, calibrated and flashed', async () => {
   const opened = await page({}, fakeSerial);

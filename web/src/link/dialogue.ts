@@ -28,6 +28,7 @@ export class Forgotten extends Error {}
 interface Question {
   line: string;
   quiet: boolean;
+  patience: number;
   answered: (answer: Answer) => void;
   failed: (error: Error) => void;
 }
@@ -48,10 +49,11 @@ export class Dialogue {
     link.onBytes = (bytes) => this.bytes(bytes);
   }
 
-  /** Sends a line and waits for its answer. A quiet one is not shown. */
-  ask(line: string, quiet = false): Promise<Answer> {
+  /** Sends a line and waits for its answer, `patience` ms. A quiet one is not shown. */
+  ask(line: string, quiet = false, patience = PATIENCE): Promise<Answer> {
     return new Promise((answered, failed) => {
-      this.waiting.push({ line, quiet, answered, failed });
+      if (this.over) throw new Error(`"${line}" was not sent: the boot loader has the line`);
+      this.waiting.push({ line, quiet, patience, answered, failed });
       void this.next();
     });
   }
@@ -81,7 +83,7 @@ export class Dialogue {
     if (!question.quiet) this.heard.sent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
-      await this.link.wait(PATIENCE);
+      await this.link.wait(question.patience);
       if (this.asked === question) throw new Error(`no answer to "${question.line}"`);
     } catch (error) {
       if (this.asked !== question) return;

@@ -1,4 +1,5 @@
 // The link to a board on USB, by Web Serial. Chromium and its kin have it, over https or on localhost.
+import { sentence } from '../trouble';
 import type { Link } from './link';
 
 /** The parts of Web Serial that are used; TypeScript's own library does not have them. */
@@ -15,6 +16,8 @@ interface Serial {
 }
 
 const BAUD = 115_200;
+/** Why no board can be connected. */
+export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium and Edge have it, on localhost and over https.';
 /** How long the reset line is pulled, ms. */
 const RESET = 50;
 
@@ -40,12 +43,23 @@ export class PortLink implements Link {
 
   private constructor(private readonly port: SerialPort) {}
 
-  /** Lets the user pick a port and opens it, which resets an UNO. */
-  static async open(): Promise<PortLink> {
+  /** Lets the user pick a port and opens it, which resets an UNO; null if the user picks none. Throws a sentence. */
+  static async open(): Promise<PortLink | null> {
     const ports = serial();
-    if (!ports) throw new Error('this browser has no Web Serial');
-    const port = await ports.requestPort();
-    await port.open({ baudRate: BAUD, bufferSize: 4096 });
+    if (!ports) throw new Error(NO_SERIAL);
+    let port: SerialPort;
+    try {
+      port = await ports.requestPort();
+    } catch (error) {
+      // So a browser names a choice of nothing.
+      if (error instanceof DOMException && error.name === 'NotFoundError') return null;
+      throw error;
+    }
+    try {
+      await port.open({ baudRate: BAUD, bufferSize: 4096 });
+    } catch (error) {
+      throw new Error(`${sentence(error)} Another program may have the port: close that, and connect again.`);
+    }
     const link = new PortLink(port);
     void link.listen();
     return link;

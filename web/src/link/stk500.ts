@@ -2,6 +2,7 @@
 // `-c arduino` speaks it.
 import { load } from '../../../judge/src/hex.js';
 import { BOOT } from '../uno/board';
+import { WORDS } from '../words';
 import type { Link } from './link';
 
 const OK = 0x10;
@@ -40,6 +41,14 @@ export function imageOf(hex: string): Uint8Array {
   if (end === 0) throw new Error('the HEX file is empty');
   if (end > BOOT) throw new Error('the HEX file reaches into the boot loader, which cannot write itself');
   return flash.subarray(0, Math.ceil(end / PAGE) * PAGE);
+}
+
+/** A piece of the list of the console's words, which every image of this firmware has in its flash. */
+const CONSOLE = [WORDS.stop, WORDS.rest, WORDS.status, WORDS.pose].join('|');
+
+/** Whether an image has the console of this firmware in it. */
+export function hasConsole(image: Uint8Array): boolean {
+  return new TextDecoder('latin1').decode(image).includes(CONSOLE);
 }
 
 class Loader {
@@ -95,11 +104,8 @@ async function call(link: Link, loader: Loader): Promise<void> {
   }
 }
 
-/**
- * Resets the board, writes an image, reads it back and starts it. The link's bytes belong to
- * this until it is done. Throws a sentence.
- */
-export async function flash(link: Link, image: Uint8Array, progress: Progress): Promise<void> {
+/** Resets the board and has its boot loader listen. Throws a sentence if it is none of an ATmega328P. */
+async function begin(link: Link): Promise<Loader> {
   const loader = new Loader(link);
   await link.reset();
   await call(link, loader);
@@ -108,6 +114,24 @@ export async function flash(link: Link, image: Uint8Array, progress: Progress): 
     const hex = signature.map((byte) => byte.toString(16).padStart(2, '0')).join(' ');
     throw new Error(`this is no ATmega328P, its signature is ${hex}`);
   }
+  return loader;
+}
+
+/**
+ * Resets the board, asks its boot loader whether it is an UNO's, and starts what is written there. The
+ * link's bytes belong to this until it is done. Throws a sentence if it is none.
+ */
+export async function identify(link: Link): Promise<void> {
+  const loader = await begin(link);
+  await loader.command([LEAVE]);
+}
+
+/**
+ * Resets the board, writes an image, reads it back and starts it. The link's bytes belong to
+ * this until it is done. Throws a sentence.
+ */
+export async function flash(link: Link, image: Uint8Array, progress: Progress): Promise<void> {
+  const loader = await begin(link);
   const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
   for (let at = 0; at < image.length; at += PAGE) {
     await goTo(at);

@@ -1,5 +1,6 @@
 // The servos' calibration: read by `cal`, set as it is moved, kept by `save`.
 import type { Session } from '../session';
+import { WORDS } from '../words';
 import { calibration, type ServoSettings } from '../status';
 import { element } from './canvas';
 
@@ -18,7 +19,10 @@ export class Calibrate {
 
   constructor(private readonly session: () => Session) {
     element('cal-read').addEventListener('click', () => void this.read());
-    element('cal-save').addEventListener('click', () => void this.set('save'));
+    element('cal-save').addEventListener('click', () => void this.set(WORDS.save));
+    for (const word of [WORDS.load, WORDS.factory]) {
+      element(`cal-${word}`).addEventListener('click', () => void this.set(word).then(() => this.read()));
+    }
     this.box.closest('details')?.addEventListener('toggle', (event) => {
       if ((event.target as HTMLDetailsElement).open) void this.read();
     });
@@ -26,7 +30,7 @@ export class Calibrate {
 
   /** Asks the robot for its settings, and shows them. */
   async read(): Promise<void> {
-    const answer = await this.session().ask('cal', true);
+    const answer = await this.session().ask(WORDS.cal, true);
     const settings = answer && calibration(answer.notes);
     if (!settings) return;
     if (this.rows.length === 0) this.build();
@@ -72,10 +76,10 @@ export class Calibrate {
       dir.add(new Option('left (+)', '+'));
       dir.add(new Option('right (−)', '-'));
       for (const input of [least, most]) {
-        input.addEventListener('change', () => void this.set(`limit ${servo} ${least.value} ${most.value}`));
+        input.addEventListener('change', () => void this.set(`${WORDS.limit} ${servo} ${least.value} ${most.value}`));
       }
-      scale.addEventListener('change', () => void this.set(`scale ${servo} ${scale.value}`));
-      dir.addEventListener('change', () => void this.set(`dir ${servo} ${dir.value}`));
+      scale.addEventListener('change', () => void this.set(`${WORDS.scale} ${servo} ${scale.value}`));
+      dir.addEventListener('change', () => void this.set(`${WORDS.dir} ${servo} ${dir.value}`));
       return { trim, scale, least, most, dir };
     });
   }
@@ -93,7 +97,7 @@ export class Calibrate {
     const show = () => (out.textContent = `${Number(trim.value).toFixed(2)}°`);
     trim.addEventListener('input', show);
     trim.addEventListener('shown', show);
-    trim.addEventListener('change', () => void this.set(`trim ${servo} ${trim.value}`));
+    trim.addEventListener('change', () => void this.set(`${WORDS.trim} ${servo} ${trim.value}`));
     return trim;
   }
 }

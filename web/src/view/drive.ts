@@ -1,6 +1,11 @@
 // A button for each gait, with the way that it makes in a cycle.
 import type { Description, Outlook, Way } from '../robot';
+import type { Answer } from '../link/dialogue';
+import { WORDS } from '../words';
 import { element } from './canvas';
+
+/** Letters of a command that a button of the usual width has room for. */
+const LONG = 13;
 
 /** A way in few letters: mm ahead, or deg where it turns. */
 export function short(way: Way | null): string {
@@ -17,14 +22,28 @@ export class Drive {
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement }[] = [];
   private readonly outlooks = new Map<string, Outlook>();
 
-  constructor(onCommand: (command: string) => void) {
+  private readonly said = element('drive-said');
+  /** What the buttons of index.html send, which every robot has. */
+  readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
+
+  /** `send` sends a line and ends with its answer, null without one. */
+  constructor(private readonly send: (line: string) => Promise<Answer | null>) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
-      if (button?.dataset.command) onCommand(button.dataset.command);
+      if (button?.dataset.command) void this.ask(button.dataset.command);
     });
     document.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') onCommand('stop');
+      if (event.key === 'Escape') void this.ask(WORDS.stop);
     });
+  }
+
+  /** Sends a line of a button; why it is refused is shown beside the buttons, until one is taken. */
+  async ask(line: string): Promise<void> {
+    const answer = await this.send(line);
+    if (!answer) return;
+    this.said.hidden = answer.ok;
+    this.said.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
+    if (!answer.ok) this.said.scrollIntoView({ block: 'nearest' });
   }
 
   /** Takes another robot. */
@@ -35,11 +54,14 @@ export class Drive {
       button.type = 'button';
       button.dataset.command = command;
       button.append(command);
+      // A long name has room for two buttons.
+      button.classList.toggle('long', command.length > LONG);
       const note = button.appendChild(document.createElement('small'));
       button.setAttribute('aria-pressed', 'false');
       return { command, button, note };
     });
     this.outlooks.clear();
+    this.said.hidden = true;
   }
 
   /** Takes the prediction of a gait; until the next one comes, the one of before is shown. */

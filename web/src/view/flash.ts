@@ -1,32 +1,40 @@
 // Writing an image by the board's boot loader.
+import { hasConsole, imageOf } from '../link/stk500';
 import type { Session } from '../session';
+import { sentence } from '../trouble';
 import { element } from './canvas';
 
 export class FlashView {
   private readonly note = element('flash-note');
   private readonly file = element<HTMLInputElement>('flash-file');
   private readonly write = element<HTMLButtonElement>('flash-write');
+  private readonly question = element('flash-question');
   private readonly progress = element<HTMLProgressElement>('flash-progress');
   private readonly said = element('flash-said');
+  /** The image of the file that was chosen, until a person has decided about it. */
+  private chosen: Uint8Array | null = null;
 
   constructor(
     private readonly session: () => Session,
     private readonly busy: (busy: boolean) => void,
   ) {
-    this.write.addEventListener('click', () => {
-      const { image } = this.session();
-      if (image !== null) void this.flash(image);
-    });
+    this.write.addEventListener('click', () => this.writeOwn());
     this.file.addEventListener('change', () => {
       const file = this.file.files?.[0];
-      if (file) void file.text().then((hex) => this.flash(hex));
-      this.file.value = '';
+      if (file) void this.choose(file).finally(() => (this.file.value = ''));
     });
+    element('flash-yes').addEventListener('click', () => {
+      const { chosen } = this;
+      this.forget();
+      if (chosen) void this.flash(chosen);
+    });
+    element('flash-no').addEventListener('click', () => this.forget());
   }
 
   /** Shows what can be written here. */
   update(): void {
     const { link, image } = this.session();
+    this.forget();
     this.file.disabled = !link.canFlash;
     this.write.disabled = !link.canFlash || image === null;
     this.note.textContent = !link.canFlash
@@ -36,24 +44,64 @@ export class FlashView {
         : `Writes to the ${link.name} by its boot loader, verifies, and starts it. What its EEPROM holds stays.`;
   }
 
-  private async flash(hex: string): Promise<void> {
+  /** Writes the image of the page's robot, in sight. */
+  writeOwn(): void {
+    const { image } = this.session();
+    if (image === null) return;
+    const panel = this.note.closest('details');
+    if (panel) panel.open = true;
+    this.said.scrollIntoView({ block: 'nearest' });
+    this.forget();
+    void this.flash(imageOf(image));
+  }
+
+  /** Asks about a file, which is written only then. */
+  private async choose(file: File): Promise<void> {
+    this.forget();
+    this.said.textContent = '';
+    try {
+      this.chosen = imageOf(await file.text());
+    } catch (error) {
+      this.said.textContent = `not written: ${sentence(error)}`;
+      return;
+    }
+    const what = hasConsole(this.chosen)
+      ? 'It is a firmware of a lizard.'
+      : 'It is not this firmware: with it the board no longer is a lizard, until this robot\'s image is written again.';
+    element('flash-what').textContent =
+      `${file.name}, ${this.chosen.length} bytes. ${what} Write it to the ${this.session().link.name}?`;
+    this.question.hidden = false;
+    element('flash-no').focus();
+  }
+
+  private forget(): void {
+    this.chosen = null;
+    this.question.hidden = true;
+  }
+
+  private async flash(image: Uint8Array): Promise<void> {
     this.busy(true);
     this.write.disabled = this.file.disabled = true;
     this.progress.hidden = false;
     this.said.textContent = 'calling the boot loader…';
+    let written = false;
     try {
-      await this.session().flash(hex, (done, of, what) => {
+      await this.session().flash(image, (done, of, what) => {
         const share = (50 * done) / of + (what === 'verifying' ? 50 : 0);
         this.progress.value = share;
         const text = what === 'writing' ? 'writing…' : 'verifying…';
         if (this.said.textContent !== text) this.said.textContent = text;
       });
       this.said.textContent = 'written and verified';
+      written = true;
     } catch (error) {
-      this.said.textContent = `not written: ${error instanceof Error ? error.message : String(error)}`;
+      this.said.textContent = `not written: ${sentence(error)}`;
     }
     this.progress.hidden = true;
     this.busy(false);
     this.update();
+    if (written && !(await this.session().begins())) {
+      this.said.textContent = 'written and verified; it does not greet as this firmware does';
+    }
   }
 }

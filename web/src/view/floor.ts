@@ -5,13 +5,17 @@ import { drawLizard } from './lizard';
 import { palette } from './palette';
 
 const GRID = 50;
-const LEAST_ZOOM = 0.15;
+/** CSS pixels in a mm: the robot, some 250 mm long, stays larger than 60 pixels. */
+const LEAST_ZOOM = 0.25;
 const MOST_ZOOM = 8;
 /** What is to be seen at first, mm. */
 const VIEW = 420;
 /** Points of the track that are kept, and how far apart they are at least, mm. */
 const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
+
+/** A finger that has moved so far aside drags the floor, CSS pixels. */
+const SLOP = 12;
 
 interface Touch {
   x: number;
@@ -27,11 +31,17 @@ export class Floor {
   private following = true;
   private track: { x: number; y: number }[] = [];
   private readonly touches = new Map<number, Touch>();
+  /** Whether the one pointer that is down drags the floor. */
+  private dragging = false;
 
   constructor(onHome: () => void) {
     element('zoom-in').addEventListener('click', () => this.zoomBy(1.25));
     element('zoom-out').addEventListener('click', () => this.zoomBy(0.8));
-    element('home').addEventListener('click', onHome);
+    element('home').addEventListener('click', () => {
+      onHome();
+      this.zoom = 0;
+      this.follow(true);
+    });
     this.followButton.addEventListener('click', () => this.follow(!this.following));
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
@@ -39,11 +49,16 @@ export class Floor {
     });
     this.canvas.addEventListener('pointermove', (event) => this.drag(event));
     for (const kind of ['pointerup', 'pointercancel'] as const) {
-      this.canvas.addEventListener(kind, (event) => this.touches.delete(event.pointerId));
+      this.canvas.addEventListener(kind, (event) => {
+        this.touches.delete(event.pointerId);
+        this.dragging = false;
+      });
     }
     this.canvas.addEventListener(
       'wheel',
       (event) => {
+        // Without Ctrl it scrolls the page, which the floor is in the way of.
+        if (!event.ctrlKey && !event.metaKey) return;
         event.preventDefault();
         this.zoomBy(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
       },
@@ -76,6 +91,9 @@ export class Floor {
       this.centre.x += (frame.place.x - this.centre.x) * 0.08;
       this.centre.y += (frame.place.y - this.centre.y) * 0.08;
     }
+    // The picture's scale, for whoever cannot measure it.
+    const zoom = this.zoom.toFixed(4);
+    if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     pen.fillStyle = palette().floor;
     pen.fillRect(0, 0, width, height);
     pen.translate(width / 2, height / 2);
@@ -177,6 +195,9 @@ export class Floor {
       const apart = (a: Touch) => Math.hypot(a.x - other.x, a.y - other.y);
       this.zoomBy(apart(now) / Math.max(1, apart(before)), (now.x + other.x) / 2, (now.y + other.y) / 2);
     } else {
+      // A finger that means to scroll the page moves a little before the browser takes it away.
+      this.dragging ||= event.pointerType !== 'touch' || Math.abs(now.x - before.x) > SLOP;
+      if (!this.dragging) return;
       this.pan(now.x - before.x, now.y - before.y);
     }
     this.touches.set(event.pointerId, now);

@@ -2,6 +2,7 @@
 import { isRefused, type Length, type Refused } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { download } from './download';
 
 export class Lengths {
   private readonly list = element('lengths');
@@ -52,14 +53,25 @@ export class Lengths {
     let text = session.toml;
     for (const each of keys) {
       const edited = session.robot.edit(text, each, value);
-      if (isRefused(edited)) return this.say(edited);
+      if (isRefused(edited)) return this.refuse(keys, value, edited);
       text = edited.text;
-      const other = this.inputs.get(each);
-      if (other) other.value = String(value);
     }
     const refused = await session.change(text);
-    for (const each of keys) this.inputs.get(each)?.setAttribute('aria-invalid', String(refused !== null));
-    this.say(refused);
+    if (refused) this.refuse(keys, value, refused);
+  }
+
+  /** A box has the number that the robot has: a refused one is in the sentence alone. */
+  private refuse(keys: string[], value: number, { refused }: Refused): void {
+    const { lengths } = this.session().description;
+    const kept = lengths.filter(({ key }) => keys.includes(key));
+    for (const { key, value } of kept) {
+      const input = this.inputs.get(key);
+      if (!input) continue;
+      input.value = String(value);
+      input.setAttribute('aria-invalid', 'true');
+    }
+    const stays = kept.map((length) => `${length.key} stays ${length.value} ${length.unit}`).join(', ');
+    this.say(`${value} is refused, ${stays}: ${refused}`);
   }
 
   private async reset(): Promise<void> {
@@ -67,15 +79,13 @@ export class Lengths {
   }
 
   private download(): void {
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([this.session().toml], { type: 'application/toml' }));
-    link.download = 'robot.toml';
-    link.click();
-    URL.revokeObjectURL(link.href);
+    const { robot, toml, floor } = this.session();
+    const refused = download(robot, toml, floor);
+    if (refused) this.say(`This robot.toml has not what Springs and floor are set to: ${refused.refused}`);
   }
 
-  private say(refused: Refused | null): void {
-    this.refusal.hidden = refused === null;
-    this.refusal.textContent = refused?.refused ?? '';
+  private say(sentence: string | null): void {
+    this.refusal.hidden = sentence === null;
+    this.refusal.textContent = sentence ?? '';
   }
 }

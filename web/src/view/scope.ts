@@ -23,7 +23,10 @@ export class ScopeView {
   private readonly rows: { width: HTMLElement; angle: HTMLElement }[] = [];
   private pins: number[] = [];
   private pulses: Pulse[] = [];
+  private readonly note = element('scope-note');
   private widths = [0, 0, 0, 0];
+  /** Whether pulses are seen: a board on USB says its pose alone. */
+  private seen = true;
 
   /** Takes another robot. */
   robot({ servos }: Description): void {
@@ -48,6 +51,14 @@ export class ScopeView {
     });
   }
 
+  /** Takes another end of the line, a simulation or a real board. */
+  link(real: boolean): void {
+    this.seen = !real;
+    this.note.hidden = !real;
+    this.pulses = [];
+    this.widths = [0, 0, 0, 0];
+  }
+
   /** A pulse of a pin, in cycles. */
   pulse(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
@@ -65,7 +76,7 @@ export class ScopeView {
   write(scene: Scene | null): void {
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];
-      const text = cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
+      const text = !this.seen ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
       if (width.textContent !== text) width.textContent = text;
       const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
       if (angle.textContent !== degrees) angle.textContent = degrees;
@@ -84,6 +95,7 @@ export class ScopeView {
       pen.strokeStyle = palette().grid;
       pen.lineWidth = 1;
       pen.strokeRect(-1, servo * row, width + 2, row);
+      if (!this.seen) continue;
       pen.strokeStyle = servoColour(servo);
       pen.lineWidth = 2;
       pen.beginPath();

@@ -21,6 +21,7 @@ const PLAIN = Object.keys(SHOWN) as Plain[];
 export class World {
   private readonly springs = element<HTMLInputElement>('springs');
   private readonly servos = element<HTMLSelectElement>('servos');
+  private readonly supply = element<HTMLInputElement>('supply');
   private stiffness: number[] = STIFFNESS;
 
   /** `onFloor` is called when the ways of gaits have changed. */
@@ -40,11 +41,9 @@ export class World {
       this.take();
       this.onFloor();
     });
-    const supply = element<HTMLInputElement>('supply');
-    const show = () => this.show(supply, supply.valueAsNumber.toFixed(2));
-    supply.addEventListener('input', show);
+    const { supply } = this;
+    supply.addEventListener('input', () => this.show(supply, supply.valueAsNumber.toFixed(2)));
     supply.addEventListener('change', () => this.session().setSupply(supply.valueAsNumber));
-    show();
     this.servos.addEventListener('change', () => {
       this.session().setServos(this.servos.value);
       this.onFloor();
@@ -70,8 +69,10 @@ export class World {
     }
     if (this.servos.length === 0) {
       for (const model of description.models) this.servos.add(new Option(describe(model), model.name));
-      this.servos.value = this.session().servos;
     }
+    this.servos.value = this.session().servos;
+    this.supply.value = String(this.session().volts);
+    this.show(this.supply, this.supply.valueAsNumber.toFixed(2));
     const [slow, stop, rest] = description.supply;
     element('supply-note').textContent =
       `Below ${slow} V gaits go at half their pace, below ${stop} V the robot stops, below ${rest} V the pulses end.`;
@@ -90,6 +91,9 @@ export class World {
     const { rate } = this;
     this.show(this.springs, rate === null ? 'rigid' : round(rate, 2));
     this.input('preload').disabled = rate === null;
+    // With rigid legs they cancel out.
+    for (const name of ['friction', 'mass'] as const) this.input(name).disabled = rate === null;
+    element('rigid-note').hidden = rate !== null;
   }
 
   private show(input: HTMLInputElement, text: string): void {

@@ -88,6 +88,25 @@ pub extern "C" fn lizard_edit(value: f64) {
     });
 }
 
+/// [`Page::edit_floor`] of the input; the values of a [`Floor`] in its order.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_edit_floor(
+    friction: f64,
+    ratio: f64,
+    mass: f64,
+    stiffness: f64,
+    preload: f64,
+) {
+    let floor = Floor {
+        friction,
+        ratio,
+        mass,
+        stiffness,
+        preload,
+    };
+    answer(|_, text| either(Page::edit_floor(text, floor)));
+}
+
 /// [`Page::pulses`].
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_pulses(a1: u32, a2: u32, a3: u32, a4: u32) {

@@ -1,6 +1,7 @@
 //! What the page has to know of a robot before anything moves.
 
 use lizard_core::robot::Robot as _;
+use lizard_core::word::Word;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};
 use lizard_robot::{
@@ -9,7 +10,7 @@ use lizard_robot::{
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 
-use crate::edit::LEFT_OUT;
+use crate::edit::HIPS;
 use crate::floor::Floor;
 use crate::scene::Spot;
 
@@ -146,6 +147,8 @@ pub struct Description {
     pub floor: Floor,
     /// What its servos may be taken for.
     pub models: Vec<ModelEntry>,
+    /// The words of the console, which the page's buttons send.
+    pub words: Vec<String>,
 }
 
 impl Description {
@@ -197,8 +200,16 @@ impl Description {
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot.ground()),
             models: SERVO_MODELS.map(ModelEntry::from).into(),
+            words: words(),
         }
     }
+}
+
+/// The core's own list.
+fn words() -> Vec<String> {
+    let mut list = String::new();
+    let Ok(()) = Word::print_all(&mut list);
+    list.split('|').map(String::from).collect()
 }
 
 /// What each link is, and the number of its mirror image.
@@ -243,7 +254,7 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
         unit: if key == "leg.mount" { "deg" } else { "mm" },
         value,
     };
-    let [ahead, aside] = LEFT_OUT;
+    let [ahead, aside] = HIPS;
     let [front, hind] = feet.hip_side;
     let legs = [
         entry("leg.ground", "leg ground link", "leg.coupler", leg.ground),
@@ -360,6 +371,15 @@ impl Outlook {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_are_those_that_the_console_takes() {
+        let words = words();
+        assert_eq!(words.len(), Word::ALL.len());
+        for (word, known) in words.iter().zip(Word::ALL) {
+            assert_eq!(Word::find(word.as_bytes()), Some(*known));
+        }
+    }
 
     #[test]
     fn a_lengths_twin_has_it_as_its_own_twin() {

@@ -3,8 +3,19 @@
 
 use toml::de::{DeTable, DeValue};
 
-/// Numbers that a robot.toml may leave out: they follow from others until they are set.
-pub const LEFT_OUT: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
+/// Where the hips are, ahead and aside: they follow from the legs until they are set.
+pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
+
+/// Numbers that a robot.toml may leave out: they follow from others until they are set, or
+/// are what most robots have.
+pub const LEFT_OUT: [&str; 6] = [
+    HIPS[0],
+    HIPS[1],
+    "leg.spring",
+    "leg.preload",
+    "ground.friction",
+    "body.mass",
+];
 
 /// The text has no such number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,7 +31,8 @@ impl std::fmt::Display for NoSuchLength {
 }
 
 /// The text with another number at a key of dotted names, such as `links.l1`. One of
-/// [`LEFT_OUT`] that is not there is written below the last line of its table.
+/// [`LEFT_OUT`] that is not there is written below the last line of its table, and a table
+/// that is not there below all.
 ///
 /// # Errors
 /// If the text is not TOML or has no number there.
@@ -32,12 +44,16 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchLe
     for step in tables.split('.') {
         table = match table.get(step).map(|entry| entry.get_ref()) {
             Some(DeValue::Table(inner)) => inner,
+            None if LEFT_OUT.contains(&key) => {
+                let end = if text.ends_with('\n') { "" } else { "\n" };
+                return Ok(format!("{text}{end}\n[{tables}]\n{name} = {value:?}\n"));
+            }
             _ => return Err(missing()),
         };
     }
     let Some(place) = table.get(name) else {
         return match LEFT_OUT.contains(&key) {
-            true => added(text, table, name, value).ok_or_else(missing),
+            true => added(text, table, tables, name, value).ok_or_else(missing),
             false => Err(missing()),
         };
     };
@@ -51,20 +67,49 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchLe
 
 /// The text with a new line at the end of a table; none where that would not be in it, as
 /// in a table that is written on one line.
-fn added(text: &str, table: &DeTable, name: &str, value: f64) -> Option<String> {
+fn added(text: &str, table: &DeTable, tables: &str, name: &str, value: f64) -> Option<String> {
     let last = table.values().map(|value| value.span().end).max()?;
-    let end = text[last..]
-        .find('\n')
-        .map_or(text.len(), |line| last + line);
+    let end = line_end(text, last);
     let mut longer = text.to_string();
     longer.insert_str(end, &format!("\n{name} = {value:?}"));
-    let span = {
-        let document = DeTable::parse(&longer).ok()?;
-        let tables = document.get_ref().values();
-        let mut tables = tables.filter_map(|value| value.get_ref().as_table());
-        tables.find_map(|table| table.get(name).map(toml::Spanned::span))
+    let there = place(&longer, tables, name)?;
+    (there.start > end).then_some(longer)
+}
+
+/// The text without the line of a number that may be left out; as it is where that is not
+/// there.
+///
+/// # Errors
+/// If it is in a table that is written on one line.
+pub fn without_number(text: &str, key: &str) -> Result<String, NoSuchLength> {
+    let missing = || NoSuchLength(key.to_string());
+    let (tables, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    let Some(there) = place(text, tables, name) else {
+        return Ok(text.to_string());
     };
-    (span?.start > end).then_some(longer)
+    let begin = text[..there.start].rfind('\n').map_or(0, |line| line + 1);
+    let end = (line_end(text, there.end) + 1).min(text.len());
+    if !text[begin..end].trim_start().starts_with(name) {
+        return Err(missing());
+    }
+    Ok(text[..begin].to_string() + &text[end..])
+}
+
+/// Where the line ends that this place is in.
+fn line_end(text: &str, from: usize) -> usize {
+    text[from..]
+        .find('\n')
+        .map_or(text.len(), |line| from + line)
+}
+
+/// Where the value of a key is in the text.
+fn place(text: &str, tables: &str, name: &str) -> Option<std::ops::Range<usize>> {
+    let document = DeTable::parse(text).ok()?;
+    let mut table = document.get_ref();
+    for step in tables.split('.') {
+        table = table.get(step)?.get_ref().as_table()?;
+    }
+    table.get(name).map(toml::Spanned::span)
 }
 
 #[cfg(test)]
@@ -97,6 +142,24 @@ mod tests {
         ] {
             assert!(with_number(text, "leg.hip_side", 36.0).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_table_that_was_left_out_is_written_below_all() {
+        for text in ["[leg]\nground = 50.0\n", "[leg]\nground = 50.0"] {
+            let changed = with_number(text, "body.mass", 250.0).expect("it may be set");
+            assert_eq!(changed, "[leg]\nground = 50.0\n\n[body]\nmass = 250.0\n");
+        }
+    }
+
+    #[test]
+    fn a_number_is_taken_away_with_its_line() {
+        const LEG: &str = "[leg]\nground = 50.0\nspring = 10.0 # soft\nmount = 0.0\n";
+        let rigid = without_number(LEG, "leg.spring").expect("it may be left out");
+        assert_eq!(rigid, "[leg]\nground = 50.0\nmount = 0.0\n");
+        assert_eq!(without_number(&rigid, "leg.spring"), Ok(rigid.clone()));
+        let one = "leg = { ground = 50.0, spring = 10.0 }\n";
+        assert!(without_number(one, "leg.spring").is_err());
     }
 
     #[test]

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Outlook, SERVO_MODELS};
-use crate::edit::with_number;
+use crate::edit::{NoSuchLength, with_number, without_number};
 use crate::floor::Floor;
 use crate::map::Map;
 use crate::place::Place;
@@ -91,11 +91,44 @@ impl Page {
     /// # Errors
     /// If the text has no such number.
     pub fn edit(text: &str, key: &str, value: f64) -> Result<Edited, Refused> {
-        let text = with_number(text, key, value).map_err(|error| Refused {
-            refused: error.to_string(),
-            line: None,
-            key: key.to_string(),
-        })?;
+        let text = with_number(text, key, value).map_err(unwritten)?;
+        let refusal = Robot::parse(&text).err().map(|error| refused(&error));
+        Ok(Edited { text, refusal })
+    }
+
+    /// The text with a floor, a weight and springs: what it has already stays as it is written.
+    /// The page's robot stays as it is.
+    ///
+    /// # Errors
+    /// If the text is that of no robot, or has no room for one of the numbers.
+    pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
+        let robot = Robot::parse(text).map_err(|error| refused(&error))?;
+        let own = Floor::of(robot.ground());
+        let wanted = Floor::of(&floor.over(robot.ground()));
+        let mut text = text.to_string();
+        if wanted.stiffness.is_infinite() {
+            for key in ["leg.spring", "leg.preload"] {
+                text = without_number(&text, key).map_err(unwritten)?;
+            }
+        } else {
+            for (key, own, wanted) in [
+                ("leg.spring", own.stiffness, wanted.stiffness),
+                ("leg.preload", own.preload, wanted.preload),
+            ] {
+                if own != wanted {
+                    text = with_number(&text, key, wanted).map_err(unwritten)?;
+                }
+            }
+        }
+        for (key, own, wanted) in [
+            ("ground.friction", own.friction, wanted.friction),
+            ("ground.friction_back_over_forward", own.ratio, wanted.ratio),
+            ("body.mass", own.mass, wanted.mass),
+        ] {
+            if own != wanted {
+                text = with_number(&text, key, wanted).map_err(unwritten)?;
+            }
+        }
         let refusal = Robot::parse(&text).err().map(|error| refused(&error));
         Ok(Edited { text, refusal })
     }
@@ -207,6 +240,14 @@ fn frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
         slides,
         lag: state.lag,
         errors: state.errors,
+    }
+}
+
+fn unwritten(error: NoSuchLength) -> Refused {
+    Refused {
+        refused: error.to_string(),
+        line: None,
+        key: error.0,
     }
 }
 

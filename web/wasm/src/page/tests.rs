@@ -225,3 +225,26 @@ fn friction_that_differs_by_direction_changes_the_prediction() {
     assert_ne!(page.predict(walk), even);
     assert_eq!(page.predict(99), None);
 }
+
+#[test]
+fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
+    let own = |text: &str| Floor::of(Robot::parse(text).expect("right").ground());
+    let written = |text: &str, floor| {
+        let edited = Page::edit_floor(text, floor).expect("it has room");
+        assert_eq!(edited.refusal, None);
+        edited.text
+    };
+    assert_eq!(written(PAPER, own(PAPER)), PAPER);
+    let floor = Floor {
+        friction: 0.55,
+        ratio: 1.5,
+        mass: 412.0,
+        stiffness: 5.0,
+        preload: 12.0,
+    };
+    let sprung = written(PAPER, floor);
+    assert_eq!(own(&sprung), floor);
+    let rigid = written(&sprung, own(PAPER));
+    assert_eq!(own(&rigid), own(PAPER));
+    assert!(!rigid.contains("\nspring ="), "{rigid}");
+}

@@ -1,0 +1,18 @@
+// A robot.toml as a file for a person, with what the page's sliders set.
+import { type Floor, isRefused, type Refused, type Robot } from '../robot';
+
+/**
+ * Has the browser save a robot.toml with this floor, weight and these springs; null leaves those of the text.
+ * Where they have no place in it, the text is saved as it is, and why is returned.
+ */
+export function download(robot: Robot, toml: string, floor: Floor | null): Refused | null {
+  const whole = floor && robot.editFloor(toml, floor);
+  const refused = whole && (isRefused(whole) ? whole : whole.refusal);
+  const text = !whole || isRefused(whole) || refused ? toml : whole.text;
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type: 'application/toml' }));
+  link.download = 'robot.toml';
+  link.click();
+  URL.revokeObjectURL(link.href);
+  return refused;
+}

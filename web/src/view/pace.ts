@@ -1,0 +1,37 @@
+// The pace of all gaits: what a person asks for, and what the robot says that it has.
+import { WORDS } from '../words';
+import { element } from './canvas';
+
+export class Pace {
+  private readonly slider = element<HTMLInputElement>('speed');
+  private readonly out = element('speed-out');
+  /** Whether a person holds the slider, or its line has no answer yet. */
+  private held = false;
+
+  /** `ask` sends a line and ends with its answer. */
+  constructor(ask: (line: string) => Promise<unknown>) {
+    this.slider.addEventListener('input', () => {
+      this.held = true;
+      this.write(this.slider.valueAsNumber);
+    });
+    this.slider.addEventListener('change', () => {
+      this.held = true;
+      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => (this.held = false));
+    });
+    this.write(this.slider.valueAsNumber);
+  }
+
+  /** Shows what the robot has, percent. */
+  show(percent: number): void {
+    if (this.held) return;
+    this.slider.value = String(percent);
+    this.write(percent);
+  }
+
+  private write(percent: number): void {
+    const text = `${percent} %`;
+    if (this.out.textContent === text) return;
+    this.out.textContent = text;
+    this.slider.setAttribute('aria-valuetext', text);
+  }
+}

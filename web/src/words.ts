@@ -1,0 +1,25 @@
+// The console's words that the page sends or waits for. The core's list, core/src/word.rs, decides
+// how they are written: a page with a word that is not there says so when it begins.
+
+export const WORDS = {
+  stop: 'stop',
+  rest: 'rest',
+  status: 'status',
+  pose: 'pose',
+  speed: 'speed',
+  watch: 'watch',
+  trim: 'trim',
+  limit: 'limit',
+  dir: 'dir',
+  scale: 'scale',
+  cal: 'cal',
+  center: 'center',
+  save: 'save',
+  load: 'load',
+  factory: 'factory',
+} as const;
+
+/** Words of the page and of its buttons that are not among the core's. */
+export function unknownWords(buttons: string[], core: string[]): string[] {
+  return [...new Set([...Object.values(WORDS), ...buttons])].filter((word) => !core.includes(word));
+}

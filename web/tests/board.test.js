@@ -1,0 +1,160 @@
+// A board on USB that is new, has another firmware, or is left while it walks.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { close, complaints, open, page, tidy } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const text = (opened, selector) => opened.locator(selector).innerText();
+
+/** The page with a board of this image, so long after it was connected. */
+async function connected(image, ms) {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate((image) => (window.flashed = image), image);
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(ms);
+  return opened;
+}
+
+async function walking() {
+  const opened = await connected('robot', 4000);
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await opened.clock.runFor(1500);
+  await opened.locator('#log div', { hasText: /^ok walk$/ }).waitFor();
+  return opened;
+}
+
+test('a new UNO is named after some seconds, and is given the firmware by one button', async () => {
+  const opened = await connected(null, 5000);
+  await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
+  assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
+  await opened.getByRole('button', { name: 'Write the image of robot.toml to it' }).click();
+  await opened.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
+  for (const control of ['#robot', '#connect']) {
+    assert.ok(await opened.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
+  }
+  for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
+  assert.equal(await text(opened, '#flash-said'), 'written and verified');
+  await opened.clock.runFor(8000);
+  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  for (const control of ['#robot', '#connect']) assert.ok(await opened.locator(control).isEnabled(), control);
+  assert.equal(await opened.locator('#trouble').isVisible(), false, 'it greets: the trouble is over');
+  await opened.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
+});
+
+test('a board that nothing answers from is asked about', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => (window.flashed = null));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.evaluate(() => (window.otherBoard.send = () => {}));
+  await opened.clock.runFor(6000);
+  await opened.locator('#trouble', { hasText: 'Is it the right port, and an UNO?' }).waitFor();
+});
+
+test('a board that its port does not reset is asked what it does, and followed', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => (window.awake = true));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(5000);
+  await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
+  assert.match(await text(opened, '#where'), /^on a board on USB that has not begun anew/);
+  assert.equal(await text(opened, '#doing'), 'stand');
+  assert.equal(await opened.locator('#trouble').isVisible(), false);
+});
+
+test('a robot is chosen for a board that is connected, and the board stays', async () => {
+  const opened = await walking();
+  await opened.locator('#robot').selectOption('large');
+  await opened.waitForFunction(() => window.lizard.file === 'large');
+  assert.match(await text(opened, '#where'), /^on a board on USB with the image of another robot/);
+  await opened.getByRole('button', { name: 'Back to the simulation' }).waitFor();
+  await opened.locator('#robot').selectOption('robot');
+  await opened.waitForFunction(() => window.lizard.file === 'robot');
+  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  await opened.clock.runFor(500);
+  assert.ok(await opened.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'it is still followed');
+});
+
+test('a board that is left has been stopped', async () => {
+  const opened = await walking();
+  await opened.getByRole('button', { name: 'Back to the simulation' }).click();
+  await opened.clock.runFor(1500);
+  await opened.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
+  assert.ok(await opened.evaluate(() => window.heard.endsWith('stop\n')), 'the last line that the board has heard');
+  assert.match(await text(opened, '#where'), /simulated UNO/);
+});
+
+test('a board that does not say that it stops is spoken of', async () => {
+  const opened = await walking();
+  await opened.evaluate(() => (window.otherBoard.send = () => {}));
+  await opened.getByRole('button', { name: 'Back to the simulation' }).click();
+  await opened.clock.runFor(3000);
+  await opened.locator('#trouble', { hasText: 'did not say that it stops' }).waitFor();
+});
+
+test('a page that is closed while a board walks stops it, and the browser asks', async () => {
+  const opened = await walking();
+  const asked = opened.waitForEvent('dialog');
+  // The browser's answer is for the dialog, and comes after it.
+  const left = opened.evaluate(() => location.reload());
+  const dialog = await asked;
+  assert.equal(dialog.type(), 'beforeunload');
+  await dialog.dismiss();
+  await left;
+  await opened.clock.runFor(1000);
+  await opened.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
+});
+
+test('after a reset the board is followed again', async () => {
+  const opened = await walking();
+  await opened.getByRole('button', { name: 'reset' }).click();
+  await opened.clock.runFor(8000);
+  const place = () => opened.evaluate(() => window.lizard.last.place.y);
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await opened.clock.runFor(500);
+  const before = await place();
+  await opened.clock.runFor(3000);
+  assert.ok((await place()) - before > 5, `${before} to ${await place()} mm`);
+});
+
+test('pulses that a board does not show are not made up', async () => {
+  const opened = await connected('robot', 5000);
+  const cells = await opened.locator('#widths td:nth-child(3)').allInnerTexts();
+  assert.deepEqual(cells, ['–', '–', '–', '–']);
+  await opened.getByText('A board on USB does not show its pulses here.').waitFor();
+});
+
+test('a HEX file of another program is named, and written only when a person says so', async () => {
+  const opened = await connected('robot', 8000);
+  await opened.getByText('Flash', { exact: true }).click();
+  // A program that loops for ever: rjmp .-2.
+  const blink = ':02000000FFCF30\n:00000001FF\n';
+  const choose = () =>
+    opened.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(blink) });
+  await choose();
+  const question = opened.locator('#flash-what', { hasText: 'blink.hex, 128 bytes. It is not this firmware' });
+  await question.waitFor();
+  const flash = () => opened.evaluate(() => window.otherBoard.flash[0]);
+  const first = await flash();
+  assert.notEqual(first, 0xff);
+  await opened.clock.runFor(3000);
+  assert.equal(await flash(), first, 'nothing is written yet');
+  await opened.getByRole('button', { name: 'Do not write it' }).click();
+  assert.equal(await question.isVisible(), false);
+  await choose();
+  await opened.getByRole('button', { name: 'Write it', exact: true }).click();
+  const said = opened.locator('#flash-said');
+  for (let n = 0; n < 100 && !/^(not )?written/.test(await said.innerText()); n++) await opened.clock.runFor(100);
+  await opened.clock.runFor(3000);
+  await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();
+  await opened.getByRole('button', { name: 'Write the image of robot.toml to it' }).waitFor();
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -1,0 +1,48 @@
+// A Web Serial whose one port is a second simulated UNO; runs in the page, before anything else.
+
+/**
+ * With `window.flashed` set to the name of an image, or to null for none, the board has that one;
+ * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
+ * of the port.
+ */
+export function fakeSerial() {
+  let board;
+  const port = {
+    readable: null,
+    writable: null,
+    async open() {
+      window.openPort?.();
+      const { board: first } = window.lizard.link;
+      const name = window.flashed === undefined ? 'robot' : window.flashed;
+      const hex = async (name) => (await fetch(`files/${name}.hex`)).text();
+      board = new first.constructor(name && (await hex(name)), await hex('optiboot'));
+      // What it says before the port is open goes nowhere.
+      if (window.awake) board.run(16_000 * 4000);
+      let out;
+      port.readable = new ReadableStream({ start: (controller) => (out = controller) });
+      window.unplug = () => {
+        clearInterval(port.timer);
+        port.readable = null;
+        out.error(new Error('The device has been lost.'));
+      };
+      port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
+      board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
+      if (!window.awake) board.reset('external');
+      window.otherBoard = board;
+      window.heard = '';
+      board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
+      port.timer = setInterval(() => board.run(16_000 * 2), 2);
+    },
+    async setSignals({ dataTerminalReady }) {
+      if (dataTerminalReady && !window.awake) board.reset('external');
+    },
+    async close() {
+      clearInterval(port.timer);
+    },
+  };
+  const requestPort = async () => {
+    window.pick?.();
+    return port;
+  };
+  Object.defineProperty(navigator, 'serial', { value: { requestPort } });
+}

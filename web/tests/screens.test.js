@@ -1,0 +1,192 @@
+// The page on a phone, beside a mouse, in a person's own colours, and where it cannot run.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, afterEach, before, test } from 'node:test';
+
+import { address, advance, blank, close, complaints, open, page, standing, tidy, within } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
+
+/** Where an element is on the screen, CSS pixels. */
+const place = (opened, selector) =>
+  opened.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
+const screen = (opened) => opened.evaluate(() => ({ width: innerWidth, height: innerHeight }));
+
+async function isOnScreen(opened, selector) {
+  const [{ top, bottom, left, right }, { width, height }] = [await place(opened, selector), await screen(opened)];
+  return top >= 0 && left >= 0 && bottom <= height && right <= width;
+}
+
+/** Does what a finger does that moves from the middle of an element, so many pixels right and down. */
+async function swipe(opened, selector, right, down) {
+  const { left, top, width, height } = await place(opened, selector);
+  const session = await within('the touch screen', opened.context().newCDPSession(opened));
+  const send = (type, touchPoints) => within('a finger', session.send('Input.dispatchTouchEvent', { type, touchPoints }));
+  const at = (share) => [{ x: left + width / 2 + share * right, y: top + height / 2 + share * down }];
+  await send('touchStart', at(0));
+  for (let step = 1; step <= 20; step++) await send('touchMove', at(step / 20));
+  await send('touchEnd', []);
+}
+
+for (const [name, options] of [
+  ['upright', PORTRAIT],
+  ['on its side', LANDSCAPE],
+]) {
+  test(`stop is on the screen of a phone ${name}, wherever it is scrolled to`, async () => {
+    const opened = await standing(options);
+    assert.ok(await isOnScreen(opened, '.stop'), 'at the top');
+    await opened.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
+    assert.ok((await opened.evaluate(() => scrollY)) > 500);
+    assert.ok(await isOnScreen(opened, '.stop'), 'at the bottom');
+    await opened.locator('#gaits button[data-command="walk"]').evaluate((button) => button.click());
+    await advance(opened, 500);
+    await opened.locator('.stop').tap();
+    await advance(opened, 300);
+    assert.equal(await opened.evaluate(() => window.lizard.gait), 'stop', 'nothing lies over it');
+  });
+
+  test(`a phone ${name} shows the robot and its buttons on one screen`, async () => {
+    const opened = await standing(options);
+    for (const selector of ['#floor', '#gaits', '#reset', '#speed']) {
+      assert.ok(await isOnScreen(opened, selector), selector);
+    }
+    const { height } = await place(opened, '#floor');
+    assert.ok(height > 280, `${height} pixels of floor`);
+  });
+}
+
+test('a finger that moves up over the floor scrolls the page', async () => {
+  const opened = await standing(PORTRAIT);
+  const follow = opened.getByRole('button', { name: 'Follow' });
+  await swipe(opened, '#floor', 120, 0);
+  assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'a finger aside drags the floor');
+  assert.equal(await opened.evaluate(() => scrollY), 0);
+  await follow.click();
+  // Last, because the page rolls on for a while.
+  await swipe(opened, '#floor', 0, -150);
+  await opened.waitForFunction(() => scrollY > 100);
+  assert.equal(await follow.getAttribute('aria-pressed'), 'true', 'the floor was not dragged');
+});
+
+/** CSS pixels in a mm of the floor. */
+const zoom = (opened) => opened.evaluate(() => Number(document.querySelector('#floor').dataset.zoom));
+
+test('the wheel scrolls the page, and zooms with Ctrl as far as the robot is to be seen', async () => {
+  const opened = await standing({ viewport: { width: 1400, height: 700 } });
+  await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
+  const first = await zoom(opened);
+  const { left, top } = await place(opened, '#floor');
+  await opened.mouse.move(left + 200, top + 200);
+  await opened.mouse.wheel(0, 300);
+  await opened.waitForFunction(() => scrollY > 100);
+  assert.equal(await zoom(opened), first);
+  await opened.evaluate(() => scrollTo(0, 0));
+  await opened.locator('#floor').dispatchEvent('wheel', { deltaY: 5000, ctrlKey: true, offsetX: 200, offsetY: 200 });
+  await opened.waitForFunction((first) => Number(document.querySelector('#floor').dataset.zoom) < first, first);
+  assert.ok(250 * (await zoom(opened)) > 60, 'pixels for a robot of 250 mm');
+  // And back, wherever the view had gone to.
+  const follow = opened.getByRole('button', { name: 'Follow' });
+  await opened.locator('#floor').press('ArrowLeft');
+  assert.equal(await follow.getAttribute('aria-pressed'), 'false');
+  await opened.getByRole('button', { name: 'Back to start' }).click();
+  assert.equal(await follow.getAttribute('aria-pressed'), 'true');
+  await opened.waitForFunction((first) => Number(document.querySelector('#floor').dataset.zoom) === first, first);
+});
+
+test('forced colours show which button is pressed and how long a bar is', async () => {
+  const opened = await standing({ forcedColors: 'active' });
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await advance(opened, 300);
+  const colour = (selector) =>
+    opened.evaluate((selector) => getComputedStyle(document.querySelector(selector)).backgroundColor, selector);
+  const [pressed, other] = ['walk', 'trot'].map((name) => colour(`#gaits button[data-command="${name}"]`));
+  assert.notEqual(await pressed, await other);
+  const bar = await Promise.all(['.bar .track', '.bar .fill', '.bar .limit'].map(colour));
+  assert.equal(new Set(bar).size, 3, bar.join());
+});
+
+test('a page without JavaScript says what it needs', async () => {
+  const opened = await blank({ javaScriptEnabled: false });
+  await opened.goto(address());
+  const said = opened.locator('noscript p');
+  await said.waitFor();
+  assert.match(await said.innerText(), /which are switched off here/);
+});
+
+test('a page that was opened as a file says what it needs', async () => {
+  const opened = await blank();
+  await opened.goto(new URL('../dist/index.html', import.meta.url).href);
+  await opened.locator('#where', { hasText: 'it needs a web server' }).waitFor();
+});
+
+test('long names of gaits have room, and no letter is outside of its button', async () => {
+  for (const options of [PORTRAIT, { viewport: { width: 1400, height: 1000 } }]) {
+    const opened = await standing(options);
+    await opened.locator('#robot').selectOption('own-gaits');
+    await opened.waitForFunction(() => window.lizard.file === 'own-gaits');
+    const buttons = await opened.locator('#gaits button').evaluateAll((buttons) =>
+      buttons.map((button) => ({
+        name: button.dataset.command,
+        height: button.offsetHeight,
+        outside: button.scrollWidth - button.clientWidth,
+      })),
+    );
+    assert.ok(buttons.some(({ name }) => name.length > 40));
+    for (const { name, height, outside } of buttons) {
+      assert.ok(height <= 90, `${name}: ${height} pixels high`);
+      assert.ok(outside <= 0, `${name}: ${outside} pixels too wide`);
+    }
+  }
+});
+
+test('robots that say that they are for the tests come last, under that name', async () => {
+  const opened = await page();
+  const [plain, tests] = await opened.evaluate(() =>
+    ['#robot > option', '#robot > optgroup[label="for tests"] > option'].map((selector) =>
+      [...document.querySelectorAll(selector)].map(({ value }) => value),
+    ),
+  );
+  assert.deepEqual(plain, ['robot', 'large', 'paper']);
+  assert.deepEqual(tests, ['own-gaits', 'unequal']);
+});
+
+test('a word that the core spells otherwise is said to be unknown', async () => {
+  const opened = await blank();
+  const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
+  const list = 'load|factory|boot';
+  assert.ok(wasm.includes(list));
+  const body = Buffer.from(wasm.replaceAll(list, 'load|faktory|boot'), 'latin1');
+  await opened.route('**/lizard.wasm', (route) => route.fulfill({ body, contentType: 'application/wasm' }));
+  await opened.goto(address());
+  await opened.locator('#trouble', { hasText: 'The core does not know these words of the page: factory.' }).waitFor();
+});
+
+test('the core knows every word that a button sends', async () => {
+  const opened = await standing();
+  assert.equal(await opened.locator('#trouble').isVisible(), false);
+  const sent = await opened.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
+  const { words, gaits } = await opened.evaluate(() => window.lizard.description);
+  const known = [...words, ...gaits.map(({ command }) => command)];
+  assert.deepEqual(sent.filter((command) => !known.includes(command)), []);
+  assert.ok(sent.length >= 10);
+});
+
+test('a script that is not the page\'s own does not run', async () => {
+  const opened = await page();
+  const blocked = opened.waitForEvent('console', (message) => /Content Security Policy/.test(message.text()));
+  await opened.evaluate(() => {
+    const script = document.createElement('script');
+    script.textContent = 'window.strange = true';
+    document.body.append(script);
+  });
+  await blocked;
+  assert.equal(await opened.evaluate(() => window.strange), undefined);
+  complaints.splice(0, complaints.length, ...complaints.filter((said) => !/Content Security Policy/.test(said)));
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -1,0 +1,100 @@
+// What goes wrong is said where a person looks, and stays said until it is over.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { address, advance, blank, close, complaints, open, page, standing, tidy, type } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const trouble = (opened) => opened.locator('#trouble');
+const text = (opened, selector) => opened.locator(selector).innerText();
+
+test('a robot file that cannot be read stays said while the robot of before goes on', async () => {
+  const opened = await standing();
+  await opened.route('**/files/large.hex', (route) => route.fulfill({ status: 404 }));
+  await opened.locator('#robot').selectOption('large');
+  const said = trouble(opened).getByText('files/large.hex is not there (404)');
+  await said.waitFor();
+  assert.equal(await opened.locator('#robot').inputValue(), 'robot', 'the choice is the robot that is there');
+  await type(opened, 'walk', 'ok walk');
+  await advance(opened, 5000);
+  await opened.locator('#health dd', { hasText: 'power' }).waitFor();
+  assert.ok(await said.isVisible(), 'good answers and the poll of the status do not take it away');
+  assert.equal(await opened.evaluate(() => window.lizard.file), 'robot');
+  await opened.unroute('**/files/large.hex');
+  await opened.locator('#robot').selectOption('large');
+  await opened.waitForFunction(() => window.lizard.file === 'large');
+  assert.equal(await trouble(opened).isVisible(), false, 'a robot that can be read ends it');
+  // The browser itself complains of what the test took away.
+  complaints.splice(0, complaints.length, ...complaints.filter((said) => !/404/.test(said)));
+});
+
+test('a page whose first robot cannot be read says so, and takes another one', async () => {
+  const opened = await blank();
+  await opened.route('**/files/robot.hex', (route) => route.fulfill({ status: 404 }));
+  await opened.goto(address());
+  await trouble(opened).getByText('files/robot.hex is not there (404)').waitFor();
+  assert.equal(await text(opened, '#where'), 'No robot could be read.');
+  await opened.locator('#robot').selectOption('paper');
+  await opened.waitForFunction(() => window.lizard?.file === 'paper');
+  await advance(opened, 2500);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+  assert.equal(await trouble(opened).isVisible(), false);
+});
+
+test('a port that is busy stays said until a person puts it away', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => {
+    window.openPort = () => {
+      throw new DOMException('Failed to open serial port.', 'NetworkError');
+    };
+  });
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  const said = trouble(opened).getByText('No board is connected: Failed to open serial port.');
+  await said.waitFor();
+  await opened.clock.runFor(8000);
+  await opened.locator('#health dd', { hasText: 'power' }).waitFor();
+  assert.ok(await said.isVisible());
+  await opened.getByRole('button', { name: 'Put away' }).click();
+  assert.equal(await trouble(opened).isVisible(), false);
+});
+
+test('a person who picks no port is not told of a trouble', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => {
+    window.pick = () => {
+      window.picked = true;
+      throw new DOMException('No port selected by the user.', 'NotFoundError');
+    };
+  });
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.picked);
+  await opened.clock.runFor(500);
+  assert.equal(await trouble(opened).isVisible(), false);
+  assert.match(await text(opened, '#where'), /simulated UNO/);
+});
+
+test('a browser without Web Serial says so to whoever only reads', async () => {
+  const opened = await page({}, () => Object.defineProperty(navigator, 'serial', { value: undefined }));
+  await opened.getByText('This browser cannot reach a board on USB').waitFor();
+});
+
+test('a refused button says why beside the buttons, on a phone too', async () => {
+  const opened = await standing({ viewport: { width: 390, height: 844 }, hasTouch: true });
+  await opened.getByRole('button', { name: 'rest', exact: true }).click();
+  await advance(opened, 300);
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await advance(opened, 300);
+  const said = opened.locator('#drive-said');
+  await said.getByText('walk: servos are resting, send stand first').waitFor();
+  const { y, height } = await said.boundingBox();
+  assert.ok(y >= 0 && y + height <= 844, `it is on the screen: ${y} to ${y + height}`);
+  await opened.locator('#gaits button[data-command="stand"]').click();
+  await advance(opened, 300);
+  await said.waitFor({ state: 'hidden' });
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
