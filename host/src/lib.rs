@@ -32,6 +32,8 @@ pub mod tune;
 pub mod twin;
 #[cfg(feature = "simulator")]
 mod variation;
+#[cfg(feature = "console")]
+mod whole_file;
 
 pub use failure::Failure;
 pub use pose_args::PoseArgs;

@@ -7,7 +7,7 @@ use super::calibration::Calibration;
 use super::connect::Connect;
 use super::file;
 use super::link::{Link, LinkError};
-use crate::Failure;
+use crate::{Failure, whole_file};
 
 /// Keep the robot's calibration in a file
 ///
@@ -41,7 +41,7 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("backup FILE")?;
     let (mut board, _) = finder.meet()?;
     let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
-    file::write(&args.file, &file::text(&set))?;
+    whole_file::write(&args.file, file::text(&set).as_bytes())?;
     println!(
         "the calibration of {} is in {}",
         board.name,

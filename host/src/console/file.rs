@@ -1,6 +1,5 @@
 //! A calibration as a file: TOML, so that a person can read and change it.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -110,40 +109,11 @@ pub fn read(path: &Path) -> Result<Calibration, Failure> {
     parse(&text).map_err(|problem| Failure::Input(format!("{name}: {problem}")))
 }
 
-/// Writes a file whole or not at all.
-///
-/// # Errors
-/// The folder is missing or cannot be written to.
-pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    persist(path, text)
-        .map_err(|error| Failure::Impossible(format!("cannot write {}: {error}", path.display())))
-}
-
-fn persist(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().filter(|it| !it.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(io::Error::other("there is no such folder"));
-    }
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As any other file: the user's umask takes its part away.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    // In the same folder: a file moves into its place at once only there.
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::calibration::{Direction, Servo};
     use super::*;
+    use crate::whole_file;
 
     fn set() -> Calibration {
         let servo = |trim| Servo {
@@ -168,10 +138,8 @@ mod tests {
     fn a_calibration_is_the_same_after_the_way_through_a_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.toml");
-        write(&path, "old").expect("it is written");
-        write(&path, &text(&set())).expect("it is replaced");
+        whole_file::write(&path, text(&set()).as_bytes()).expect("it is written");
         assert_eq!(read(&path).expect("it is read"), set());
-        assert_eq!(folder.path().read_dir().expect("a folder").count(), 1);
     }
 
     #[test]
@@ -245,14 +213,5 @@ mod tests {
             let words = complaint(from, to);
             assert!(words.starts_with(start), "{words} / {start}");
         }
-    }
-
-    #[test]
-    fn a_file_that_cannot_be_written_is_named() {
-        let words = write(Path::new("/no/such/folder/a.toml"), "").expect_err("no folder");
-        assert_eq!(
-            words.to_string(),
-            "cannot write /no/such/folder/a.toml: there is no such folder"
-        );
     }
 }

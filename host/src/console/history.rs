@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::file;
+use crate::whole_file;
 
 /// `$XDG_STATE_HOME/lizard/history`, by default in ~/.local/state.
 fn path() -> Option<PathBuf> {
@@ -29,6 +29,6 @@ pub fn save(lines: &[String]) {
         .parent()
         .is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
     if made {
-        let _ = file::write(&path, &(lines.join("\n") + "\n"));
+        let _ = whole_file::write(&path, (lines.join("\n") + "\n").as_bytes());
     }
 }
