@@ -13,6 +13,8 @@ pub mod board;
 pub mod console;
 pub mod draw;
 mod failure;
+#[cfg(feature = "simulator")]
+mod firmware;
 pub mod gaits;
 mod json;
 #[cfg(feature = "paper")]

@@ -67,12 +67,12 @@ impl Connect {
 #[cfg(all(feature = "simulator", target_os = "linux"))]
 fn simulated(
     elf: Option<&std::path::Path>,
-    robot: &RobotFile,
+    file: &RobotFile,
     command: &'static str,
 ) -> Result<Finder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
-    let robot = robot.load()?;
-    let elf = crate::sim::elf(elf)?;
+    let robot = file.load()?;
+    let elf = crate::firmware::of_robot(elf, file, &robot)?;
     let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
     crate::sim::supplies::connect(&mut uno, &robot);

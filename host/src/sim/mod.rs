@@ -25,8 +25,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
-use crate::json;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotFile, firmware, json};
 use analysis::Run;
 use dialogue::Printer;
 use report::Report;
@@ -119,13 +118,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
             Some(loader) => served::as_sold(loader, fidelity)?,
-            None => load(&elf(args.elf.as_deref())?, fidelity)?,
+            None => load(
+                &firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?,
+                fidelity,
+            )?,
         };
         supplies::connect(&mut uno, &robot);
         return served::until_interrupted(uno, link.as_deref());
     }
     let script = script(&args, &robot)?;
-    let elf = elf(args.elf.as_deref())?;
+    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = load(&elf, fidelity)?;
     supplies::connect(&mut uno, &robot);
     let mut kept = Vec::new();
@@ -280,27 +282,6 @@ fn script_text(path: &Path) -> io::Result<String> {
         return Err(io::Error::other("it is longer than 1 MiB"));
     }
     Ok(text)
-}
-
-/// The firmware: the one given, or the one that `make firmware` leaves.
-pub(crate) fn elf(given: Option<&Path>) -> Result<PathBuf, Failure> {
-    const BUILT: &str = "target/avr-atmega328p/release/lizard.elf";
-    let missing = |what: String| Failure::Input(format!("{what}; build it with `make firmware`"));
-    match given {
-        Some(path) if path.is_file() => Ok(path.to_owned()),
-        Some(path) => Err(missing(format!(
-            "there is no firmware at {}",
-            path.display()
-        ))),
-        None => {
-            let here = std::env::current_dir()?;
-            let found = here
-                .ancestors()
-                .map(|folder| folder.join(BUILT))
-                .find(|path| path.is_file());
-            found.ok_or_else(|| missing(format!("there is no firmware at {BUILT}")))
-        }
-    }
 }
 
 fn progress_bar(end_ms: u64) -> ProgressBar {

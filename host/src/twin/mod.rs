@@ -17,8 +17,8 @@ use simulated_uno::{Fidelity, State, Uno};
 
 use crate::sim::script::{Script, Step};
 use crate::sim::session::{self, Event, Recording};
-use crate::sim::{elf, frame, read_script, spans, supplies, tour, write_file};
-use crate::{Failure, RobotFile};
+use crate::sim::{frame, read_script, spans, supplies, tour, write_file};
+use crate::{Failure, RobotFile, firmware};
 use replay::Replay;
 use report::Report;
 
@@ -83,7 +83,7 @@ enum ServoArg {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
-    let elf = elf(args.elf.as_deref())?;
+    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
     supplies::connect(&mut uno, &robot);
