@@ -34,7 +34,6 @@ pub mod tune;
 pub mod twin;
 #[cfg(feature = "simulator")]
 mod variation;
-#[cfg(feature = "console")]
 mod whole_file;
 
 pub use failure::Failure;

@@ -407,3 +407,45 @@ fn wrong_input_is_a_sentence_and_starts_nothing() {
         assert_eq!(code, Some(2), "{error}");
     }
 }
+
+#[test]
+fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_board() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
+    std::os::unix::fs::symlink("a-file", &other).expect("a link");
+    let name = other.display().to_string();
+    let (_, error, code) = run(folder.path(), &["sim", "--elf", ELF, "--pty", &name], "");
+    assert_eq!(
+        error.trim(),
+        format!("lizard: {name} is there already and no link to a pseudo terminal")
+    );
+    assert_eq!(code, Some(2));
+    assert_eq!(
+        fs::read_link(&other).expect("it is left"),
+        Path::new("a-file")
+    );
+
+    // What a run that was killed leaves behind.
+    std::os::unix::fs::symlink("/dev/pts/999999", &own).expect("a link");
+    let name = own.display().to_string();
+    let mut child = lizard(folder.path(), &["sim", "--elf", ELF, "--pty", &name])
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    LIMIT.until("a port at the end of the link", || own.exists());
+    let id = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs");
+    let status = LIMIT.end_of(&mut child).expect("it ends");
+    let signal = std::os::unix::process::ExitStatusExt::signal(&status);
+    assert_eq!(signal, Some(15), "as it ends without a link");
+    assert!(!own.is_symlink(), "the link is gone");
+}
+
+#[test]
+fn a_picture_is_not_poured_over_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut person = AtTerminal::start(lizard(folder.path(), &["draw", "--wiring"]));
+    person.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
+    assert!(!person.text.contains("<svg"));
+    assert_eq!(person.exit_code(), Some(2));
+}

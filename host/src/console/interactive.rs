@@ -132,7 +132,7 @@ impl Talk {
         Ok(())
     }
 
-    fn keep(&mut self) -> io::Result<()> {
+    fn keep(&mut self) -> Result<(), Failure> {
         let said = self.session.take_said();
         if let Some(recorder) = &mut self.recorder {
             let now = Instant::now();
@@ -273,6 +273,7 @@ fn failure(error: TurnError, board: &Connection) -> Failure {
     match error {
         TurnError::Link(error) => board.failure(&error),
         TurnError::Io(error) => error.into(),
+        TurnError::File(failure) => failure,
     }
 }
 

@@ -25,7 +25,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
-use crate::{Failure, RobotFile, firmware, json};
+use crate::{Failure, RobotFile, firmware, json, whole_file};
 use analysis::Run;
 use dialogue::Printer;
 use report::Report;
@@ -138,10 +138,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let commands = commands(&robot, &recording);
     let (robot, log) = (&robot, &recording.frames);
     let frames = Run { robot, log };
-    write_file(
-        &args.svg,
-        timeline::draw(frames, &spans, &timeline::SIMULATED),
-    )?;
+    let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
+    whole_file::write_picture(&args.svg, picture.as_bytes())?;
     let report = Report {
         elf: elf.display().to_string(),
         fidelity: match fidelity {
@@ -294,17 +292,4 @@ fn analysis_progress() -> ProgressBar {
     let bar = ProgressBar::new_spinner().with_message("looking at every frame");
     bar.enable_steady_tick(std::time::Duration::from_millis(100));
     bar
-}
-
-/// Writes a file and the folders it needs.
-pub(crate) fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let failure =
-        |error: io::Error| Failure::Impossible(format!("cannot write {}: {error}", path.display()));
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        std::fs::create_dir_all(folder).map_err(failure)?;
-    }
-    std::fs::write(path, bytes).map_err(failure)
 }

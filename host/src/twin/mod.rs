@@ -17,8 +17,8 @@ use simulated_uno::{Fidelity, State, Uno};
 
 use crate::sim::script::{Script, Step};
 use crate::sim::session::{self, Event, Recording};
-use crate::sim::{frame, read_script, spans, supplies, tour, write_file};
-use crate::{Failure, RobotFile, firmware};
+use crate::sim::{frame, read_script, spans, supplies, tour};
+use crate::{Failure, RobotFile, firmware, whole_file};
 use replay::Replay;
 use report::Report;
 
@@ -111,14 +111,23 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         report.print(&mut out)?;
     }
+    let mut said = Vec::new();
     if let Some(path) = &args.html {
-        write_file(path, html::page(&replay, &report)?)?;
+        whole_file::write_picture(path, html::page(&replay, &report)?.as_bytes())?;
+        said.push(("replay", path));
     }
     if let Some(path) = &args.apng {
-        write_file(path, apng::draw(&replay)?)?;
+        whole_file::write_picture(path, &apng::draw(&replay)?)?;
+        said.push(("moving picture", path));
     }
     if let Some(times) = args.robust {
         robust::run(&robot, &replay, model, times, args.json, &mut out)?;
+    }
+    if !args.json && !said.is_empty() {
+        writeln!(out)?;
+        for (what, path) in said {
+            writeln!(out, "{what:<14}  {}", path.display())?;
+        }
     }
     Ok(out.flush()?)
 }

@@ -53,6 +53,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             Ok(())
         }
         Err(TurnError::Io(error)) => Err(error.into()),
+        Err(TurnError::File(failure)) => Err(failure),
         // Opening the port resets the board, so what was not saved is gone then.
         Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
             "{}: {error}; what was not saved is forgotten when the port is opened again",
