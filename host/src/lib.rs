@@ -21,6 +21,7 @@ mod json;
 pub mod paper;
 #[cfg(feature = "parts")]
 pub mod parts;
+pub mod plain;
 pub mod pose_args;
 #[cfg(feature = "paper")]
 pub mod prove;

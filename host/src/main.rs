@@ -8,6 +8,7 @@
     feature = "parts"
 )))]
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -22,6 +23,7 @@ use lizard_host::absent;
 use lizard_host::console;
 #[cfg(feature = "parts")]
 use lizard_host::parts;
+use lizard_host::plain::plain_lines;
 #[cfg(all(feature = "simulator", feature = "paper"))]
 use lizard_host::tune;
 #[cfg(feature = "simulator")]
@@ -166,7 +168,9 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_silent() => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("lizard: {failure}");
+            // It may quote a file or a board. A terminal that is gone is no reason to panic.
+            let words = plain_lines(&failure.to_string());
+            let _ = writeln!(io::stderr(), "lizard: {words}");
             ExitCode::from(failure.exit_code())
         }
     }

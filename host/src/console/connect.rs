@@ -7,6 +7,7 @@ use serialport::SerialPort;
 use super::find;
 use super::link::{Link, LinkError, Patience};
 use super::port;
+use crate::plain::plain;
 use crate::{Failure, RobotFile};
 
 /// Which board a subcommand is about.
@@ -113,7 +114,8 @@ impl Finder {
             None => {
                 let found = find::choose(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
-                (found.name.clone(), found.to_string())
+                // What the board calls itself is the board's word.
+                (found.name.clone(), plain(&found.to_string()))
             }
         };
         Ok(Connection {
@@ -131,6 +133,16 @@ impl Finder {
         eprintln!("lizard: waiting for the board at {}", board.name);
         let banner = board.greet()?;
         Ok((board, banner))
+    }
+
+    /// Whether the board ends with this program.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        #[cfg(all(feature = "simulator", target_os = "linux"))]
+        let simulated = self.simulated.is_some();
+        #[cfg(not(all(feature = "simulator", target_os = "linux")))]
+        let simulated = false;
+        simulated
     }
 
     #[cfg(all(feature = "simulator", target_os = "linux"))]

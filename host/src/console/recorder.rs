@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::session::Said;
 use super::status::angles;
+use crate::plain::plain;
 use crate::{Failure, json, whole_file};
 
 /// What the first line's `format` says. The number rises when a key changes its
@@ -108,6 +109,29 @@ impl<W: Write> Recorder<W> {
 
     fn cannot(&self, error: &io::Error) -> Failure {
         whole_file::cannot(Path::new(&self.name), error)
+    }
+}
+
+impl Event {
+    /// The event with its texts fit for a terminal: a file may hold anything.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        match self {
+            Self::Begin {
+                format,
+                port,
+                banner,
+            } => Self::Begin {
+                format: plain(&format),
+                port: plain(&port),
+                banner: banner.as_deref().map(plain),
+            },
+            Self::Sent(line) => Self::Sent(plain(&line)),
+            Self::Answer(line) => Self::Answer(plain(&line)),
+            Self::Note(line) => Self::Note(plain(&line)),
+            Self::Status(line) => Self::Status(plain(&line)),
+            Self::Pose { .. } | Self::Gone => self,
+        }
     }
 }
 
