@@ -226,7 +226,14 @@ fn ended(state: &State) -> String {
     match state {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
-        State::Crashed { pc, message } => format!("the firmware crashed at {pc:#06x}: {message}"),
+        State::Crashed { pc, message } => {
+            // The simulator's name for it, where it has no words.
+            let why = match message.as_str() {
+                "avr_sadly_crashed" => "no such instruction or address",
+                words => words,
+            };
+            format!("the firmware crashed at {pc:#06x}: {why}")
+        }
         State::Off => "the board has no power".to_owned(),
     }
 }

@@ -36,9 +36,9 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
         Some(link) => {
             point(link, port.path())?;
             remove_at_end(link.to_owned(), port.path().to_owned())?;
-            link
+            link.to_owned()
         }
-        None => port.path(),
+        None => port.path().to_owned(),
     };
     let mut out = io::stdout();
     writeln!(out, "the simulated UNO is at {}", name.display())?;
@@ -51,8 +51,20 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
         uno.take_marks();
         if *uno.state() != told {
             told = uno.state().clone();
-            writeln!(out, "{}", super::ended(&told))?;
+            writeln!(out, "{}", ended(&told, uno.flash(), &name))?;
         }
+    }
+}
+
+/// What is said when the chip stops. A board as sold has nothing in flash where its
+/// firmware would begin, so it stops as soon as the boot loader hands over.
+fn ended(state: &State, flash: &[u8], port: &Path) -> String {
+    match state {
+        State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
+            "there is no firmware in this board yet; `make flash RAVEDUDE_PORT={}` writes it",
+            port.display()
+        ),
+        _ => super::ended(state),
     }
 }
 
@@ -93,4 +105,26 @@ fn point(link: &Path, port: &Path) -> Result<(), Failure> {
         io::ErrorKind::AlreadyExists => foreign(),
         _ => cannot(error),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_board_without_a_firmware_is_no_crash_and_a_crash_has_no_name_of_the_simulator() {
+        let crashed = State::Crashed {
+            pc: 0x7fe4,
+            message: "avr_sadly_crashed".to_owned(),
+        };
+        let port = Path::new("out/uno");
+        assert_eq!(
+            ended(&crashed, &[0xff; 8], port),
+            "there is no firmware in this board yet; `make flash RAVEDUDE_PORT=out/uno` writes it"
+        );
+        assert_eq!(
+            ended(&crashed, &[0x0c, 0x94, 0xff], port),
+            "the firmware crashed at 0x7fe4: no such instruction or address"
+        );
+    }
 }
