@@ -34,8 +34,9 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
     })?;
     let name = match link {
         Some(link) => {
-            point(link, port.path())?;
+            // First, so that the program cannot end between the two.
             remove_at_end(link.to_owned(), port.path().to_owned())?;
+            point(link, port.path())?;
             link.to_owned()
         }
         None => port.path().to_owned(),
