@@ -9,6 +9,7 @@ pub mod absent;
 pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
+pub mod completions;
 #[cfg(feature = "console")]
 pub mod console;
 pub mod draw;
@@ -16,6 +17,7 @@ mod failure;
 #[cfg(feature = "simulator")]
 mod firmware;
 pub mod gaits;
+pub mod groups;
 mod json;
 #[cfg(feature = "paper")]
 pub mod paper;
@@ -29,6 +31,7 @@ mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
 pub mod spring;
+mod suggestion;
 #[cfg(all(feature = "simulator", feature = "paper"))]
 pub mod tune;
 #[cfg(feature = "simulator")]

@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(not(all(
     feature = "simulator",
     feature = "paper",
@@ -28,7 +28,7 @@ use lizard_host::plain::plain_lines;
 use lizard_host::tune;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
-use lizard_host::{draw, gaits, spring};
+use lizard_host::{completions, draw, gaits, groups, spring};
 #[cfg(feature = "paper")]
 use lizard_host::{paper, prove};
 
@@ -51,10 +51,13 @@ struct Cli {
 enum Command {
     Gaits(gaits::Args),
     #[cfg(feature = "paper")]
+    #[command(visible_alias = "fk")]
     Solve(paper::solve::Args),
     #[cfg(feature = "paper")]
+    #[command(visible_alias = "ik")]
     Inverse(paper::inverse::Args),
     #[cfg(feature = "paper")]
+    #[command(visible_alias = "jacobian")]
     Velocity(paper::velocity::Args),
     #[cfg(feature = "paper")]
     Singularity(paper::singularity::Args),
@@ -85,6 +88,7 @@ enum Command {
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
     #[cfg(feature = "console")]
+    #[command(visible_alias = "monitor")]
     Console(console::interactive::ConsoleArgs),
     #[cfg(feature = "console")]
     Calibrate(console::calibrate::Args),
@@ -96,6 +100,8 @@ enum Command {
     Record(console::interactive::RecordArgs),
     #[cfg(all(feature = "console", feature = "simulator"))]
     Replay(console::replay::Args),
+    Completions(completions::CompletionsArgs),
+    Man(completions::ManArgs),
     /// A command that this build may lack.
     #[cfg(not(all(
         feature = "simulator",
@@ -107,8 +113,15 @@ enum Command {
     Other(Vec<OsString>),
 }
 
+/// All commands and options, the commands in groups.
+fn program() -> clap::Command {
+    groups::grouped(Cli::command())
+}
+
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let mut matches = program().get_matches();
+    let cli = Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
+    let done = match cli.command {
         Command::Gaits(args) => gaits::run(args),
         #[cfg(feature = "paper")]
         Command::Solve(args) => paper::solve::run(args),
@@ -156,6 +169,8 @@ fn main() -> ExitCode {
         Command::Record(args) => console::interactive::record(args),
         #[cfg(all(feature = "console", feature = "simulator"))]
         Command::Replay(args) => console::replay::run(args),
+        Command::Completions(args) => completions::completions(args, program()),
+        Command::Man(args) => completions::man(args, program()),
         #[cfg(not(all(
             feature = "simulator",
             feature = "paper",

@@ -25,6 +25,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
+use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile, firmware, json, whole_file};
 use analysis::Run;
 use dialogue::Printer;
@@ -251,9 +252,10 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         && robot.gait(gait).is_none()
     {
         let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
-        let names = names.join(", ");
         return Err(Failure::Input(format!(
-            "robot.toml has no gait `{gait}`; it has {names}"
+            "robot.toml has no gait `{gait}`; it has {}{}",
+            names.join(", "),
+            did_you_mean(gait, names)
         )));
     }
     let ms = given.unwrap_or(12_000);

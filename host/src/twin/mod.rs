@@ -18,6 +18,7 @@ use simulated_uno::{Fidelity, State, Uno};
 use crate::sim::script::{Script, Step};
 use crate::sim::session::{self, Event, Recording};
 use crate::sim::{frame, read_script, spans, supplies, tour};
+use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile, firmware, whole_file};
 use replay::Replay;
 use report::Report;
@@ -158,12 +159,11 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         Some(name) => match robot.gait(name) {
             Some(gait) if gait.moves() => Ok(every(robot, &[gait.name()])),
             Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
-            None => {
-                let gaits = gaits.join(", ");
-                Err(Failure::Input(format!(
-                    "robot.toml has no gait `{name}`; those that move are {gaits}"
-                )))
-            }
+            None => Err(Failure::Input(format!(
+                "robot.toml has no gait `{name}`; those that move are {}{}",
+                gaits.join(", "),
+                did_you_mean(name, gaits)
+            ))),
         },
     }
 }
