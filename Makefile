@@ -41,7 +41,7 @@ firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and
 	$(call prepared,.gaits)
 flash: ## build, write to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
-flash-test: ## what `make flash` does, and says when it cannot, with a simulated board
+flash-test: ## what `make flash` and `lizard flash` do, and say when they cannot, with a simulated board
 	$(call prepared,.flash-test)
 web: ## the robot in the browser: a folder for any web server, web/dist
 	$(call prepared,.web)
@@ -93,12 +93,13 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@scripts/flash
 
-# The README's `make flash`, played on a simulated board behind a pseudo terminal: in
-# real time, and so one after another.
+# The README's `make flash`, and `lizard flash`, played on a simulated board behind a pseudo
+# terminal: in real time, and so one after another.
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
-	@cd host && cargo test -p lizard-host-tests --features flash --test flash --test flash_troubles --quiet -- --test-threads=1
+	@cd host && cargo build --workspace --bin lizard --quiet
+	@cd host && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test -p lizard-host-tests --features flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web

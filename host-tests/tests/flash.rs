@@ -4,82 +4,34 @@
 //!
 //! `make flash-test` runs these tests after it has installed the tools.
 
+mod desk;
 mod shell;
 
-use std::path::PathBuf;
-use std::time::Duration;
-
+use desk::{BOOT, Desk, boot_loader};
 use lizard_host::sim::frame::{frames, servo_pins};
-use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot, root};
+use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot};
 use lizard_time_limit::LIMIT;
 use shell::Shell;
-use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
+use simulated_uno::{Fidelity, Uno};
 
-/// First byte of the boot loader; the firmware ends before it.
-const BOOT: usize = 0x7e00;
 /// The servos wake one after another; later than this all four are held.
 const AWAKE_FRAMES: u64 = 60;
 
-fn boot_loader() -> Image {
-    let elf: PathBuf = root().join("target/flash-test/optiboot.elf");
-    Image::read(elf).expect("`make flash-test` compiles the boot loader")
+fn make_flash(desk: &Desk) -> Shell {
+    Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &desk.name())])
 }
 
-/// A board at a port of this machine, and what its pins have done.
-struct Desk {
-    uno: Uno,
-    port: Port,
-    edges: Vec<Edge>,
-}
-
-impl Desk {
-    fn with_a_new_board() -> Self {
-        Self {
-            uno: Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet),
-            port: Port::new().expect("a pseudo terminal"),
-            edges: Vec::new(),
-        }
-    }
-
-    fn make_flash(&self) -> Shell {
-        let port = self.port.path().display().to_string();
-        Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &port)])
-    }
-
-    /// Lets the board live until the condition holds. False if it never does.
-    fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
-        LIMIT.comes(|| {
-            let step = Duration::from_millis(10);
-            self.port
-                .serve(&mut self.uno, step)
-                .expect("the port is well");
-            self.edges.extend(self.uno.take_edges());
-            done(&mut self.uno)
-        })
-    }
-
-    /// Lets a number of frames pass.
-    fn pass(&mut self, count: u64) {
-        let end = self.uno.cycle() + count * FRAME;
-        let passed = self.until(|uno| uno.cycle() > end);
-        assert!(passed, "waited {LIMIT} for {count} frames");
-    }
-
-    /// Waits until `text` is on the screen; the test fails if it never is.
-    fn see(&mut self, shell: &Shell, text: &str) {
-        let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
-        let screen = shell.screen();
-        assert!(
-            seen && screen.contains(text),
-            "waited up to {LIMIT} for {text:?} in\n{screen}"
-        );
-    }
+/// Lets a number of frames pass.
+fn pass(desk: &mut Desk, count: u64) {
+    let end = desk.uno.cycle() + count * FRAME;
+    let passed = desk.until(|uno| uno.cycle() > end);
+    assert!(passed, "waited {LIMIT} for {count} frames");
 }
 
 #[test]
 fn make_flash_writes_the_image_and_the_robot_walks() {
     let mut desk = Desk::with_a_new_board();
-    let mut shell = desk.make_flash();
+    let mut shell = make_flash(&desk);
     desk.see(&shell, "# lizard");
     let screen = shell.screen();
     assert!(screen.contains("bytes of flash verified"), "{screen}");
@@ -102,11 +54,11 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     // All four servos awake, then two steps.
     shell.say("stand");
     desk.see(&shell, "ok stand");
-    desk.pass(AWAKE_FRAMES);
+    pass(&mut desk, AWAKE_FRAMES);
     shell.say("walk");
     desk.see(&shell, "ok walk");
     desk.edges.clear();
-    desk.pass(110);
+    pass(&mut desk, 110);
     let pins = servo_pins(robot());
     let first = desk
         .edges
@@ -140,7 +92,7 @@ fn an_upload_keeps_the_eeprom() {
     let mut desk = Desk::with_a_new_board();
     let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
     desk.uno.set_eeprom(&kept);
-    let mut shell = desk.make_flash();
+    let mut shell = make_flash(&desk);
     // Before the firmware may write a byte of its own.
     desk.see(&shell, "bytes of flash verified");
     assert!(
@@ -153,14 +105,14 @@ fn an_upload_keeps_the_eeprom() {
 #[test]
 fn a_saved_calibration_is_in_effect_after_the_next_upload() {
     let mut desk = Desk::with_a_new_board();
-    let mut shell = desk.make_flash();
+    let mut shell = make_flash(&desk);
     desk.see(&shell, "# lizard");
     for line in ["trim 1 3", "deadman 700", "save"] {
         shell.say(line);
         desk.see(&shell, &format!("ok {line}"));
     }
     shell.interrupt();
-    let mut shell = desk.make_flash();
+    let mut shell = make_flash(&desk);
     desk.see(&shell, "# lizard");
     shell.say("cal");
     desk.see(&shell, "ok cal");
@@ -173,7 +125,7 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
 #[test]
 fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let mut desk = Desk::with_a_new_board();
-    let shell = desk.make_flash();
+    let shell = make_flash(&desk);
     let mut worn = false;
     // Once the image's first page is there, one bit of it falls.
     let ended = desk.until(|uno| {
@@ -196,7 +148,7 @@ fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let mut desk = Desk::with_a_new_board();
     // A boot loader that does nothing: `rjmp .-2`.
     desk.uno.set_flash(BOOT as u16, &[0xff, 0xcf]);
-    let shell = desk.make_flash();
+    let shell = make_flash(&desk);
     let ended = desk.until(|_| shell.has_ended());
     let screen = shell.screen();
     assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");

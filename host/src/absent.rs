@@ -6,7 +6,8 @@ use crate::Failure;
 
 const SIMULATOR: [&str; 4] = ["sim", "twin", "tune", "bench"];
 /// `replay` needs the simulator's pictures, too.
-const CONSOLE: [&str; 6] = [
+const CONSOLE: [&str; 7] = [
+    "flash",
     "console",
     "calibrate",
     "backup",

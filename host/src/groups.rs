@@ -19,7 +19,6 @@ const GROUPS: [(&str, &[&str]); 5] = [
             "restore",
             "record",
             "replay",
-            "image",
         ],
     ),
     ("Simulate it", &["sim", "twin", "bench"]),

@@ -16,6 +16,8 @@ pub mod draw;
 mod failure;
 #[cfg(feature = "simulator")]
 mod firmware;
+#[cfg(feature = "console")]
+pub mod flash;
 pub mod gaits;
 pub mod groups;
 mod json;

@@ -19,8 +19,6 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
     feature = "parts"
 )))]
 use lizard_host::absent;
-#[cfg(feature = "console")]
-use lizard_host::console;
 #[cfg(feature = "parts")]
 use lizard_host::parts;
 use lizard_host::plain::plain_lines;
@@ -29,6 +27,8 @@ use lizard_host::tune;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
 use lizard_host::{completions, draw, gaits, groups, spring};
+#[cfg(feature = "console")]
+use lizard_host::{console, flash};
 #[cfg(feature = "paper")]
 use lizard_host::{paper, prove};
 
@@ -87,6 +87,8 @@ enum Command {
     Spring(spring::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
+    #[cfg(feature = "console")]
+    Flash(flash::Args),
     #[cfg(feature = "console")]
     #[command(visible_alias = "monitor")]
     Console(console::interactive::ConsoleArgs),
@@ -157,6 +159,8 @@ fn main() -> ExitCode {
         Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),
+        #[cfg(feature = "console")]
+        Command::Flash(args) => flash::run(args),
         #[cfg(feature = "console")]
         Command::Console(args) => console::interactive::console(args),
         #[cfg(feature = "console")]

@@ -4,6 +4,7 @@
 //! A program takes over from its parent which signals it ignores, and a shell without
 //! job control lets what it starts with `&` ignore Ctrl-C. Where these tests run so, a
 //! command would, too, until it sets a handler of its own. A person's does not.
+#![allow(dead_code)] // each test uses a part of it
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;

@@ -252,8 +252,17 @@ impl<P: Read + Write> Link<P> {
 
 /// An error of the system at an open port nearly always means that it is gone.
 fn broken(error: io::Error) -> LinkError {
+    if is_gone(&error) {
+        LinkError::Gone
+    } else {
+        LinkError::Io(error)
+    }
+}
+
+/// Whether an error of the system says that the board was unplugged.
+pub(crate) fn is_gone(error: &io::Error) -> bool {
     // EIO, ENXIO, ENODEV: what Linux says of a USB port without its board.
-    let gone = matches!(error.raw_os_error(), Some(5 | 6 | 19))
+    matches!(error.raw_os_error(), Some(5 | 6 | 19))
         || matches!(
             error.kind(),
             ErrorKind::BrokenPipe
@@ -261,12 +270,7 @@ fn broken(error: io::Error) -> LinkError {
                 | ErrorKind::NotFound
                 | ErrorKind::UnexpectedEof
                 | ErrorKind::ConnectionAborted
-        );
-    if gone {
-        LinkError::Gone
-    } else {
-        LinkError::Io(error)
-    }
+        )
 }
 
 #[cfg(test)]

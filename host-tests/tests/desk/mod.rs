@@ -1,0 +1,64 @@
+//! A board as it is sold, at a port of this machine, for the programs that write one: a
+//! simulated UNO, with the boot loader of a stock UNO in flash, behind a pseudo terminal and
+//! in real time.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use lizard_host_tests::root;
+use lizard_time_limit::LIMIT;
+use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
+
+use crate::shell::Shell;
+
+/// First byte of the boot loader; the firmware ends before it.
+pub const BOOT: usize = 0x7e00;
+
+pub fn boot_loader() -> Image {
+    let elf: PathBuf = root().join("target/flash-test/optiboot.elf");
+    Image::read(elf).expect("`make flash-test` compiles the boot loader")
+}
+
+/// A board at a port of this machine, and what its pins have done.
+pub struct Desk {
+    pub uno: Uno,
+    pub port: Port,
+    pub edges: Vec<Edge>,
+}
+
+impl Desk {
+    pub fn with_a_new_board() -> Self {
+        Self {
+            uno: Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet),
+            port: Port::new().expect("a pseudo terminal"),
+            edges: Vec::new(),
+        }
+    }
+
+    /// The port's name.
+    pub fn name(&self) -> String {
+        self.port.path().display().to_string()
+    }
+
+    /// Lets the board live until the condition holds. False if it never does.
+    pub fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
+        LIMIT.comes(|| {
+            let step = Duration::from_millis(10);
+            self.port
+                .serve(&mut self.uno, step)
+                .expect("the port is well");
+            self.edges.extend(self.uno.take_edges());
+            done(&mut self.uno)
+        })
+    }
+
+    /// Waits until `text` is on the screen; the test fails if it never is.
+    pub fn see(&mut self, shell: &Shell, text: &str) {
+        let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
+        let screen = shell.screen();
+        assert!(
+            seen && screen.contains(text),
+            "waited up to {LIMIT} for {text:?} in\n{screen}"
+        );
+    }
+}

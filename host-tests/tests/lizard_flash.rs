@@ -1,0 +1,243 @@
+//! `lizard flash`, as a person runs it: the program writes a board by its boot loader. The
+//! board is simulated, its boot loader is the real one of a stock UNO, and time is real.
+//!
+//! `make flash-test` runs these tests after it has compiled program and boot loader.
+
+mod desk;
+mod shell;
+
+use std::sync::LazyLock;
+
+use desk::{BOOT, Desk, boot_loader};
+use lizard_host_tests::{FirmwareBench, avr_gcc};
+use lizard_time_limit::LIMIT;
+use shell::Shell;
+use simulated_uno::{Fidelity, Image, Port, Uno};
+
+/// Another program, which never stops talking at the boot loader's speed.
+static TALKER: LazyLock<Image> = LazyLock::new(|| {
+    avr_gcc::c(
+        r#"
+        #include <avr/io.h>
+        #include <util/delay.h>
+        int main(void) {
+            UCSR0A = 1 << U2X0;
+            UCSR0B = 1 << TXEN0;
+            UBRR0L = 16;
+            for (;;) {
+                UDR0 = 0x14;
+                _delay_ms(1);
+            }
+        }
+    "#,
+    )
+});
+
+/// Flash of a board that has the firmware and nothing else.
+fn firmware() -> Vec<u8> {
+    let uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the image loads");
+    uno.flash()[..BOOT].to_vec()
+}
+
+/// `lizard flash` at the desk's port.
+fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
+    let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
+    let name = desk.name();
+    let arguments = [&["flash", name.as_str()], arguments].concat();
+    Shell::start(&lizard, &arguments, &[])
+}
+
+/// The cable is pulled and put into another port.
+fn unplug(desk: &mut Desk) {
+    desk.port = Port::new().expect("a pseudo terminal");
+}
+
+/// Lets the board live until the program has ended. Returns the screen.
+fn end(desk: &mut Desk, shell: &Shell) -> String {
+    let ended = desk.until(|_| shell.has_ended());
+    let screen = shell.screen();
+    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+    screen
+}
+
+/// Addresses below the boot loader where the board's flash is not that of the firmware.
+fn differences(desk: &Desk) -> Vec<usize> {
+    let firmware = firmware();
+    (0..BOOT)
+        .filter(|&at| desk.uno.flash()[at] != firmware[at])
+        .collect()
+}
+
+fn assert_written(desk: &Desk) {
+    let wrong = differences(desk);
+    assert!(
+        wrong.is_empty(),
+        "flash differs from the image at {wrong:x?}"
+    );
+    let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
+    assert!(
+        desk.uno.flash()[BOOT..] == new.flash()[BOOT..],
+        "the boot loader is whole"
+    );
+}
+
+/// A board that has the firmware, as if it had been written.
+fn with_firmware() -> Desk {
+    let mut desk = Desk::with_a_new_board();
+    desk.uno.set_flash(0, &firmware());
+    desk
+}
+
+#[test]
+fn a_blank_board_is_written_and_its_robot_says_what_it_is() {
+    let mut desk = Desk::with_a_new_board();
+    let shell = lizard_flash(&desk, &[]);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("the board has no program\n"), "{screen}");
+    assert!(
+        screen.contains("bytes written and verified, 0 were right"),
+        "{screen}"
+    );
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
+    let mut desk = Desk::with_a_new_board();
+    let talker = TALKER.flash();
+    desk.uno.set_flash(0, &talker);
+    let kept: [u8; 1024] = std::array::from_fn(|at| (at * 7 + at / 256) as u8);
+    desk.uno.set_eeprom(&kept);
+    let shell = lizard_flash(&desk, &[]);
+    // Before the firmware may write a byte of its own.
+    desk.see(&shell, "written and verified");
+    assert!(
+        desk.uno.eeprom() == kept,
+        "the upload has changed the EEPROM"
+    );
+    let screen = end(&mut desk, &shell);
+    let found = format!("the board has another program, of {} bytes\n", talker.len());
+    assert!(screen.contains(&found), "{screen}");
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn a_board_that_has_the_image_is_left_as_it_is() {
+    let mut desk = with_firmware();
+    let shell = lizard_flash(&desk, &[]);
+    let screen = end(&mut desk, &shell);
+    assert!(
+        screen.contains("the board has this firmware already"),
+        "{screen}"
+    );
+    assert!(screen.contains("nothing to write: all"), "{screen}");
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn one_page_that_differs_is_written_alone() {
+    let mut desk = with_firmware();
+    let old = desk.uno.flash()[0x2005];
+    desk.uno.set_flash(0x2005, &[old ^ 0x10]);
+    let shell = lizard_flash(&desk, &[]);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("the board has another program"), "{screen}");
+    // It, and the page where the chip starts.
+    assert!(
+        screen.contains("\n256 bytes written and verified"),
+        "{screen}"
+    );
+    assert_written(&desk);
+}
+
+#[test]
+fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
+    let mut desk = Desk::with_a_new_board();
+    desk.uno.set_flash(0, &TALKER.flash());
+    let shell = lizard_flash(&desk, &[]);
+    // Some pages of the new code are there.
+    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let screen = shell.screen();
+    assert!(
+        half && !shell.has_ended(),
+        "the upload has begun:\n{screen}"
+    );
+    unplug(&mut desk);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("the port is gone"), "{screen}");
+    assert!(
+        screen.contains("half a program now, and does nothing"),
+        "{screen}"
+    );
+    assert!(!differences(&desk).is_empty());
+
+    // Plugged in again: power, then nobody who calls.
+    desk.uno.power_cycle();
+    desk.uno.take_transmitted();
+    desk.uno.take_edges();
+    desk.uno.run_ms(3000);
+    assert!(desk.uno.transmitted().is_empty(), "it says nothing");
+    let edges = desk.uno.take_edges();
+    assert!(edges.is_empty(), "no pin moves: {edges:?}");
+    // These seconds were none on the wall, which a port goes by.
+    unplug(&mut desk);
+
+    let shell = lizard_flash(&desk, &[]);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
+    let mut desk = Desk::with_a_new_board();
+    let shell = lizard_flash(&desk, &[]);
+    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let screen = shell.screen();
+    assert!(
+        half && !shell.has_ended(),
+        "the upload has begun:\n{screen}"
+    );
+    desk.uno.reset();
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("all begins again"), "{screen}");
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn a_byte_that_changes_after_it_was_written_is_written_again() {
+    let mut desk = Desk::with_a_new_board();
+    let shell = lizard_flash(&desk, &[]);
+    let mut changed = false;
+    let ended = desk.until(|uno| {
+        // Long before it is read back.
+        if !changed && uno.flash()[0x280] != 0xff {
+            uno.set_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
+            changed = true;
+        }
+        shell.has_ended()
+    });
+    let screen = shell.screen();
+    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+    assert!(changed, "nothing was written:\n{screen}");
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert_written(&desk);
+}
+
+#[test]
+fn a_board_without_a_boot_loader_that_answers_is_explained() {
+    let mut desk = Desk::with_a_new_board();
+    // A boot loader that does nothing: `rjmp .-2`.
+    desk.uno.set_flash(BOOT as u16, &[0xff, 0xcf]);
+    let shell = lizard_flash(&desk, &[]);
+    let screen = end(&mut desk, &shell);
+    assert!(
+        screen.contains("no boot loader answers. Is it a UNO?"),
+        "{screen}"
+    );
+    assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
+}

@@ -1,0 +1,183 @@
+//! `lizard flash`: the firmware into a UNO, by the boot loader that every UNO has.
+//!
+//! A boot loader is talked to over the same USB cable as the console, but within a second
+//! after a reset, without checksums, and a part of flash is wrong whenever a cable is pulled in
+//! the middle. So what is on the board is read first, only pages that differ are written, all of
+//! them are read back, and the place where the chip starts is written last.
+
+mod chip;
+#[cfg(test)]
+mod double;
+pub mod file;
+mod found;
+pub mod image;
+pub mod serial_board;
+pub mod stk500;
+pub mod upload;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+pub use chip::Chip;
+pub use found::Found;
+
+use crate::console::find::{self, FindError, UsbPort};
+use crate::console::link::{self, Link};
+use crate::{Failure, RobotFile};
+use image::{Image, PAGE};
+use serial_board::SerialBoard;
+use stk500::{Loader, Patience};
+use upload::{Done, Event, Step};
+
+/// Write the firmware to a UNO on USB, by its boot loader
+///
+/// That is what `make firmware` has left for this robot. Says what the board has, writes the pages that differ, reads them back and starts the
+/// firmware. The EEPROM, and the calibration in it, is left as it is.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The board's serial port [default: the one that has a UNO, or the only one]
+    port: Option<String>,
+    /// Write this file of Intel HEX instead of what `make firmware` has left
+    #[arg(long, value_name = "FILE", conflicts_with = "path")]
+    image: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Writes a board.
+///
+/// # Errors
+/// No image, no board, or none that can be written; the sentence says what is in its flash.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let image = match &args.image {
+        Some(path) => file::read(path)?,
+        None => file::image(&args.robot.load()?)?,
+    };
+    let (port, name) = match args.port {
+        Some(port) => (port.clone(), port),
+        None => {
+            let found = choose(&find::usb_ports())?;
+            (found.name.clone(), found.to_string())
+        }
+    };
+    let board = SerialBoard::open(&port)?;
+    eprintln!("lizard: calling the boot loader of the board at {name}");
+    let at = |sentence: String| Failure::Impossible(format!("{name}: {sentence}"));
+    let board = write(board, &image).map_err(|error| at(error.to_string()))?;
+    let banner = greet(board).map_err(|error| {
+        at(format!(
+            "the flash is written and verified, but the firmware is not heard: {error}"
+        ))
+    })?;
+    writeln!(io::stdout(), "{banner}")?;
+    Ok(())
+}
+
+/// The one board of this machine.
+fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
+    find::choose(ports, "flash").map_err(|error| {
+        Failure::Impossible(match error {
+            // Without a simulated one, which others offer.
+            FindError::None { .. } => "no board found: this machine has no USB serial port. \
+                 Connect the UNO by a cable that carries data (some only charge), or name its \
+                 port: lizard flash /dev/ttyACM0"
+                .to_owned(),
+            error => error.to_string(),
+        })
+    })
+}
+
+/// Writes the board and says what is done, with a bar meanwhile. Returns the board, its
+/// firmware starting.
+fn write(board: SerialBoard, image: &Image) -> Result<SerialBoard, Failure> {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %").expect("a template");
+    let bar = ProgressBar::new(0).with_style(style);
+    let mut loader = Loader::new(board, Patience::default());
+    let begin = Instant::now();
+    let done = upload::upload(&mut loader, image, &mut |event| match event {
+        Event::Found(found) => bar.suspend(|| println(&found.to_string())),
+        Event::Again(trouble) => {
+            bar.suspend(|| {
+                eprintln!("lizard: {trouble}; the board is reset, and all begins again")
+            });
+        }
+        Event::Progress(step, done, of) => {
+            bar.set_message(match step {
+                Step::Reading => "reading  ",
+                Step::Writing => "writing  ",
+                Step::Verifying => "verifying",
+            });
+            bar.set_length(of as u64);
+            bar.set_position(done as u64);
+        }
+    });
+    bar.finish_and_clear();
+    println(&summary(done?, begin.elapsed()));
+    Ok(loader.into_board())
+}
+
+/// What was done, as a sentence.
+fn summary(done: Done, time: Duration) -> String {
+    let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE);
+    let seconds = time.as_secs_f64();
+    match written {
+        0 => format!("nothing to write: all {kept} bytes are right; {seconds:.1} s"),
+        _ => format!(
+            "{written} bytes written and verified, {kept} were right already; {seconds:.1} s"
+        ),
+    }
+}
+
+/// To whom nothing can be said any more, the board is written all the same.
+fn println(line: &str) {
+    let _ = writeln!(io::stdout(), "{line}");
+}
+
+/// Waits for the firmware's first line.
+fn greet(board: SerialBoard) -> Result<String, link::LinkError> {
+    let mut link = Link::new(board, link::Patience::default());
+    let banner = link.greet()?;
+    Ok(banner.unwrap_or_else(|| "the robot answers".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_summary_counts_bytes() {
+        let words = |written, kept| {
+            let time = Duration::from_millis(1240);
+            summary(Done { written, kept }, time)
+        };
+        assert_eq!(
+            words(2, 210),
+            "256 bytes written and verified, 26880 were right already; 1.2 s"
+        );
+        assert_eq!(
+            words(0, 212),
+            "nothing to write: all 27136 bytes are right; 1.2 s"
+        );
+    }
+
+    #[test]
+    fn without_a_board_it_says_what_to_connect_and_of_several_that_one_is_to_be_named() {
+        let words = |ports: &[UsbPort]| {
+            let error = choose(ports).expect_err("there is not one");
+            error.to_string()
+        };
+        assert!(words(&[]).ends_with("lizard flash /dev/ttyACM0"));
+        let port = |name: &str| UsbPort {
+            name: name.to_owned(),
+            vendor: 0x2341,
+            product: None,
+        };
+        assert_eq!(
+            words(&[port("COM3"), port("COM4")]),
+            "several boards found: COM3, COM4. Say which one: lizard flash COM3"
+        );
+    }
+}

@@ -1,0 +1,281 @@
+//! Writing an image to a board, so that no moment of it is dangerous.
+//!
+//! A cable may be pulled at any moment, and the chip then starts whatever is in flash: half
+//! a program may drive the servos anywhere. So, before code is changed, the page where the chip
+//! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
+//! other pages are written and read back, and that first page comes last.
+//!
+//! Pages that are right already are left alone: it saves time, and flash wears out (10 000 times,
+//! ATmega328P data sheet, "Features").
+
+use std::fmt;
+
+use super::chip::Chip;
+use super::found::Found;
+use super::image::{BLANK, BOOT, Image, PAGE, Page};
+use super::stk500::{Board, Loader, Trouble};
+
+/// How often a board is reset and all is begun again, when bytes were lost on the way.
+const ATTEMPTS: usize = 3;
+/// `rjmp .-2`: a jump to itself.
+const IDLE: [u8; 2] = [0xff, 0xcf];
+
+/// What is being done with pages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// What is in flash is looked at.
+    Reading,
+    /// Pages are written.
+    Writing,
+    /// What was written is read back.
+    Verifying,
+}
+
+/// What a user is told meanwhile.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// What the board has, once.
+    Found(Found),
+    /// So many pages of so many are done.
+    Progress(Step, usize, usize),
+    /// The board is reset, and all begins again.
+    Again(&'a Trouble),
+}
+
+/// What was done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Done {
+    /// Pages that are different now.
+    pub written: usize,
+    /// Pages that were right before.
+    pub kept: usize,
+}
+
+/// Why a board does not hold the image.
+#[derive(Debug, thiserror::Error)]
+pub enum UploadError {
+    /// No boot loader.
+    #[error(
+        "no boot loader answers. Is it a UNO? Has another program this port open? Is something \
+         wired to D0 or D1? Where USB does not reset the board, press its button just after the \
+         start of this command"
+    )]
+    Nobody,
+    /// Not the chip of a UNO.
+    #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
+    Chip(Chip),
+    /// A byte was written twice and is still another.
+    #[error(
+        "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
+         {read:#04x}. The flash is worn out, or the supply too weak. {left}"
+    )]
+    NotKept {
+        /// Of the byte.
+        address: usize,
+        /// What it should be.
+        written: u8,
+        /// What it is.
+        read: u8,
+        /// What is in flash now.
+        left: Left,
+    },
+    /// The connection failed.
+    #[error("{trouble}. {left}")]
+    Broken {
+        /// How.
+        trouble: Trouble,
+        /// What is in flash now.
+        left: Left,
+    },
+}
+
+/// What a board is left with when an upload ends before its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Left {
+    /// What it had.
+    AsBefore,
+    /// The loop that does nothing, and a part of the code.
+    Idle,
+}
+
+impl fmt::Display for Left {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AsBefore => "Nothing was written: the board has what it had",
+            Self::Idle => {
+                "The board has half a program now, and does nothing. Its boot loader is still \
+                 there: run this command again"
+            }
+        })
+    }
+}
+
+impl From<UploadError> for crate::Failure {
+    fn from(error: UploadError) -> Self {
+        Self::Impossible(error.to_string())
+    }
+}
+
+/// Writes an image to a board, and starts it. Resets the board up to three times, where it does
+/// not answer or bytes are lost on the way.
+///
+/// # Errors
+/// See [`UploadError`].
+pub fn upload<B: Board>(
+    loader: &mut Loader<B>,
+    image: &Image,
+    tell: &mut dyn FnMut(Event<'_>),
+) -> Result<Done, UploadError> {
+    let mut upload = Upload {
+        loader,
+        image,
+        tell,
+        answered: false,
+        found: None,
+        left: Left::AsBefore,
+    };
+    let mut written = vec![false; BOOT / PAGE];
+    for attempt in 1.. {
+        let trouble = match upload.attempt(&mut written) {
+            Ok(()) => break,
+            Err(Stop::Error(error)) => return Err(error),
+            Err(Stop::Trouble(trouble)) => trouble,
+        };
+        if attempt == ATTEMPTS || !trouble.may_pass() {
+            return Err(upload.broken(trouble));
+        }
+        (upload.tell)(Event::Again(&trouble));
+    }
+    let pages = image.pages().len();
+    let written = written.into_iter().filter(|it| *it).count();
+    Ok(Done {
+        written,
+        kept: pages - written,
+    })
+}
+
+/// Why one attempt ended.
+enum Stop {
+    Trouble(Trouble),
+    Error(UploadError),
+}
+
+impl From<Trouble> for Stop {
+    fn from(trouble: Trouble) -> Self {
+        Self::Trouble(trouble)
+    }
+}
+
+struct Upload<'a, B> {
+    loader: &'a mut Loader<B>,
+    image: &'a Image,
+    tell: &'a mut dyn FnMut(Event<'_>),
+    /// The loader has answered once.
+    answered: bool,
+    found: Option<Found>,
+    left: Left,
+}
+
+impl<B: Board> Upload<'_, B> {
+    /// From a reset to the start of the program. Marks what it writes.
+    fn attempt(&mut self, written: &mut [bool]) -> Result<(), Stop> {
+        self.loader.call()?;
+        self.answered = true;
+        let chip = Chip(self.loader.signature()?);
+        if chip != Chip::ATMEGA328P {
+            return Err(Stop::Error(UploadError::Chip(chip)));
+        }
+        let flash = self.look()?;
+        let mut goal = self.image.pages();
+        goal.retain(|page| flash[page.range()] != page.bytes);
+        if !goal.is_empty() {
+            for page in &goal {
+                written[page.address / PAGE] = true;
+            }
+            // Where the chip starts, there was the loop meanwhile.
+            written[0] = true;
+            self.write_pages(goal, &flash)?;
+        }
+        // All is written; the program starts after a second in any case.
+        let _ = self.loader.leave();
+        Ok(())
+    }
+
+    /// Writes pages: the first of flash comes last.
+    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
+        let mut idle = [BLANK; PAGE];
+        idle[..IDLE.len()].copy_from_slice(&IDLE);
+        goal.retain(|page| page.address != 0);
+        self.left = Left::Idle;
+        if !goal.is_empty() && flash[..PAGE] != idle {
+            self.write_page(0, &idle)?;
+        }
+        self.write(&goal)?;
+        let first = self.image.pages().into_iter().take(1);
+        self.write(&first.collect::<Vec<_>>())
+    }
+
+    /// Reads flash: all of it but the boot loader.
+    fn look(&mut self) -> Result<Vec<u8>, Stop> {
+        let mut flash = vec![BLANK; BOOT];
+        let pages = BOOT / PAGE;
+        for (done, bytes) in flash.chunks_mut(PAGE).enumerate() {
+            bytes.copy_from_slice(&self.loader.read_page(done * PAGE)?);
+            (self.tell)(Event::Progress(Step::Reading, done + 1, pages));
+        }
+        if self.found.is_none() {
+            let found = Found::in_flash(&flash, self.image);
+            self.found = Some(found);
+            (self.tell)(Event::Found(found));
+        }
+        Ok(flash)
+    }
+
+    /// Writes pages and reads them back. One that has changed on the way is written again.
+    fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
+        for (done, page) in pages.iter().enumerate() {
+            self.write_page(page.address, &page.bytes)?;
+            (self.tell)(Event::Progress(Step::Writing, done + 1, pages.len()));
+        }
+        for (done, page) in pages.iter().enumerate() {
+            let mut read = self.loader.read_page(page.address)?;
+            if read != page.bytes {
+                self.write_page(page.address, &page.bytes)?;
+                read = self.loader.read_page(page.address)?;
+            }
+            if let Some(at) = difference(&read, &page.bytes) {
+                return Err(Stop::Error(UploadError::NotKept {
+                    address: page.address + at,
+                    written: page.bytes[at],
+                    read: read[at],
+                    left: self.left,
+                }));
+            }
+            (self.tell)(Event::Progress(Step::Verifying, done + 1, pages.len()));
+        }
+        Ok(())
+    }
+
+    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE]) -> Result<(), Stop> {
+        assert!(address < BOOT, "an image ends before the boot loader");
+        Ok(self.loader.write_page(address, bytes)?)
+    }
+
+    fn broken(&self, trouble: Trouble) -> UploadError {
+        match trouble {
+            Trouble::Silent if !self.answered => UploadError::Nobody,
+            trouble => UploadError::Broken {
+                trouble,
+                left: self.left,
+            },
+        }
+    }
+}
+
+/// Where two pages differ first.
+fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
+    a.iter().zip(b).position(|(a, b)| a != b)
+}
+
+#[cfg(test)]
+mod tests;
