@@ -34,6 +34,13 @@ const PAPER: [&str; 10] = [
 pub fn explain(words: &[OsString]) -> Failure {
     let name = words.first().map(|word| word.to_string_lossy());
     let name = name.as_deref().unwrap_or_default();
+    let name = match name {
+        "fk" => "solve",
+        "ik" => "inverse",
+        "jacobian" => "velocity",
+        "monitor" => "console",
+        name => name,
+    };
     let draws = name == "replay" && cfg!(feature = "console");
     // It searches on all cores, as the commands that compute do.
     let searches = name == "tune" && cfg!(feature = "simulator");
@@ -70,6 +77,7 @@ mod tests {
         );
         assert!(words("backup").contains("without the commands for a board on USB"));
         assert!(words("solve").contains("without the commands that compute"));
+        assert!(words("ik").starts_with("`lizard inverse` is missing: "));
         assert!(words("parts").contains("without the parts to print"));
         assert_eq!(
             words("fly"),

@@ -15,7 +15,7 @@ use crate::sim::supplies;
 /// console promises much less.
 const PATIENCE_MS: u64 = 200;
 /// The longest wait for the banner after power-on, ms.
-const BANNER_MS: u64 = 500;
+pub(crate) const BANNER_MS: u64 = 500;
 /// Cycles that a byte of the sender takes, rounded up.
 const BYTE_CYCLES: u64 = 1400;
 

@@ -14,8 +14,9 @@ pub enum Failure {
     /// The input is well formed, but what it asks for does not exist.
     #[error("{0}")]
     Impossible(String),
-    /// Reading or writing failed.
-    #[error("{0}")]
+    /// Standard input, standard output or the terminal failed. What concerns a file or
+    /// a port is said with its name.
+    #[error("standard input or output: {0}")]
     Io(#[from] io::Error),
 }
 

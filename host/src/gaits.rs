@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::json;
 use crate::pose_args::ANGLES;
+use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
 
 /// Check every gait of robot.toml and predict where it goes.
@@ -68,8 +69,9 @@ fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
     let Some(gait) = robot.gait(name) else {
         let known: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         return Err(Failure::Input(format!(
-            "--trace {name}: the gaits are {}",
-            known.join(", ")
+            "--trace {name}: the gaits are {}{}",
+            known.join(", "),
+            did_you_mean(name, known)
         )));
     };
     let mut text = format!("seconds,{}\n", ANGLES.join(","));

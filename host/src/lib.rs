@@ -9,18 +9,23 @@ pub mod absent;
 pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
+pub mod completions;
 #[cfg(feature = "console")]
 pub mod console;
 pub mod draw;
 mod failure;
+#[cfg(feature = "simulator")]
+mod firmware;
 #[cfg(feature = "console")]
 pub mod flash;
 pub mod gaits;
+pub mod groups;
 mod json;
 #[cfg(feature = "paper")]
 pub mod paper;
 #[cfg(feature = "parts")]
 pub mod parts;
+pub mod plain;
 pub mod pose_args;
 #[cfg(feature = "paper")]
 pub mod prove;
@@ -28,13 +33,13 @@ mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
 pub mod spring;
+mod suggestion;
 #[cfg(all(feature = "simulator", feature = "paper"))]
 pub mod tune;
 #[cfg(feature = "simulator")]
 pub mod twin;
 #[cfg(feature = "simulator")]
 mod variation;
-#[cfg(feature = "console")]
 mod whole_file;
 
 pub use failure::Failure;

@@ -8,9 +8,10 @@
     feature = "parts"
 )))]
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(not(all(
     feature = "simulator",
     feature = "paper",
@@ -20,13 +21,14 @@ use clap::{Parser, Subcommand};
 use lizard_host::absent;
 #[cfg(feature = "parts")]
 use lizard_host::parts;
+use lizard_host::plain::plain_lines;
 #[cfg(all(feature = "simulator", feature = "paper"))]
 use lizard_host::tune;
 #[cfg(feature = "simulator")]
 use lizard_host::{bench, sim, twin};
+use lizard_host::{completions, draw, gaits, groups, spring};
 #[cfg(feature = "console")]
 use lizard_host::{console, flash};
-use lizard_host::{draw, gaits, spring};
 #[cfg(feature = "paper")]
 use lizard_host::{paper, prove};
 
@@ -49,10 +51,13 @@ struct Cli {
 enum Command {
     Gaits(gaits::Args),
     #[cfg(feature = "paper")]
+    #[command(visible_alias = "fk")]
     Solve(paper::solve::Args),
     #[cfg(feature = "paper")]
+    #[command(visible_alias = "ik")]
     Inverse(paper::inverse::Args),
     #[cfg(feature = "paper")]
+    #[command(visible_alias = "jacobian")]
     Velocity(paper::velocity::Args),
     #[cfg(feature = "paper")]
     Singularity(paper::singularity::Args),
@@ -85,6 +90,7 @@ enum Command {
     #[cfg(feature = "console")]
     Flash(flash::Args),
     #[cfg(feature = "console")]
+    #[command(visible_alias = "monitor")]
     Console(console::interactive::ConsoleArgs),
     #[cfg(feature = "console")]
     Calibrate(console::calibrate::Args),
@@ -96,6 +102,8 @@ enum Command {
     Record(console::interactive::RecordArgs),
     #[cfg(all(feature = "console", feature = "simulator"))]
     Replay(console::replay::Args),
+    Completions(completions::CompletionsArgs),
+    Man(completions::ManArgs),
     /// A command that this build may lack.
     #[cfg(not(all(
         feature = "simulator",
@@ -107,8 +115,15 @@ enum Command {
     Other(Vec<OsString>),
 }
 
+/// All commands and options, the commands in groups.
+fn program() -> clap::Command {
+    groups::grouped(Cli::command())
+}
+
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let mut matches = program().get_matches();
+    let cli = Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
+    let done = match cli.command {
         Command::Gaits(args) => gaits::run(args),
         #[cfg(feature = "paper")]
         Command::Solve(args) => paper::solve::run(args),
@@ -158,6 +173,8 @@ fn main() -> ExitCode {
         Command::Record(args) => console::interactive::record(args),
         #[cfg(all(feature = "console", feature = "simulator"))]
         Command::Replay(args) => console::replay::run(args),
+        Command::Completions(args) => completions::completions(args, program()),
+        Command::Man(args) => completions::man(args, program()),
         #[cfg(not(all(
             feature = "simulator",
             feature = "paper",
@@ -170,7 +187,9 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_silent() => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("lizard: {failure}");
+            // It may quote a file or a board. A terminal that is gone is no reason to panic.
+            let words = plain_lines(&failure.to_string());
+            let _ = writeln!(io::stderr(), "lizard: {words}");
             ExitCode::from(failure.exit_code())
         }
     }

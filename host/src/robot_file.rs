@@ -1,6 +1,6 @@
 //! Which robot a subcommand is about.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lizard_robot::Robot;
 
@@ -30,17 +30,45 @@ impl RobotFile {
     /// # Errors
     /// The file is missing or wrong.
     pub fn load(&self) -> Result<Robot, Failure> {
-        if let Some(path) = &self.path {
-            return Ok(Robot::load(path)?);
-        }
-        let here = std::env::current_dir()?;
-        let found = here
-            .ancestors()
-            .map(|folder| folder.join("robot.toml"))
-            .find(|path| path.is_file());
-        Ok(match found {
+        Ok(match self.found()? {
             Some(path) => Robot::load(path)?,
             None => Robot::parse(BUILT_IN)?,
         })
     }
+
+    /// The file that was named with `--robot`.
+    #[must_use]
+    pub fn given(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// What the user is told where the robot is from.
+    ///
+    /// # Errors
+    /// This folder has no name any more.
+    pub fn name(&self) -> Result<String, Failure> {
+        Ok(match self.found()? {
+            Some(path) => path.display().to_string(),
+            None => "the robot.toml that this program was built with".to_owned(),
+        })
+    }
+
+    /// The file that is read; none for the one that is built in.
+    fn found(&self) -> Result<Option<PathBuf>, Failure> {
+        if let Some(path) = &self.path {
+            return Ok(Some(path.clone()));
+        }
+        let here = here()?;
+        let mut above = here.ancestors().map(|folder| folder.join("robot.toml"));
+        Ok(above.find(|path| path.is_file()))
+    }
+}
+
+/// This folder.
+///
+/// # Errors
+/// It was removed, or may not be read.
+pub(crate) fn here() -> Result<PathBuf, Failure> {
+    std::env::current_dir()
+        .map_err(|error| Failure::Impossible(format!("this folder has no path: {error}")))
 }

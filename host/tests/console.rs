@@ -108,6 +108,19 @@ fn terminal() -> (File, OwnedFd, PathBuf) {
     (File::from(ours), theirs.into(), path)
 }
 
+/// [`terminal`], 100 columns wide.
+fn wide_terminal() -> (File, OwnedFd) {
+    let (ours, theirs, _) = terminal();
+    let size = Winsize {
+        ws_row: 30,
+        ws_col: 100,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    };
+    tcsetwinsize(&theirs, size).expect("it takes a size");
+    (ours, theirs)
+}
+
 /// A program at a terminal of its own, 100 columns wide.
 struct AtTerminal {
     child: Child,
@@ -118,14 +131,7 @@ struct AtTerminal {
 
 impl AtTerminal {
     fn start(mut command: Command) -> Self {
-        let (ours, theirs, _) = terminal();
-        let size = Winsize {
-            ws_row: 30,
-            ws_col: 100,
-            ws_xpixel: 0,
-            ws_ypixel: 0,
-        };
-        tcsetwinsize(&theirs, size).expect("it takes a size");
+        let (ours, theirs) = wide_terminal();
         let end = || Stdio::from(theirs.try_clone().expect("another of it"));
         let child = command
             .stdin(end())
@@ -184,7 +190,14 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["console", "--sim", "--elf", ELF];
     let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
-    assert_eq!(code, Some(0), "{error}");
+    assert_eq!(code, Some(1), "a line was refused: {error}");
+    assert!(
+        error.ends_with(
+            "lizard: the robot did not take 1 of 3 lines, the first `fly`: err 1 unknown command, \
+             send help for the list\n"
+        ),
+        "{error}"
+    );
     assert!(out.starts_with("# lizard "), "{out}");
     let answers: Vec<&str> = out.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(
@@ -197,6 +210,9 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
     );
     assert!(out.contains("\n# A4 trim 0.00 limit "), "{out}");
     assert!(error.contains("(a simulated UNO)"), "which port: {error}");
+
+    let (_, error, code) = run(folder.path(), &arguments, "cal\nstop\n");
+    assert_eq!(code, Some(0), "all lines were taken: {error}");
 }
 
 #[test]
@@ -299,7 +315,8 @@ fn a_kept_session_is_drawn_and_summed_up() {
         kept.contains(r#""answer":"err "#) && kept.matches(r#""pose":"#).count() > 50
     });
     drop(stdin);
-    assert!(LIMIT.end_of(&mut child).expect("it ends").success());
+    let status = LIMIT.end_of(&mut child).expect("it ends");
+    assert_eq!(status.code(), Some(1), "a line was refused");
 
     let (out, error, code) = run(here, &["replay", "a.jsonl", "--svg", "a.svg"], "");
     assert_eq!(code, Some(0), "{error}");
@@ -406,4 +423,158 @@ fn wrong_input_is_a_sentence_and_starts_nothing() {
         assert!(error.starts_with(words), "{error}");
         assert_eq!(code, Some(2), "{error}");
     }
+}
+
+#[test]
+fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_board() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
+    std::os::unix::fs::symlink("a-file", &other).expect("a link");
+    let name = other.display().to_string();
+    let (_, error, code) = run(folder.path(), &["sim", "--elf", ELF, "--pty", &name], "");
+    assert_eq!(
+        error.trim(),
+        format!("lizard: {name} is there already and no link to a pseudo terminal")
+    );
+    assert_eq!(code, Some(2));
+    assert_eq!(
+        fs::read_link(&other).expect("it is left"),
+        Path::new("a-file")
+    );
+
+    // What a run that was killed leaves behind.
+    std::os::unix::fs::symlink("/dev/pts/999999", &own).expect("a link");
+    let name = own.display().to_string();
+    let mut child = lizard(folder.path(), &["sim", "--elf", ELF, "--pty", &name])
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    LIMIT.until("a port at the end of the link", || own.exists());
+    let id = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs");
+    let status = LIMIT.end_of(&mut child).expect("it ends");
+    let signal = std::os::unix::process::ExitStatusExt::signal(&status);
+    assert_eq!(signal, Some(15), "as it ends without a link");
+    assert!(!own.is_symlink(), "the link is gone");
+}
+
+#[test]
+fn a_picture_is_not_poured_over_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut person = AtTerminal::start(lizard(folder.path(), &["draw", "--wiring"]));
+    person.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
+    assert!(!person.text.contains("<svg"));
+    assert_eq!(person.exit_code(), Some(2));
+}
+
+/// The state of a process, as `ps` has it: S asleep, R running, T stopped.
+fn state(child: &Child) -> char {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("it is there");
+    let (_, after) = stat.rsplit_once(") ").expect("its name ends");
+    after.chars().next().expect("a letter")
+}
+
+/// Whether keys come line by line and are shown, as a shell wants its terminal.
+fn is_cooked(terminal: &File) -> bool {
+    let modes = rustix::termios::tcgetattr(terminal)
+        .expect("it is a terminal")
+        .local_modes;
+    modes.contains(rustix::termios::LocalModes::ICANON | rustix::termios::LocalModes::ECHO)
+}
+
+#[test]
+fn control_z_gives_the_terminal_back_and_fg_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let port = uno.port();
+    for (command, first, keys, then) in [
+        ("console", "no fault", "stop\r", "ok stop"),
+        ("calibrate", "before you begin", "\r", "fit the horns"),
+    ] {
+        let mut person = AtTerminal::start(lizard(folder.path(), &[command, &port]));
+        person.wait_for(first);
+        assert!(!is_cooked(&person.keys), "{command}");
+        person.press("\x1a");
+        LIMIT.until("a stopped program", || state(&person.child) == 'T');
+        assert!(is_cooked(&person.keys), "{command}");
+        let id = rustix::process::Pid::from_child(&person.child);
+        rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("it is there");
+        LIMIT.until("keys one by one", || !is_cooked(&person.keys));
+        person.press(keys);
+        person.wait_for(then);
+        person.press(if command == "console" { "\x04" } else { "q" });
+        assert_eq!(person.exit_code(), Some(0), "{command}");
+    }
+}
+
+#[test]
+fn a_program_whose_terminal_goes_away_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let port = uno.port();
+    for (command, first) in [("console", "no fault"), ("calibrate", "before you begin")] {
+        let (mut ours, theirs) = wide_terminal();
+        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+        let mut child = lizard(folder.path(), &[command, &port])
+            .stdin(end())
+            .stdout(end())
+            .stderr(end())
+            .spawn()
+            .expect("the program starts");
+        let seen = LIMIT.within(first, move || {
+            let (mut text, mut bytes) = (String::new(), [0; 4096]);
+            while !text.contains(first) {
+                let count = ours.read(&mut bytes).expect("it is shown");
+                text.push_str(&String::from_utf8_lossy(&bytes[..count]));
+            }
+            // And the terminal is gone: nobody else has this end.
+            drop(ours);
+            text
+        });
+        assert!(seen.contains(first));
+        let status = LIMIT.end_of(&mut child).expect("it ends");
+        assert_eq!(status.code(), Some(0), "{command}");
+    }
+}
+
+#[test]
+fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["console", "--sim", "--elf", ELF];
+    let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
+    person.wait_for("no fault");
+    // The first gait that moves, whatever robot it is.
+    let gaits = run(folder.path(), &arguments, "help\n").0;
+    let gaits = gaits
+        .lines()
+        .find_map(|line| line.strip_prefix("# gaits: "));
+    let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
+    let gait = gait.expect("it has one").to_owned();
+    person.press(&format!("{gait}\r"));
+    person.wait_for(&format!("ok {gait}"));
+    person.wait_for(&format!("{gait}  "));
+    person.press("\x04");
+    LIMIT.until("the end of the program", || {
+        person.child.try_wait().expect("it is ours").is_some()
+    });
+    LIMIT.comes(|| {
+        while let Ok(bytes) = person.seen.try_recv() {
+            person.text.push_str(&String::from_utf8_lossy(&bytes));
+        }
+        person.text.contains("\x1b[?2004l")
+    });
+    assert!(!person.text.contains("goes on"), "{:?}", person.text);
+}
+
+#[test]
+fn what_a_robots_file_says_cannot_command_the_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = include_str!("../../robots/paper.toml");
+    let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
+    fs::write(folder.path().join("bad.toml"), text).expect("it is written");
+    let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
+    assert_eq!(code, Some(2));
+    assert!(error.contains("]0;owned"), "{error}");
+    let controls = error.trim_end().matches(|c: char| c.is_control()).count();
+    assert_eq!(controls, 0, "{error:?}");
 }

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{Failure, RobotFile, sim};
+use crate::{Failure, RobotFile, firmware};
 
 pub use budget::{Bound, Row, rows};
 pub use figures::Figures;
@@ -59,7 +59,7 @@ impl<'a> Judged<'a> {
 /// No firmware, a firmware that dies or does not answer, a broken budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let elf = sim::elf(args.elf.as_deref())?;
+    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
     let progress = ProgressBar::new_spinner();
     progress.set_style(style.expect("the template is well formed"));

@@ -7,6 +7,7 @@ use serialport::SerialPort;
 use super::find;
 use super::link::{Link, LinkError, Patience};
 use super::port;
+use crate::plain::plain;
 use crate::{Failure, RobotFile};
 
 /// Which board a subcommand is about.
@@ -67,12 +68,12 @@ impl Connect {
 #[cfg(all(feature = "simulator", target_os = "linux"))]
 fn simulated(
     elf: Option<&std::path::Path>,
-    robot: &RobotFile,
+    file: &RobotFile,
     command: &'static str,
 ) -> Result<Finder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
-    let robot = robot.load()?;
-    let elf = crate::sim::elf(elf)?;
+    let robot = file.load()?;
+    let elf = crate::firmware::of_robot(elf, file, &robot)?;
     let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
     crate::sim::supplies::connect(&mut uno, &robot);
@@ -113,7 +114,8 @@ impl Finder {
             None => {
                 let found = find::choose(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
-                (found.name.clone(), found.to_string())
+                // What the board calls itself is the board's word.
+                (found.name.clone(), plain(&found.to_string()))
             }
         };
         Ok(Connection {
@@ -131,6 +133,16 @@ impl Finder {
         eprintln!("lizard: waiting for the board at {}", board.name);
         let banner = board.greet()?;
         Ok((board, banner))
+    }
+
+    /// Whether the board ends with this program.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        #[cfg(all(feature = "simulator", target_os = "linux"))]
+        let simulated = self.simulated.is_some();
+        #[cfg(not(all(feature = "simulator", target_os = "linux")))]
+        let simulated = false;
+        simulated
     }
 
     #[cfg(all(feature = "simulator", target_os = "linux"))]

@@ -14,8 +14,10 @@ use super::history;
 use super::link::LinkError;
 use super::prompt::{Outcome, Prompt};
 use super::recorder::{self, Event, FORMAT, Recorder};
+use super::refusals::Refusals;
 use super::screen::Screen;
 use super::session::Session;
+use super::terminal;
 use super::turn_error::TurnError;
 use crate::Failure;
 
@@ -26,7 +28,7 @@ use crate::Failure;
 /// at the bottom shows gait, pose, smallest margin, supply and faults; for that the
 /// robot is asked for its `status` twice a second, which also keeps `boot` and
 /// `deadman` from acting. With standard input from a file or a pipe its lines are
-/// sent one after another.
+/// sent one after another; if the robot does not take one, the exit code is 1.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
     #[command(flatten)]
@@ -78,6 +80,7 @@ fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
         session: Session::new(Instant::now(), true, file.is_some()),
         recorder: None,
         mark: "",
+        refusals: Refusals::default(),
     };
     if let Some(path) = file {
         talk.mark = "REC  ";
@@ -92,7 +95,11 @@ fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
     }
     let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        talk.with_a_person(finder, board, &first)
+        match talk.with_a_person(finder, board, &first) {
+            // The person has left with the terminal.
+            Err(Failure::Io(_)) if !terminal::is_there() => Ok(()),
+            ended => ended,
+        }
     } else {
         talk.with_a_script(board, &first)
     }
@@ -103,6 +110,7 @@ struct Talk {
     session: Session,
     recorder: Option<FileRecorder>,
     mark: &'static str,
+    refusals: Refusals,
 }
 
 impl Talk {
@@ -125,15 +133,18 @@ impl Talk {
                 show(&line)?;
             }
         }
-        if let Some(line) = self.session.overdue(Instant::now()) {
+        let overdue = self.session.overdue(Instant::now());
+        self.keep()?;
+        if let Some(line) = overdue {
+            self.refusals.silence();
             show(&line)?;
         }
-        self.keep()?;
         Ok(())
     }
 
-    fn keep(&mut self) -> io::Result<()> {
+    fn keep(&mut self) -> Result<(), Failure> {
         let said = self.session.take_said();
+        said.iter().for_each(|said| self.refusals.hear(said));
         if let Some(recorder) = &mut self.recorder {
             let now = Instant::now();
             for said in said {
@@ -166,7 +177,10 @@ impl Talk {
             let shown = self.turn(&mut board, |line| writeln!(out, "{line}"));
             shown.map_err(|error| failure(error, &board))?;
         }
-        Ok(())
+        if let Some(recorder) = &mut self.recorder {
+            recorder.flush()?;
+        }
+        self.refusals.verdict()
     }
 
     fn with_a_person(
@@ -213,16 +227,21 @@ impl Talk {
             .session
             .status()
             .is_some_and(super::status::Status::walks)
+            && board.is_some()
+            && !finder.is_simulated()
         {
-            println!("the robot goes on with its gait");
+            // The terminal may be gone; then nobody is left to be told.
+            let _ = writeln!(io::stdout(), "the robot goes on with its gait");
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.flush()?;
         }
         failed.map_or(Ok(()), Err)
     }
 
     /// Takes the keys that have been pressed; true if the person leaves.
     fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
-        // A terminal that has been closed is none; it would be read for ever.
-        if !std::io::stdin().is_terminal() {
+        if !terminal::is_there() {
             return Ok(true);
         }
         while event::poll(Duration::ZERO)? {
@@ -235,6 +254,11 @@ impl Talk {
                 match outcome {
                     Outcome::Edited => {}
                     Outcome::Leave => return Ok(true),
+                    Outcome::Stop => {
+                        screen.leave()?;
+                        terminal::stop()?;
+                        screen.enter()?;
+                    }
                     Outcome::Line(line) => {
                         screen.print(&format!("> {line}"))?;
                         self.session.say(&line);
@@ -273,6 +297,7 @@ fn failure(error: TurnError, board: &Connection) -> Failure {
     match error {
         TurnError::Link(error) => board.failure(&error),
         TurnError::Io(error) => error.into(),
+        TurnError::File(failure) => failure,
     }
 }
 

@@ -19,9 +19,11 @@ pub mod link;
 pub mod port;
 pub mod prompt;
 pub mod recorder;
+mod refusals;
 #[cfg(feature = "simulator")]
 pub mod replay;
 mod screen;
 pub mod session;
 pub mod status;
+mod terminal;
 mod turn_error;

@@ -16,6 +16,8 @@ pub enum Outcome {
     Line(String),
     /// The person wants to leave.
     Leave,
+    /// The program is to stop until the shell lets it go on.
+    Stop,
 }
 
 /// An input line.
@@ -54,6 +56,7 @@ impl Prompt {
                 }
                 self.input.handle(tui_input::InputRequest::DeleteNextChar);
             }
+            KeyCode::Char('z') if control => return Outcome::Stop,
             KeyCode::Up => self.go(self.at.saturating_sub(1)),
             KeyCode::Char('p') if control => self.go(self.at.saturating_sub(1)),
             KeyCode::Down => self.go(self.at + 1),

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::session::Said;
 use super::status::angles;
-use crate::Failure;
-use crate::json;
+use crate::plain::plain;
+use crate::{Failure, json, whole_file};
 
 /// What the first line's `format` says. The number rises when a key changes its
 /// meaning.
@@ -61,6 +61,8 @@ pub enum Event {
 /// Writes a session.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
+    /// What the user is told where it writes.
+    name: String,
     out: W,
     begin: Instant,
 }
@@ -70,31 +72,66 @@ pub struct Recorder<W: Write> {
 /// # Errors
 /// It is there already, or cannot be made.
 pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
-    let name = path.display();
+    let name = path.display().to_string();
     match File::create_new(path) {
-        Ok(file) => Ok(Recorder::new(BufWriter::new(file), Instant::now())),
+        Ok(file) => Ok(Recorder::new(name, BufWriter::new(file), Instant::now())),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
             "{name} is there already; name a new file for the session"
         ))),
-        Err(error) => Err(Failure::Impossible(format!("cannot write {name}: {error}"))),
+        Err(error) => Err(whole_file::cannot(path, &error)),
     }
 }
 
 impl<W: Write> Recorder<W> {
-    /// A session that begins now.
-    pub fn new(out: W, begin: Instant) -> Self {
-        Self { out, begin }
+    /// A session that begins now, in a file of this name.
+    pub fn new(name: String, out: W, begin: Instant) -> Self {
+        Self { name, out, begin }
     }
 
     /// Writes an event. All but poses are in the file at once.
     ///
     /// # Errors
-    /// Writing failed.
-    pub fn write(&mut self, now: Instant, event: Event) -> io::Result<()> {
+    /// Writing failed; the sentence names the file.
+    pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
         let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
-        json::line(&mut self.out, &Entry { ms, event })?;
-        if is_pose { Ok(()) } else { self.out.flush() }
+        json::line(&mut self.out, &Entry { ms, event }).map_err(|error| self.cannot(&error))?;
+        if is_pose { Ok(()) } else { self.flush() }
+    }
+
+    /// Puts all that was written into the file.
+    ///
+    /// # Errors
+    /// As [`Recorder::write`].
+    pub fn flush(&mut self) -> Result<(), Failure> {
+        self.out.flush().map_err(|error| self.cannot(&error))
+    }
+
+    fn cannot(&self, error: &io::Error) -> Failure {
+        whole_file::cannot(Path::new(&self.name), error)
+    }
+}
+
+impl Event {
+    /// The event with its texts fit for a terminal: a file may hold anything.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        match self {
+            Self::Begin {
+                format,
+                port,
+                banner,
+            } => Self::Begin {
+                format: plain(&format),
+                port: plain(&port),
+                banner: banner.as_deref().map(plain),
+            },
+            Self::Sent(line) => Self::Sent(plain(&line)),
+            Self::Answer(line) => Self::Answer(plain(&line)),
+            Self::Note(line) => Self::Note(plain(&line)),
+            Self::Status(line) => Self::Status(plain(&line)),
+            Self::Pose { .. } | Self::Gone => self,
+        }
     }
 }
 
@@ -128,7 +165,7 @@ mod tests {
     fn each_event_is_a_line_of_json_with_its_time() {
         let begin = Instant::now();
         let mut out = Vec::new();
-        let mut recorder = Recorder::new(&mut out, begin);
+        let mut recorder = Recorder::new("a".to_owned(), &mut out, begin);
         let events = [
             Event::Begin {
                 format: FORMAT.to_owned(),
@@ -171,5 +208,15 @@ mod tests {
         let file = tempfile::NamedTempFile::new().expect("a file");
         let words = create(file.path()).expect_err("it is there").to_string();
         assert!(words.ends_with("is there already; name a new file for the session"));
+    }
+
+    #[test]
+    fn a_disk_that_is_full_is_said_with_the_name_of_the_file() {
+        let full: &mut [u8] = &mut [0; 10];
+        let mut recorder = Recorder::new("a.jsonl".to_owned(), full, Instant::now());
+        let event = Event::Sent("walk".to_owned());
+        let words = recorder.write(Instant::now(), event).expect_err("no room");
+        let words = words.to_string();
+        assert!(words.starts_with("cannot write a.jsonl: "), "{words}");
     }
 }

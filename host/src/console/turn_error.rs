@@ -3,14 +3,17 @@
 use std::io;
 
 use super::link::LinkError;
+use crate::Failure;
 
 /// The connection or the terminal has failed.
 #[derive(Debug)]
 pub enum TurnError {
     /// The connection to the board.
     Link(LinkError),
-    /// The terminal, or a file of the session.
+    /// The terminal.
     Io(io::Error),
+    /// The file of the session.
+    File(Failure),
 }
 
 impl From<LinkError> for TurnError {
@@ -22,5 +25,11 @@ impl From<LinkError> for TurnError {
 impl From<io::Error> for TurnError {
     fn from(error: io::Error) -> Self {
         Self::Io(error)
+    }
+}
+
+impl From<Failure> for TurnError {
+    fn from(failure: Failure) -> Self {
+        Self::File(failure)
     }
 }

@@ -9,10 +9,10 @@ mod top_view;
 mod uno;
 mod wiring;
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
-use crate::{Failure, PoseArgs, RobotFile};
+use crate::{Failure, PoseArgs, RobotFile, whole_file};
 
 pub use horns::horns;
 pub use labels::pin_name;
@@ -25,7 +25,8 @@ pub use wiring::wiring;
 /// or the angles at which the cranks are fitted.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// Where the picture goes [default: standard output]
+    /// Where the picture goes [default: standard output,
+    /// unless that is a terminal]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Leave out names and measures
@@ -48,6 +49,13 @@ pub struct Args {
 /// # Errors
 /// A pose that the robot cannot have, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
+    if args.output.is_none() && io::stdout().is_terminal() {
+        return Err(Failure::Input(
+            "the picture is SVG, which a terminal does not show; --output lizard.svg writes it to \
+             a file"
+                .to_owned(),
+        ));
+    }
     let robot = args.robot.load()?;
     let picture = if args.wiring {
         wiring(&robot)
@@ -62,9 +70,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         top_view(&robot, &solution, !args.plain)
     };
     match args.output {
-        Some(path) => std::fs::write(&path, picture).map_err(|error| {
-            Failure::Impossible(format!("cannot write {}: {error}", path.display()))
-        }),
+        Some(path) => whole_file::write_picture(&path, picture.as_bytes()),
         None => Ok(io::stdout().lock().write_all(picture.as_bytes())?),
     }
 }

@@ -2,7 +2,6 @@
 
 pub mod fit;
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,7 +10,7 @@ use lizard_parts::{Assembly, Bill, File, Unfit, coupon, guide, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotFile, whole_file};
 
 /// Make the parts of the robot: files to print and to cut, what to buy, how to build it
 ///
@@ -149,13 +148,7 @@ fn said(bill: &Bill, robot: &Robot) -> String {
 fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
     for file in files {
         let path = folder.join(&file.path);
-        let cannot = |error: io::Error| {
-            Failure::Impossible(format!("cannot write {}: {error}", path.display()))
-        };
-        if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(cannot)?;
-        }
-        fs::write(&path, &file.bytes).map_err(cannot)?;
+        whole_file::write_picture(&path, &file.bytes)?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::session::{DialogueLine, Sender};
+use crate::plain::plain;
 
 /// Lines of a run of `# t=` lines that are printed before the rest is counted.
 const SHOWN: usize = 3;
@@ -41,7 +42,12 @@ impl Printer {
             Sender::User => ">",
             Sender::Robot => " ",
         };
-        writeln!(out, "{:>9.3} s  {mark} {}", line.ms / 1000.0, line.text)?;
+        writeln!(
+            out,
+            "{:>9.3} s  {mark} {}",
+            line.ms / 1000.0,
+            plain(&line.text)
+        )?;
         out.flush()
     }
 

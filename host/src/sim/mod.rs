@@ -25,8 +25,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
-use crate::json;
-use crate::{Failure, RobotFile};
+use crate::suggestion::did_you_mean;
+use crate::{Failure, RobotFile, firmware, json, whole_file};
 use analysis::Run;
 use dialogue::Printer;
 use report::Report;
@@ -119,13 +119,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
             Some(loader) => served::as_sold(loader, fidelity)?,
-            None => load(&elf(args.elf.as_deref())?, fidelity)?,
+            None => load(
+                &firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?,
+                fidelity,
+            )?,
         };
         supplies::connect(&mut uno, &robot);
         return served::until_interrupted(uno, link.as_deref());
     }
     let script = script(&args, &robot)?;
-    let elf = elf(args.elf.as_deref())?;
+    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = load(&elf, fidelity)?;
     supplies::connect(&mut uno, &robot);
     let mut kept = Vec::new();
@@ -136,10 +139,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let commands = commands(&robot, &recording);
     let (robot, log) = (&robot, &recording.frames);
     let frames = Run { robot, log };
-    write_file(
-        &args.svg,
-        timeline::draw(frames, &spans, &timeline::SIMULATED),
-    )?;
+    let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
+    whole_file::write_picture(&args.svg, picture.as_bytes())?;
     let report = Report {
         elf: elf.display().to_string(),
         fidelity: match fidelity {
@@ -226,7 +227,14 @@ fn ended(state: &State) -> String {
     match state {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
-        State::Crashed { pc, message } => format!("the firmware crashed at {pc:#06x}: {message}"),
+        State::Crashed { pc, message } => {
+            // The simulator's name for it, where it has no words.
+            let why = match message.as_str() {
+                "avr_sadly_crashed" => "no such instruction or address",
+                words => words,
+            };
+            format!("the firmware crashed at {pc:#06x}: {why}")
+        }
         State::Off => "the board has no power".to_owned(),
     }
 }
@@ -244,9 +252,10 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         && robot.gait(gait).is_none()
     {
         let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
-        let names = names.join(", ");
         return Err(Failure::Input(format!(
-            "robot.toml has no gait `{gait}`; it has {names}"
+            "robot.toml has no gait `{gait}`; it has {}{}",
+            names.join(", "),
+            did_you_mean(gait, names)
         )));
     }
     let ms = given.unwrap_or(12_000);
@@ -282,27 +291,6 @@ fn script_text(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-/// The firmware: the one given, or the one that `make firmware` leaves.
-pub(crate) fn elf(given: Option<&Path>) -> Result<PathBuf, Failure> {
-    const BUILT: &str = "target/avr-atmega328p/release/lizard.elf";
-    let missing = |what: String| Failure::Input(format!("{what}; build it with `make firmware`"));
-    match given {
-        Some(path) if path.is_file() => Ok(path.to_owned()),
-        Some(path) => Err(missing(format!(
-            "there is no firmware at {}",
-            path.display()
-        ))),
-        None => {
-            let here = std::env::current_dir()?;
-            let found = here
-                .ancestors()
-                .map(|folder| folder.join(BUILT))
-                .find(|path| path.is_file());
-            found.ok_or_else(|| missing(format!("there is no firmware at {BUILT}")))
-        }
-    }
-}
-
 fn progress_bar(end_ms: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
         .expect("the template is well formed");
@@ -313,17 +301,4 @@ fn analysis_progress() -> ProgressBar {
     let bar = ProgressBar::new_spinner().with_message("looking at every frame");
     bar.enable_steady_tick(std::time::Duration::from_millis(100));
     bar
-}
-
-/// Writes a file and the folders it needs.
-pub(crate) fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let failure =
-        |error: io::Error| Failure::Impossible(format!("cannot write {}: {error}", path.display()));
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        std::fs::create_dir_all(folder).map_err(failure)?;
-    }
-    std::fs::write(path, bytes).map_err(failure)
 }

@@ -12,6 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot};
 
 use crate::json;
+use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
 use goal::Goal;
 use judge::{Built, Judge, STAND};
@@ -110,8 +111,9 @@ fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failur
         let moving = robot.gaits().iter().filter(|gait| gait.moves());
         let gaits: Vec<&str> = moving.map(|gait| gait.name()).collect();
         Failure::Input(format!(
-            "robot.toml has no gait `{name}` to surpass; --gait takes one of {}",
-            gaits.join(", ")
+            "robot.toml has no gait `{name}` to surpass; --gait takes one of {}{}",
+            gaits.join(", "),
+            did_you_mean(name, gaits)
         ))
     })
 }

@@ -17,8 +17,9 @@ use simulated_uno::{Fidelity, State, Uno};
 
 use crate::sim::script::{Script, Step};
 use crate::sim::session::{self, Event, Recording};
-use crate::sim::{elf, frame, read_script, spans, supplies, tour, write_file};
-use crate::{Failure, RobotFile};
+use crate::sim::{frame, read_script, spans, supplies, tour};
+use crate::suggestion::did_you_mean;
+use crate::{Failure, RobotFile, firmware, whole_file};
 use replay::Replay;
 use report::Report;
 
@@ -83,7 +84,7 @@ enum ServoArg {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
-    let elf = elf(args.elf.as_deref())?;
+    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
     supplies::connect(&mut uno, &robot);
@@ -111,14 +112,23 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         report.print(&mut out)?;
     }
+    let mut said = Vec::new();
     if let Some(path) = &args.html {
-        write_file(path, html::page(&replay, &report)?)?;
+        whole_file::write_picture(path, html::page(&replay, &report)?.as_bytes())?;
+        said.push(("replay", path));
     }
     if let Some(path) = &args.apng {
-        write_file(path, apng::draw(&replay)?)?;
+        whole_file::write_picture(path, &apng::draw(&replay)?)?;
+        said.push(("moving picture", path));
     }
     if let Some(times) = args.robust {
         robust::run(&robot, &replay, model, times, args.json, &mut out)?;
+    }
+    if !args.json && !said.is_empty() {
+        writeln!(out)?;
+        for (what, path) in said {
+            writeln!(out, "{what:<14}  {}", path.display())?;
+        }
     }
     Ok(out.flush()?)
 }
@@ -149,12 +159,11 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         Some(name) => match robot.gait(name) {
             Some(gait) if gait.moves() => Ok(every(robot, &[gait.name()])),
             Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
-            None => {
-                let gaits = gaits.join(", ");
-                Err(Failure::Input(format!(
-                    "robot.toml has no gait `{name}`; those that move are {gaits}"
-                )))
-            }
+            None => Err(Failure::Input(format!(
+                "robot.toml has no gait `{name}`; those that move are {}{}",
+                gaits.join(", "),
+                did_you_mean(name, gaits)
+            ))),
         },
     }
 }

@@ -145,7 +145,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                 self.message = "Press the space bar, look, then answer with y or n.".to_owned();
                 Ok(false)
             }
-            (Key::Next | Key::Act, Step::Save) => self.save().map(|()| false),
+            (Key::Next, Step::Save) => self.save().map(|()| false),
             (Key::Next, _) => self.go(self.at + 1).map(|()| false),
             (Key::Act, Step::Sign(servo)) => self.move_one(servo).map(|()| false),
             (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
@@ -389,13 +389,23 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             Step::Save => {
                 let mut text = vec!["This will be kept in the board:".to_owned(), String::new()];
                 for (place, set) in self.now.servo.all().into_iter().enumerate() {
+                    let [min, max] = set.limit;
                     text.push(format!(
-                        "    {:<16} sign {}   trim {:+.2} deg",
+                        "    {:<15} sign {}  trim {:+.2}  limits {min:.2} to {max:.2}  scale {:.2}",
                         servo(place),
                         set.dir.sign(),
-                        set.trim
+                        set.trim,
+                        set.scale
                     ));
                 }
+                text.push(String::new());
+                text.push(
+                    "Trims and limits in deg, scales in us per deg. Limits and scales are as"
+                        .to_owned(),
+                );
+                text.push(
+                    "they were; `limit` and `scale` in `lizard console` change them.".to_owned(),
+                );
                 (
                     step("save"),
                     text,

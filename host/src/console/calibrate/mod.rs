@@ -4,14 +4,15 @@
 mod guide;
 
 use std::io::{self, IsTerminal, Stdout, Write};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crossterm::style::{Attribute, Print, SetAttribute};
-use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
-use crossterm::{cursor, execute, queue};
+use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
+use crossterm::{cursor, execute, queue, terminal as mode};
 
 use super::connect::Connect;
+use super::terminal;
 use super::turn_error::TurnError;
 use crate::Failure;
 use guide::{Guide, Key, View};
@@ -29,6 +30,8 @@ pub struct Args {
 
 /// How often the robot is listened to while no key comes.
 const TURN: Duration = Duration::from_millis(200);
+/// How often the keys are looked at.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs `lizard calibrate`.
 ///
@@ -44,15 +47,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let ended = Guide::new(&mut board.link).map_err(TurnError::from);
     let ended = ended.and_then(|mut guide| with_keys(&mut guide));
     match ended {
-        Ok(true) => {
-            println!("the calibration is saved");
-            Ok(())
-        }
-        Ok(false) => {
-            println!("left: the robot has what it had before");
+        Ok(saved) => {
+            // The terminal may be gone; then nobody is left to be told.
+            let words = if saved {
+                "the calibration is saved"
+            } else {
+                "left: the robot has what it had before"
+            };
+            let _ = writeln!(io::stdout(), "{words}");
             Ok(())
         }
         Err(TurnError::Io(error)) => Err(error.into()),
+        Err(TurnError::File(failure)) => Err(failure),
         // Opening the port resets the board, so what was not saved is gone then.
         Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
             "{}: {error}; what was not saved is forgotten when the port is opened again",
@@ -61,21 +67,48 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Shows the steps until the person is done; whether it was saved.
+/// Shows the steps until the person is done; whether it was saved. A person whose
+/// terminal goes away leaves.
 fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
+    match steps(guide) {
+        Err(TurnError::Io(_)) if !terminal::is_there() => {
+            guide.key(Key::Leave)?;
+            Ok(false)
+        }
+        ended => ended,
+    }
+}
+
+fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     let mut page = Page::new()?;
     let mut shown = None;
+    let mut heard = Instant::now();
     loop {
         let view = guide.view();
         if shown.as_ref() != Some(&view) {
             page.show(&view)?;
             shown = Some(view);
         }
-        if !event::poll(TURN)? {
-            guide.idle()?;
+        if !terminal::is_there() {
+            return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
+        }
+        // Asked without waiting: a terminal that is closed while it is waited for keeps
+        // the one who waits busy for ever.
+        if !event::poll(Duration::ZERO)? {
+            if heard.elapsed() >= TURN {
+                guide.idle()?;
+                heard = Instant::now();
+            }
+            std::thread::sleep(LOOK);
             continue;
         }
         match event::read()? {
+            Event::Key(key) if stops(key) => {
+                page.leave()?;
+                terminal::stop()?;
+                page.enter()?;
+                shown = None;
+            }
             Event::Key(key) => {
                 if let Some(key) = meaning(key)
                     && guide.key(key)?
@@ -87,6 +120,11 @@ fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
             _ => {}
         }
     }
+}
+
+/// Whether a key is Ctrl-Z, which stops the program until the shell lets it go on.
+fn stops(key: KeyEvent) -> bool {
+    key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
 /// What a key means, if anything.
@@ -117,10 +155,19 @@ struct Page(Stdout);
 
 impl Page {
     fn new() -> io::Result<Self> {
-        terminal::enable_raw_mode()?;
         let mut page = Self(io::stdout());
-        execute!(page.0, EnterAlternateScreen, cursor::Hide)?;
+        page.enter()?;
         Ok(page)
+    }
+
+    fn enter(&mut self) -> io::Result<()> {
+        mode::enable_raw_mode()?;
+        execute!(self.0, EnterAlternateScreen, cursor::Hide)
+    }
+
+    fn leave(&mut self) -> io::Result<()> {
+        execute!(self.0, cursor::Show, LeaveAlternateScreen)?;
+        mode::disable_raw_mode()
     }
 
     fn show(&mut self, view: &View) -> io::Result<()> {
@@ -155,7 +202,7 @@ impl Page {
 impl Drop for Page {
     fn drop(&mut self) {
         // The terminal may be gone; then nothing is left to be done.
-        let _ = execute!(self.0, cursor::Show, LeaveAlternateScreen);
-        let _ = terminal::disable_raw_mode();
+        let _ = self.leave();
+        let _ = mode::disable_raw_mode();
     }
 }

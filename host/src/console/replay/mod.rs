@@ -77,7 +77,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let log = session.frames(&robot);
     let (robot, log) = (&robot, &log);
     let picture = timeline::draw(Run { robot, log }, &session.spans(), &CAPTION);
-    crate::sim::write_file(&args.svg, &picture)?;
+    crate::whole_file::write_picture(&args.svg, picture.as_bytes())?;
     writeln!(out, "picture     {}", args.svg.display())?;
     Ok(())
 }

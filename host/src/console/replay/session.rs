@@ -68,7 +68,10 @@ impl Session {
             if entry.ms > LONGEST_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
                 return Err(wrong(format!("{} ms is out of order", entry.ms)));
             }
-            entries.push(entry);
+            entries.push(Entry {
+                event: entry.event.plain(),
+                ..entry
+            });
         }
         if entries.is_empty() {
             return Err(SessionError::Format);
@@ -203,6 +206,20 @@ mod tests {
         format!(
             "{{\"ms\":{ms},\"pose\":{{\"frame\":{frame},\"angles\":[{a1},41.41,318.59,221.41]}}}}"
         )
+    }
+
+    #[test]
+    fn what_a_file_says_cannot_command_the_terminal() {
+        let text = BEGIN.replace("\"p\"", "\"p\\u001b[2J\"")
+            + "{\"ms\":1,\"note\":\"# x\\u001b]0;y\\u0007\"}\n{\"ms\":2,\"sent\":\"\\u009b1m\"}\n";
+        let session = Session::parse(&text).expect("it is a session");
+        let events: Vec<&Event> = session.entries.iter().map(|entry| &entry.event).collect();
+        assert!(
+            matches!(events[0], Event::Begin { port, .. } if port == "p\\u{1b}[2J"),
+            "{events:?}"
+        );
+        assert_eq!(events[1], &Event::Note("# x\\u{1b}]0;y\\u{7}".to_owned()));
+        assert_eq!(events[2], &Event::Sent("\\u{9b}1m".to_owned()));
     }
 
     #[test]

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::paper::design;
-use crate::{Failure, PoseArgs, RobotFile, draw, json};
+use crate::{Failure, PoseArgs, RobotFile, draw, json, whole_file};
 
 /// Grid of the performance charts, and rings of their circles.
 const STEP: f64 = 0.005;
@@ -64,9 +64,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .lizard()
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+    // Before anything is computed, which takes seconds.
+    fs::create_dir_all(&args.folder).map_err(|error| whole_file::cannot(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
-    fs::create_dir_all(&args.folder).map_err(|fault| cannot_write(&args.folder, fault))?;
     let options = (!args.svg_only).then(raster::options);
     if options
         .as_ref()
@@ -112,16 +113,8 @@ pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Writes a file whole or not at all.
 fn write(folder: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
     let path = folder.join(format!("{name}.{ending}"));
-    let part = folder.join(format!(".{name}.{ending}.part"));
-    fs::write(&part, bytes)
-        .and_then(|()| fs::rename(&part, &path))
-        .map_err(|fault| cannot_write(&path, fault))?;
+    whole_file::write(&path, bytes)?;
     Ok(path)
-}
-
-fn cannot_write(path: &Path, fault: std::io::Error) -> Failure {
-    Failure::Impossible(format!("cannot write {}: {fault}", path.display()))
 }

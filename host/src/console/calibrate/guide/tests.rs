@@ -15,6 +15,11 @@ const PROVE: [Key; 2] = [Key::Act, Key::Yes];
 #[test]
 fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     let mut link = robot();
+    let [min, max] = Calibration::ask(&mut link)
+        .expect("it answers")
+        .servo
+        .a1
+        .limit;
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next]);
     press(&mut guide, &PROVE);
@@ -45,11 +50,15 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     assert!(guide.view().text[1].starts_with("It walks"));
     press(&mut guide, &[Key::Next]);
     assert!(
-        guide
-            .view()
-            .text
-            .contains(&"    A1, front left   sign +   trim +0.90 deg".to_owned())
+        guide.view().text.contains(&format!(
+            "    A1, front left  sign +  trim +0.90  limits {min:.2} to {max:.2}  scale 10.00"
+        )),
+        "{:?}",
+        guide.view()
     );
+    // The space bar does nothing here: only Enter is offered.
+    press(&mut guide, &[Key::Act]);
+    assert!(!guide.is_saved());
     assert!(!press(&mut guide, &[Key::Next]));
     assert!(guide.is_saved(), "{:?}", guide.view());
     press(&mut guide, &[Key::Back]);

@@ -1,0 +1,41 @@
+//! Text of others, made fit for a terminal.
+//!
+//! A terminal obeys what it is sent: an escape character in the name of a robot or in a
+//! recorded line moves the cursor, changes the window's title or hides what comes after.
+//! So what a file or a board says is shown with such characters spelled out.
+
+/// The text with every control character as Rust writes it, such as `\u{1b}`.
+#[must_use]
+pub fn plain(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            shown.extend(c.escape_default());
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
+}
+
+/// The same of a text that has lines.
+#[must_use]
+pub fn plain_lines(text: &str) -> String {
+    let lines: Vec<String> = text.split('\n').map(plain).collect();
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_spelled_out_and_all_others_stay() {
+        assert_eq!(
+            plain("a\u{1b}]0;x\u{7}\u{9b}1m\t\r\n"),
+            "a\\u{1b}]0;x\\u{7}\\u{9b}1m\\t\\r\\n"
+        );
+        assert_eq!(plain("Ä 5 µs \\"), "Ä 5 µs \\");
+        assert_eq!(plain_lines("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
+    }
+}
