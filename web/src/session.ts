@@ -30,6 +30,8 @@ const GREETS = 2500;
 const ANSWERS = 500;
 /** A board that is left has stopped within this, ms. */
 const STOPS = 1000;
+/** What the firmware's first line begins with. */
+const GREETING = '# lizard ';
 /** `boot` acts three seconds after a reset, ms. */
 const BOOTS = 4000;
 const FRAME_SECONDS = 0.02;
@@ -306,7 +308,9 @@ export class Session {
     });
   }
 
-  private came(line: string): void {
+  private came(text: string): void {
+    // A reset cuts off what the board was saying, and its first line follows on that.
+    const line = text.slice(Math.max(0, text.indexOf(GREETING)));
     const angles = watched(line);
     if (angles && this.isReal) {
       this.pose(angles);
@@ -320,7 +324,7 @@ export class Session {
     else if (word.startsWith(`${pose} `)) this.doing(pose);
     else if (word.startsWith(`${speed} `)) this.listener.speed(Number(word.slice(speed.length)));
     else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
-    else if (line.startsWith('# lizard ')) this.greeted(line);
+    else if (line.startsWith(GREETING)) this.greeted(line);
     else if (line.startsWith('# fault')) this.doing(stop);
   }
 

@@ -21,11 +21,23 @@ async function connected(image, ms) {
   return opened;
 }
 
+/** Lets the page's time go on until this is so, for 20 s of it at most. */
+async function until(opened, what, isSo) {
+  for (let ms = 0; ms < 20_000; ms += 250) {
+    if (await isSo()) return;
+    await opened.clock.runFor(250);
+  }
+  assert.fail(`waited 20 s of the page's time until ${what}`);
+}
+
+/** Until so many lines of the console are this one. */
+const said = (opened, line, times = 1) =>
+  until(opened, `${line} is said ${times} times`, async () => (await opened.locator('#log div', { hasText: line }).count()) >= times);
+
 async function walking() {
   const opened = await connected('robot', 4000);
   await opened.locator('#gaits button[data-command="walk"]').click();
-  await opened.clock.runFor(1500);
-  await opened.locator('#log div', { hasText: /^ok walk$/ }).waitFor();
+  await said(opened, /^ok walk$/);
   return opened;
 }
 
@@ -114,14 +126,14 @@ test('a page that is closed while a board walks stops it, and the browser asks',
 
 test('after a reset the board is followed again', async () => {
   const opened = await walking();
+  const followed = await opened.locator('#log div', { hasText: /^ok watch 2$/ }).count();
   await opened.getByRole('button', { name: 'reset' }).click();
-  await opened.clock.runFor(8000);
+  await said(opened, /^ok watch 2$/, followed + 1);
   const place = () => opened.evaluate(() => window.lizard.last.place.y);
   await opened.locator('#gaits button[data-command="walk"]').click();
-  await opened.clock.runFor(500);
+  await said(opened, /^ok walk$/, 2);
   const before = await place();
-  await opened.clock.runFor(3000);
-  assert.ok((await place()) - before > 5, `${before} to ${await place()} mm`);
+  await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
 });
 
 test('pulses that a board does not show are not made up', async () => {
