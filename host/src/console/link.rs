@@ -242,6 +242,9 @@ impl<P: Read + Write> Link<P> {
         let bytes = std::mem::take(&mut self.partial);
         let text = String::from_utf8_lossy(&bytes);
         let text = text.trim_end_matches('\r');
+        // A reset cuts off what the board was saying; that is no line, and its first line
+        // follows on it.
+        let text = &text[text.find(BANNER).unwrap_or(0)..];
         if !text.is_empty() {
             // A terminal obeys control characters: noise must not reach it.
             let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
@@ -339,6 +342,17 @@ mod tests {
     }
 
     const HELLO: &str = "# lizard 0.1.0 tables 1a2b3c4d, send help for the commands\r\n";
+
+    #[test]
+    fn a_banner_behind_what_a_reset_has_cut_off_is_one() {
+        for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
+            let said = format!("{cut}# lizard 0.1.0 tables 1\r\n");
+            let said: &'static str = said.leak();
+            let mut link = Script::link(&[Some(said)]);
+            let banner = link.greet().expect("it greets");
+            assert_eq!(banner.as_deref(), Some("# lizard 0.1.0 tables 1"), "{cut:?}");
+        }
+    }
 
     #[test]
     fn the_banner_is_found_behind_the_noise_of_an_opening() {
