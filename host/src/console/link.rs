@@ -350,7 +350,11 @@ mod tests {
             let said: &'static str = said.leak();
             let mut link = Script::link(&[Some(said)]);
             let banner = link.greet().expect("it greets");
-            assert_eq!(banner.as_deref(), Some("# lizard 0.1.0 tables 1"), "{cut:?}");
+            assert_eq!(
+                banner.as_deref(),
+                Some("# lizard 0.1.0 tables 1"),
+                "{cut:?}"
+            );
         }
     }
 
