@@ -41,6 +41,7 @@ impl Screen {
     /// # Errors
     /// It is gone.
     pub fn enter(&mut self) -> io::Result<()> {
+        super::terminal::end_when_gone();
         terminal::enable_raw_mode()?;
         execute!(self.out, event::EnableBracketedPaste)
     }

@@ -1,12 +1,37 @@
 //! The terminal itself: whether it is still there, and leaving it for a while.
 
 use std::io::{self, IsTerminal};
+use std::sync::Once;
+use std::thread;
+use std::time::Duration;
 
 /// Whether the terminal is still there. One that was closed is none, and its keys
 /// would be read for ever.
 #[must_use]
 pub fn is_there() -> bool {
     io::stdin().is_terminal()
+}
+
+/// How often a terminal is looked for, and how long it is waited until the program has
+/// ended by itself.
+const LOOK: Duration = Duration::from_millis(200);
+const PATIENCE: u32 = 10;
+
+/// Ends the program two seconds after its terminal has gone, if it has not ended by itself:
+/// a terminal that goes at the very moment when a key is waited for is waited for without
+/// end. Nothing is half written then: files are written whole.
+pub fn end_when_gone() {
+    let look = || {
+        let mut gone = 0;
+        while gone < PATIENCE {
+            thread::sleep(LOOK);
+            gone = if is_there() { 0 } else { gone + 1 };
+        }
+        std::process::exit(0)
+    };
+    static ONCE: Once = Once::new();
+    // Without this thread the program is what it was.
+    ONCE.call_once(|| drop(thread::Builder::new().spawn(look)));
 }
 
 /// Stops this program until the shell lets it go on, as Ctrl-Z does. The terminal has to

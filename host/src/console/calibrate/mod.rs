@@ -161,6 +161,7 @@ impl Page {
     }
 
     fn enter(&mut self) -> io::Result<()> {
+        terminal::end_when_gone();
         mode::enable_raw_mode()?;
         execute!(self.0, EnterAlternateScreen, cursor::Hide)
     }
