@@ -128,10 +128,15 @@ fn links(text: &str) -> Vec<&str> {
 fn anchors(text: &str) -> Vec<String> {
     let anchor = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
-        let kept = title.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        let kept = title
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
         kept.collect::<String>().replace(' ', "-")
     };
-    text.lines().filter(|line| line.starts_with('#')).map(anchor).collect()
+    text.lines()
+        .filter(|line| line.starts_with('#'))
+        .map(anchor)
+        .collect()
 }
 
 #[test]
@@ -166,11 +171,21 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
     for (page, _) in pages() {
         let name = page.file_name().expect("a name").to_str().expect("plain");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
-            assert_eq!(named(&format!("{name},")) + named(&format!("{name}]")) + named(&format!("{name}\n")), 1, "{name}");
+            assert_eq!(
+                named(&format!("{name},"))
+                    + named(&format!("{name}]"))
+                    + named(&format!("{name}\n")),
+                1,
+                "{name}"
+            );
         }
     }
     let readme = fs::read_to_string(root().join("README.md")).expect("the page");
-    assert!(readme.lines().count() <= 150, "{} lines", readme.lines().count());
+    assert!(
+        readme.lines().count() <= 150,
+        "{} lines",
+        readme.lines().count()
+    );
 }
 
 #[test]
