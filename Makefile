@@ -71,7 +71,7 @@ explore: ## everything that may happen to the robot, in every order; STATES=1000
 	$(call prepared,.explore)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
-docs: ## write anew the pages and pictures that programs make
+docs: ## write anew the pages and pictures that programs make; the book of docs/ in out/book
 	$(call prepared,.docs)
 clean: ## remove everything that was built
 	rm -rf target host/target out judge/node_modules web/node_modules web/node/node_modules web/dist web/public
@@ -192,6 +192,9 @@ TESTS ?= --workspace
 	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
 	@$(LIZARD) charts docs/charts --svg-only
 	@scripts/walk-through $(LIZARD)
+	@scripts/setup-book
+	@mkdocs build --strict --quiet
+	@echo "the book: out/book/index.html"
 
 .lint:
 	@cargo fmt --check

@@ -12,6 +12,8 @@ use lizard_robot::{Report, Robot};
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
+    // Nothing of it is used here, but the image is linked by it.
+    println!("cargo::rerun-if-changed=linker/src");
     let given = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
     let file = given.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);
     println!("cargo::rerun-if-changed={}", file.display());

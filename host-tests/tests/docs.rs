@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use lizard_host_tests::root;
 
@@ -100,4 +100,109 @@ fn sources(folder: &Path) -> String {
             false => fs::read_to_string(path).expect("a file"),
         })
         .collect()
+}
+
+/// README, CONTRIBUTING and the pages of docs/, with their texts.
+fn pages() -> Vec<(PathBuf, String)> {
+    let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
+    let docs = fs::read_dir(root().join("docs")).expect("docs/");
+    paths.extend(docs.map(|page| page.expect("a page").path()));
+    paths.retain(|path| path.extension().is_some_and(|end| end == "md"));
+    let text = |path: PathBuf| {
+        let text = fs::read_to_string(&path).expect("a page");
+        (path, text)
+    };
+    paths.into_iter().map(text).collect()
+}
+
+/// What a page links to and shows: what stands between `](` and `)`, or in `src="..."`.
+fn links(text: &str) -> Vec<&str> {
+    let between = |begin: &'static str, end: char| {
+        let behind = text.split(begin).skip(1);
+        behind.filter_map(move |rest| rest.split_once(end).map(|(link, _)| link))
+    };
+    between("](", ')').chain(between("src=\"", '"')).collect()
+}
+
+/// The anchors of a page's headings, as GitHub and mkdocs make them.
+fn anchors(text: &str) -> Vec<String> {
+    let anchor = |line: &str| {
+        let title = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = title
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        kept.collect::<String>().replace(' ', "-")
+    };
+    text.lines()
+        .filter(|line| line.starts_with('#'))
+        .map(anchor)
+        .collect()
+}
+
+#[test]
+fn every_link_of_a_page_leads_somewhere() {
+    let mut count = 0;
+    for (page, text) in pages() {
+        for link in links(&text) {
+            if link.contains("://") {
+                continue;
+            }
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = match file {
+                "" => page.clone(),
+                file => page.parent().expect("a folder").join(file),
+            };
+            assert!(target.exists(), "{}: {link}", page.display());
+            if !anchor.is_empty() {
+                let there = fs::read_to_string(&target).expect("a page");
+                let has = anchors(&there).iter().any(|there| there == anchor);
+                assert!(has, "{}: {link}", page.display());
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 60, "{count}");
+}
+
+#[test]
+fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
+    let book = fs::read_to_string(root().join("mkdocs.yml")).expect("the book's contents");
+    let named = |name: &str| book.matches(name).count();
+    for (page, _) in pages() {
+        let name = page.file_name().expect("a name").to_str().expect("plain");
+        if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
+            assert_eq!(
+                named(&format!("{name},"))
+                    + named(&format!("{name}]"))
+                    + named(&format!("{name}\n")),
+                1,
+                "{name}"
+            );
+        }
+    }
+    let readme = fs::read_to_string(root().join("README.md")).expect("the page");
+    assert!(
+        readme.lines().count() <= 150,
+        "{} lines",
+        readme.lines().count()
+    );
+}
+
+#[test]
+fn no_picture_is_on_two_pages_of_the_book() {
+    let mut seen = BTreeSet::new();
+    for (page, text) in pages() {
+        let folder = page.parent().expect("a folder");
+        // README is the book's cover outside of it.
+        if !folder.ends_with("docs") {
+            continue;
+        }
+        for link in links(&text) {
+            if [".svg", ".png"].iter().any(|end| link.ends_with(end)) {
+                let picture = folder.join(link);
+                assert!(seen.insert(picture), "{}: {link} once more", page.display());
+            }
+        }
+    }
+    assert!(seen.len() > 5, "{seen:?}");
 }

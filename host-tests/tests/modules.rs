@@ -7,7 +7,7 @@ use std::path::Path;
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 5] = ["core", "kinematics", "parts", "robot", "twin"];
+const CRATES: [&str; 6] = ["core", "kinematics", "linker", "parts", "robot", "twin"];
 
 /// What each module of a crate uses of the others.
 type Uses = BTreeMap<String, BTreeSet<String>>;

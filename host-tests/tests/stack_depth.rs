@@ -3,6 +3,7 @@
 
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::avr_gcc::{assembler, c};
+use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
 
 /// Sets the stack pointer up as avr-libc does, from r28 and r29.
@@ -211,4 +212,42 @@ fn a_handler_that_lets_others_in_and_never_returns_lies_below_the_deepest_of_the
     let depth = depth(&image);
     assert_eq!((depth.main, depth.handler, depth.last), (0, 2 + 3, 2 + 1));
     assert_eq!(depth.worst(), 8);
+}
+
+#[test]
+fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
+    for (first, saved, room) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
+        let image = assembler(&format!(
+            "{BEGIN}
+            call framed
+        end: rjmp end
+        framed: ldi r26, {room} $ call __frame_save_{first}
+            std Y+1, r16
+            call leaf
+            ldi r26, {room} $ jmp __frame_restore_{first}
+        leaf: ret
+        {ROUTINES}"
+        ));
+        // Two return addresses, and below the room a third one for a moment.
+        assert_eq!(depth(&image).worst(), 2 + saved + room + 2, "{first}");
+        assert_eq!(measured(&image), 2 + saved + room + 2, "{first}");
+    }
+}
+
+#[test]
+fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
+    for (first, room) in [(16, 5), (14, 6)] {
+        let image = assembler(&format!(
+            "{BEGIN}
+            call framed
+        end: rjmp end
+        .type framed, @function
+        framed: ldi r26, 5 $ call __frame_save_14
+            ldi r26, {room} $ jmp __frame_restore_{first}
+        {ROUTINES}"
+        ));
+        let refused = refusal(&image);
+        assert_eq!(refused.function, "framed");
+        assert_eq!(refused.what, "restores something else than it saved");
+    }
 }

@@ -36,6 +36,8 @@ pub enum Effect {
     LoadHigh(u8),
     /// r29:r28 gets something else.
     LosePointer,
+    /// `ldi r26`: how much room a shared beginning or end is about.
+    LoadRoom(u8),
 }
 
 /// A decoded instruction.
@@ -114,6 +116,7 @@ fn effect(code: u16, second: u16, at: u32) -> Effect {
         _ if code & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte(code)),
         _ if code & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte(code)),
         0x09d1 => Effect::SubtractHigh(0), // sbc r29, r1, which is always 0
+        _ if code & 0xf0f0 == 0xe0a0 => Effect::LoadRoom(byte(code)),
         _ if code & 0xf0f0 == 0xe0c0 => Effect::LoadLow(byte(code)),
         _ if code & 0xf0f0 == 0xe0d0 => Effect::LoadHigh(byte(code)),
         _ if code & 0xfff0 == 0x01e0 => Effect::LosePointer, // movw r28

@@ -38,6 +38,32 @@ struct State {
     pointer: Pointer,
     /// Of a subtraction from r29:r28 whose high half is still to come.
     low: u8,
+    /// What r26 was loaded with by the instruction before.
+    room: Option<u8>,
+}
+
+/// Shared beginnings and ends of functions (`linker/src/frames.S`), by their addresses.
+struct Shared {
+    save: HashMap<u32, i32>,
+    restore: HashMap<u32, i32>,
+}
+
+impl Shared {
+    /// Those of an image. What each saves besides the room in r26: the registers from its
+    /// own to r17, and r28 and r29.
+    fn of(image: &Image) -> Self {
+        let all = |prefix: &str| {
+            let bytes = |symbol: &simulated_uno::Symbol| {
+                let first: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
+                Some((symbol.address as u32, 20 - first))
+            };
+            image.symbols().iter().filter_map(bytes).collect()
+        };
+        Self {
+            save: all("__frame_save_"),
+            restore: all("__frame_restore_"),
+        }
+    }
 }
 
 /// The functions walked so far.
@@ -45,6 +71,7 @@ pub struct Walk<'a> {
     image: &'a Image,
     flash: &'a [u8],
     context: Context,
+    shared: Shared,
     /// Each function walked, by address; none while it is being walked.
     known: HashMap<u32, Option<Function>>,
 }
@@ -66,6 +93,7 @@ impl<'a> Walk<'a> {
             image,
             flash,
             context,
+            shared: Shared::of(image),
             known: HashMap::new(),
         }
     }
@@ -92,6 +120,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             pointer: Pointer::Unknown,
             low: 0,
+            room: None,
         };
         let mut open = vec![(entry, begin)];
         while let Some((at, mut state)) = open.pop() {
@@ -110,10 +139,31 @@ impl<'a> Walk<'a> {
                 return Err(self.refuse(entry, at, "runs out of the code"));
             };
             let next = at + instruction.size;
+            let room = state.room.take().map(i32::from);
             let mut after = vec![next];
             match instruction.effect {
                 // The shortest way to make room for two bytes.
                 Effect::Call(target) if target == next => state.depth += RETURN_ADDRESS,
+                Effect::Call(target) if self.shared.save.contains_key(&target) => {
+                    let Some(room) = room else {
+                        return Err(self.refuse(entry, at, ROOM));
+                    };
+                    state.depth += self.shared.save[&target] + room;
+                    state.pointer = Pointer::Depth(state.depth);
+                    // Its own way back lies below what it made room for.
+                    worst = worst.max(state.depth + RETURN_ADDRESS);
+                }
+                Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
+                    let Some(room) = room else {
+                        return Err(self.refuse(entry, at, ROOM));
+                    };
+                    if state.depth != self.shared.restore[&target] + room {
+                        let what = "restores something else than it saved";
+                        return Err(self.refuse(entry, at, what));
+                    }
+                    returns = true;
+                    after.clear();
+                }
                 Effect::Call(target) => {
                     let called = self.function(target)?;
                     let below = i32::from(called.depth);
@@ -178,6 +228,7 @@ impl<'a> Walk<'a> {
     }
 }
 
+const ROOM: &str = "makes room of an unknown size";
 const POINTER: &str = "sets the stack pointer to something unknown";
 
 impl State {
@@ -214,6 +265,7 @@ impl State {
                     _ => Pointer::Unknown,
                 }
             }
+            Effect::LoadRoom(room) => self.room = Some(room),
             Effect::LosePointer => self.pointer = Pointer::Unknown,
             _ => {}
         }

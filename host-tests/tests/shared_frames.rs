@@ -1,0 +1,194 @@
+//! Functions that share their beginnings and ends do what they did with their own.
+
+use lizard_host_tests::avr_gcc::{assembler, c_by_way_of_an_object};
+use lizard_linker::frame::FIRST;
+use lizard_linker::{ROUTINES, shrink};
+use simulated_uno::{Fidelity, Image, Uno};
+
+/// A program that sorts, divides, mixes and recurs with many registers and large frames,
+/// while a timer interrupts it, and leaves what it found.
+const PROGRAM: &str = r#"
+#include <avr/io.h>
+#include <avr/interrupt.h>
+#include <stdint.h>
+#define OWN __attribute__((noinline))
+volatile uint32_t results[40];
+volatile uint8_t done;
+volatile uint16_t ticks;
+ISR(TIMER0_COMPA_vect) { ticks++; }
+
+static uint32_t state = 12345;
+OWN uint32_t next(void) { state ^= state << 13; state ^= state >> 17; state ^= state << 5; return state; }
+
+OWN uint32_t mix(uint32_t a, uint32_t b, uint32_t c, uint16_t d) {
+    uint32_t x = a + next(), y = b ^ next(), z = c - next();
+    for (uint8_t i = 0; i < 5; i++) {
+        x += y * d; y ^= z + next(); z = (z << 3) | (z >> 29); x -= next();
+    }
+    return x ^ y ^ z ^ a ^ b ^ c;
+}
+
+OWN uint16_t sorted(uint8_t n) {
+    uint16_t all[30], sum = 0;
+    for (uint8_t i = 0; i < n; i++) all[i] = next();
+    for (uint8_t i = 1; i < n; i++)
+        for (uint8_t k = i; k && all[k] < all[k - 1]; k--) {
+            uint16_t kept = all[k]; all[k] = all[k - 1]; all[k - 1] = kept;
+        }
+    for (uint8_t i = 0; i < n; i++) { if (all[i] == 7) return i; sum = sum * 31 + all[i] + i; }
+    return sum;
+}
+
+OWN uint32_t deep(uint8_t n, uint32_t seed) {
+    volatile uint8_t room[20];
+    for (uint8_t i = 0; i < sizeof room; i++) room[i] = seed >> (i & 7);
+    uint32_t below = n ? deep(n - 1, seed * 3 + n) : 1;
+    for (uint8_t i = 0; i < sizeof room; i++) below = below * 5 + room[i];
+    if (below & 1) return below - seed;
+    return below / (seed | 1) + seed;
+}
+
+OWN uint64_t wide(uint64_t a, uint64_t b) { uint64_t c = a * b + next(); return c / (a | 3) + mix(a, b, c, c); }
+
+/* A caller that knows what its callee leaves alone; and a branch over a jump. */
+asm(
+    ".section .text.keeps, \"ax\", @progbits\n .type keeps, @function\n keeps:\n"
+    "push r10\n push r11\n push r12\n push r13\n push r14\n push r15\n push r16\n push r17\n"
+    "movw r16, r24\n movw r10, r24\n add r24, r16\n adc r25, r11\n"
+    "pop r17\n pop r16\n pop r15\n pop r14\n pop r13\n pop r12\n pop r11\n pop r10\n ret\n"
+    ".size keeps, . - keeps\n"
+    ".section .text.trusts, \"ax\", @progbits\n .global trusts\n .type trusts, @function\n trusts:\n"
+    "ldi r26, 77\n call keeps\n add r24, r26\n brcc 1f\n rjmp 2f\n 1: subi r25, 40\n 2: ret\n"
+    ".size trusts, . - trusts\n"
+    ".text\n");
+uint16_t trusts(uint16_t a);
+
+int main(void) {
+    OCR0A = 130; TCCR0A = 2; TCCR0B = 1; TIMSK0 = 2; sei();
+    for (uint8_t i = 0; i < 10; i++) {
+        results[4 * i] = mix(next(), next(), next(), i);
+        results[4 * i + 1] = sorted(20 + i) + ((uint32_t)trusts(next()) << 16);
+        results[4 * i + 2] = deep(i, next());
+        results[4 * i + 3] = wide(next(), next());
+    }
+    cli();
+    done = ticks > 500 ? 1 : 2;
+    for (;;) {}
+}
+"#;
+
+/// The results of the program, and how deep its stack got.
+fn results(image: &Image) -> (Vec<u8>, u16) {
+    let address = |name| (image.symbol(name).expect("it has one").address - 0x80_0000) as u16;
+    let [done, results] = ["done", "results"].map(address);
+    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    uno.run_ms(200);
+    assert_eq!(uno.peek(done), 1, "it came to its end, interrupted often");
+    let bytes = (0..160).map(|byte| uno.peek(results + byte)).collect();
+    (bytes, uno.stack_used())
+}
+
+#[test]
+fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
+    let plain = c_by_way_of_an_object(PROGRAM, |object| (object, ""));
+    let short = c_by_way_of_an_object(PROGRAM, |object| {
+        let (new, savings) = shrink(&object)
+            .expect("it is an object")
+            .expect("of an AVR");
+        assert!(savings.frames > 100, "{savings:?}");
+        assert!(savings.branches >= 2, "{savings:?}");
+        (new, ROUTINES)
+    });
+    assert!(short.symbol("__frame_save_2").is_some());
+    let ((plain, deep), (short, deeper)) = (results(&plain), results(&short));
+    assert_eq!(plain, short);
+    assert!(plain.iter().any(|byte| *byte != 0));
+    // Ten frames of `deep` lie on one another; each may hold a register more.
+    assert!(deeper.abs_diff(deep) < 40, "{deep} {deeper}");
+}
+
+/// Registers that a function has to leave as they were.
+const KEPT: [u8; 18] = [
+    2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
+];
+
+/// Calls a function that saves from `first` on and makes room, fills the room and the
+/// registers with something else, restores, and returns; forty times, while a timer
+/// interrupts every 61 cycles. Then registers and stack pointer are in RAM.
+fn program(first: u8, room: u8) -> String {
+    let load = |registers: &[u8], plus: u8| -> String {
+        let each = registers.iter();
+        each.map(|register| format!("ldi r24, {} $ mov r{register}, r24\n", register + plus))
+            .collect()
+    };
+    let saved: Vec<u8> = KEPT
+        .into_iter()
+        .filter(|register| *register >= first)
+        .collect();
+    let stored: String = KEPT
+        .iter()
+        .map(|register| format!("sts {}, r{register}\n", 0x100 + u16::from(*register)))
+        .collect();
+    format!(
+        "jmp start
+        .org 0x38
+        jmp tick
+        .org 0x68
+    start: clr r1 $ clr r20 $ clr r21
+        ldi r24, 0xff $ out SPL, r24 $ ldi r24, 0x08 $ out SPH, r24
+        ldi r24, 60 $ out OCR0A, r24 $ ldi r24, 2 $ out TCCR0A, r24 $ sts TIMSK0, r24
+        ldi r24, 1 $ out TCCR0B, r24 $ sei
+        ldi r19, 40
+        {all}
+    again: ldi r26, {room} $ call framed
+        dec r19 $ brne again
+        cli
+        {stored}
+        in r24, SPL $ sts 0x140, r24 $ in r24, SPH $ sts 0x141, r24
+        sts 0x142, r1 $ sts 0x143, r20 $ sts 0x144, r21
+        ldi r24, 1 $ sts 0x145, r24
+    end: rjmp end
+    framed: ldi r26, {room} $ call __frame_save_{first}
+        ; All of the room is below r29:r28, and nothing of it is anybody else's.
+        movw r30, r28 $ ldi r24, {room} $ ldi r25, 0x55
+    fill: subi r24, 1 $ brcs filled $ adiw r30, 1 $ st Z, r25 $ rjmp fill
+    filled: in r24, SPL $ cp r24, r28 $ breq same $ inc r20
+    same: push r25 $ pop r25
+        {other}
+        ldi r26, {room} $ jmp __frame_restore_{first}
+    tick: push r0 $ in r0, SREG $ push r0 $ push r1 $ clr r1
+        ldi r21, 1
+        pop r1 $ pop r0 $ out SREG, r0 $ pop r0 $ reti
+    {ROUTINES}",
+        all = load(&KEPT, 100),
+        other = load(&saved, 7),
+    )
+}
+
+#[test]
+fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
+    for first in FIRST {
+        for room in [0, 1, 5, 63, 64, 200, 255] {
+            let image = assembler(&program(first, room));
+            let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+            uno.run_ms(10);
+            assert_eq!(uno.peek(0x145), 1, "it came to its end: {first} {room}");
+            for register in KEPT {
+                let value = uno.peek(0x100 + u16::from(register));
+                assert_eq!(value, register + 100, "r{register}: {first} {room}");
+            }
+            assert_eq!(
+                [uno.peek(0x140), uno.peek(0x141)],
+                [0xff, 0x08],
+                "{first} {room}"
+            );
+            assert_eq!(uno.peek(0x142), 0, "r1");
+            assert_eq!(
+                uno.peek(0x143),
+                0,
+                "r28 is the stack pointer: {first} {room}"
+            );
+            assert_eq!(uno.peek(0x144), 1, "it was interrupted");
+        }
+    }
+}

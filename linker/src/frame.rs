@@ -1,0 +1,177 @@
+//! Beginnings and ends of functions, and what they become.
+//!
+//! A beginning pushes registers, from the lowest to r29, and may make room below them:
+//!
+//! ```text
+//! push r14 .. push r29          ldi r26, 5
+//! in r28, SPL                   rcall __frame_save_14
+//! in r29, SPH
+//! sbiw r28, 5
+//! in r0, SREG
+//! cli
+//! out SPH, r29
+//! out SREG, r0
+//! out SPL, r28
+//! ```
+//!
+//! An end is the same in reverse, then `ret`.
+
+use object::build::elf::SymbolId;
+use object::elf;
+
+use crate::code::Code;
+use crate::edit::{Edit, Reference};
+use crate::instruction::{
+    CALL, JMP, POINTER_FROM_STACK, RET, RETI, STACK_FROM_POINTER, has_stack_pointer, load_r26,
+    popped, pushed,
+};
+
+/// Registers that a function leaves as it found them, in the order in which they are pushed.
+const SAVED: [u8; 18] = [
+    2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
+];
+
+/// The registers from which on there are routines.
+pub const FIRST: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
+
+/// The routines of one of [`FIRST`].
+#[derive(Debug, Clone, Copy)]
+pub struct Routines {
+    /// `__frame_save_K`.
+    pub save: SymbolId,
+    /// `__frame_restore_K`.
+    pub restore: SymbolId,
+}
+
+/// What a function does with the stack, where it is one of the known ways.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frame {
+    /// Which of [`FIRST`] has all its registers.
+    pub first: usize,
+    /// Bytes for variables.
+    pub room: u8,
+    /// Bytes of the beginning.
+    pub beginning: u64,
+    /// Of each end: its offset, its bytes.
+    pub ends: Vec<(u64, u64)>,
+}
+
+impl Frame {
+    /// The frame of a function.
+    pub fn of(code: &Code) -> Option<Self> {
+        let registers: Vec<u8> = code.words(0).map_while(pushed).collect();
+        let ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
+        let lowest = *registers.first()?;
+        if !ascending || !registers.iter().all(|register| SAVED.contains(register)) {
+            return None;
+        }
+        let (room, words) = match room(code, registers.len()) {
+            Some((room, words)) => (room, words),
+            None => (0, 0),
+        };
+        let has_room = words > 0;
+        if has_room && !registers.ends_with(&[28, 29]) {
+            return None;
+        }
+        let body = registers.len() + words;
+        let mut ends = Vec::new();
+        let mut index = body;
+        // Every mention of the stack pointer and every pop has to belong to an end.
+        while let Some(at) = code.instructions.get(index) {
+            if let Some(words) = end(code, index, &registers, room, has_room) {
+                let begin = code.offset(index);
+                ends.push((begin, code.offset(index + words) - begin));
+                index += words;
+            } else if has_stack_pointer(at.code)
+                || popped(at.code).is_some()
+                || pushed(at.code).is_some()
+                || at.code == RET
+                || at.code == RETI
+            {
+                return None;
+            } else {
+                index += 1;
+            }
+        }
+        let lowest = lowest.min(18);
+        let first = FIRST.iter().rposition(|first| *first <= lowest)?;
+        Some(Self {
+            first,
+            room,
+            beginning: code.offset(body),
+            ends,
+        })
+    }
+
+    /// What is done to the function with the routines that fit.
+    pub fn edits(&self, routines: Routines) -> Vec<Edit> {
+        let goes = |at, remove, code, symbol| Edit {
+            at,
+            remove,
+            insert: vec![load_r26(self.room), code, 0],
+            references: vec![Reference {
+                offset: 2,
+                kind: elf::R_AVR_CALL,
+                symbol,
+                addend: 0,
+            }],
+        };
+        let mut edits = vec![goes(0, self.beginning, CALL, routines.save)];
+        edits.extend(
+            self.ends
+                .iter()
+                .map(|(at, size)| goes(*at, *size, JMP, routines.restore)),
+        );
+        edits
+    }
+}
+
+/// The room that is made below the registers, and the number of instructions for it.
+fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
+    let words: Vec<u16> = code.words(index).take(9).collect();
+    let (down, rest) = words.strip_prefix(&POINTER_FROM_STACK)?.split_first()?;
+    let (room, rest, count) = match (down, rest.split_first()) {
+        // sbiw r28
+        (down, _) if down & 0xff30 == 0x9720 => (down >> 2 & 0x30 | down & 0x0f, rest, 8),
+        // subi r28 and sbci r29 with 0
+        (down, Some((0x40d0, rest))) if down & 0xf0f0 == 0x50c0 => {
+            (down >> 4 & 0xf0 | down & 0x0f, rest, 9)
+        }
+        _ => return None,
+    };
+    rest.starts_with(&STACK_FROM_POINTER)
+        .then_some((room as u8, count))
+}
+
+/// The number of instructions of the end that begins at an index, if it is the one that
+/// belongs to the beginning.
+fn end(code: &Code, index: usize, registers: &[u8], room: u8, has_room: bool) -> Option<usize> {
+    let mut words = code.words(index).peekable();
+    let mut count = 0;
+    if has_room {
+        let low = u16::from(room);
+        let less = low.wrapping_neg();
+        let up = words.next()?;
+        count += 1;
+        if up != 0x9620 | low << 2 & 0xc0 | low & 0x0f || room > 63 {
+            // subi r28 and sbci r29
+            let high = 0x40d0 | 0x0f0f;
+            if up != 0x50c0 | less << 4 & 0x0f00 | less & 0x0f || words.next()? != high {
+                return None;
+            }
+            count += 1;
+        }
+        for word in STACK_FROM_POINTER {
+            if words.next()? != word {
+                return None;
+            }
+        }
+        count += STACK_FROM_POINTER.len();
+    }
+    for register in registers.iter().rev() {
+        if popped(words.next()?) != Some(*register) {
+            return None;
+        }
+    }
+    (words.next()? == RET).then_some(count + registers.len() + 1)
+}

@@ -1,0 +1,107 @@
+//! Of an AVR instruction what matters here, by the AVR Instruction Set Manual.
+
+/// `ret`.
+pub const RET: u16 = 0x9508;
+/// `reti`.
+pub const RETI: u16 = 0x9518;
+/// `call` and `jmp`, whose targets are in the word behind them.
+pub const CALL: u16 = 0x940e;
+pub const JMP: u16 = 0x940c;
+/// `in r28, SPL` and `in r29, SPH`.
+pub const POINTER_FROM_STACK: [u16; 2] = [0xb7cd, 0xb7de];
+/// `in r0, SREG`, `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
+pub const STACK_FROM_POINTER: [u16; 5] = [0xb60f, 0x94f8, 0xbfde, 0xbe0f, 0xbfcd];
+
+/// Whether an instruction has a second word: `lds`, `sts`, `jmp`, `call`.
+pub const fn is_long(code: u16) -> bool {
+    code & 0xfe0f == 0x9000 || code & 0xfe0f == 0x9200 || code & 0xfe0c == 0x940c
+}
+
+/// The register that it pushes.
+pub const fn pushed(code: u16) -> Option<u8> {
+    if code & 0xfe0f == 0x920f {
+        Some((code >> 4 & 0x1f) as u8)
+    } else {
+        None
+    }
+}
+
+/// The register that it pops.
+pub const fn popped(code: u16) -> Option<u8> {
+    if code & 0xfe0f == 0x900f {
+        Some((code >> 4 & 0x1f) as u8)
+    } else {
+        None
+    }
+}
+
+/// `ldi r26, value`.
+pub const fn load_r26(value: u8) -> u16 {
+    let value = value as u16;
+    0xe0a0 | value << 4 & 0x0f00 | value & 0x0f
+}
+
+/// Whether it goes somewhere relative to itself: a branch, `rjmp` or `rcall`.
+pub const fn is_relative(code: u16) -> bool {
+    is_branch(code) || code & 0xe000 == 0xc000
+}
+
+/// Whether it is a branch on a flag.
+pub const fn is_branch(code: u16) -> bool {
+    code & 0xf800 == 0xf000
+}
+
+/// Whether it is `rjmp`.
+pub const fn is_near_jump(code: u16) -> bool {
+    code & 0xf000 == 0xc000
+}
+
+/// Whether it is a `call` or an `rcall`.
+pub const fn is_call(code: u16) -> bool {
+    code & 0xfe0e == CALL || code & 0xf000 == 0xd000
+}
+
+/// Whether the next instruction is skipped now and then: `cpse`, `sbrc`, `sbrs`, `sbic`,
+/// `sbis`.
+pub const fn skips(code: u16) -> bool {
+    code & 0xfc00 == 0x1000 || code & 0xfc08 == 0xfc00 || code & 0xfd00 == 0x9900
+}
+
+/// Whether it reads or writes the stack pointer by `in` or `out`.
+pub const fn has_stack_pointer(code: u16) -> bool {
+    let port = code >> 5 & 0x30 | code & 0x0f;
+    code & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
+}
+
+/// Whether r26 has another value after it. Only the usual ways are known; where another
+/// is taken the answer is no, which costs nothing but bytes.
+pub const fn writes_r26(code: u16) -> bool {
+    let register = code >> 4 & 0x1f;
+    match code {
+        // ldi, andi, ori, subi, sbci know r16 to r31
+        _ if code & 0xf0f0 == 0xe0a0 => true,
+        _ if matches!(code >> 12, 4..=7) => register & 0x0f == 10,
+        // add, adc, sub, sbc, and, eor, or, mov
+        _ if matches!(code >> 10, 0x02 | 0x03 | 0x06 | 0x07 | 0x08..=0x0b) => register == 26,
+        // movw r26
+        _ if code & 0xfff0 == 0x01d0 => true,
+        // adiw and sbiw r26
+        _ if code & 0xfe30 == 0x9610 => true,
+        // lds, ld, lpm
+        _ if code & 0xfe00 == 0x9000 && code & 0x000f != 0x000f => register == 26,
+        // ldd
+        _ if code & 0xd200 == 0x8000 => register == 26,
+        _ => false,
+    }
+}
+
+/// Whether the flags have other values after it; the same caution.
+pub const fn writes_flags(code: u16) -> bool {
+    match code >> 10 {
+        // cpc, sbc, add, cp, sub, adc, and, eor, or
+        0x01..=0x03 | 0x05..=0x0a => return true,
+        _ => {}
+    }
+    // cpi, sbci, subi, ori, andi; adiw and sbiw
+    matches!(code >> 12, 3..=7) || code & 0xfe00 == 0x9600
+}

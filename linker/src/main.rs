@@ -1,0 +1,66 @@
+//! `lizard-linker ARGUMENTS`: avr-gcc with these arguments, after the objects among them
+//! that have shared beginnings and ends of functions were made shorter. rustc calls it
+//! where .cargo/config.toml names scripts/link.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use lizard_linker::{ROUTINES, shrink};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(code) => code,
+        Err(sentence) => {
+            eprintln!("{sentence}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<ExitCode, String> {
+    let mut arguments = Vec::new();
+    let mut written = Vec::new();
+    for argument in std::env::args_os().skip(1) {
+        if let Some(short) = shortened(Path::new(&argument))? {
+            arguments.extend(short.iter().map(|path| path.clone().into_os_string()));
+            written.extend(short);
+        } else {
+            arguments.push(argument);
+        }
+    }
+    let status = Command::new("avr-gcc").args(arguments).status();
+    for path in written {
+        // One that stays is in nobody's way.
+        let _ = fs::remove_file(path);
+    }
+    let status = status.map_err(|error| format!("avr-gcc, which links the firmware: {error}"))?;
+    Ok(if status.success() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Writes the shorter form of an object beside it, and what it calls; their names. None for
+/// what is no object.
+fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
+    // Whatever cannot be read, avr-gcc knows what to say of it.
+    let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
+        return Ok(None);
+    };
+    let Some((new, _)) = shrink(&file).map_err(|error| format!("{}: {error}", path.display()))?
+    else {
+        return Ok(None);
+    };
+    let write = |extension, bytes: &[u8]| {
+        let path = path.with_extension(extension);
+        fs::write(&path, bytes).map_err(|error| format!("{}: {error}", path.display()))?;
+        Ok::<PathBuf, String>(path)
+    };
+    Ok(Some([
+        write("short.o", &new)?,
+        write("frames.S", ROUTINES.as_bytes())?,
+    ]))
+}

@@ -1,0 +1,291 @@
+//! An object file: which of its sections are functions, and the same file with shorter ones.
+
+use std::fmt;
+
+use object::build::elf::{Builder, Section, SectionData, SectionId, SymbolId};
+use object::elf;
+
+use crate::branch;
+use crate::code::Code;
+use crate::edit::{Edit, Edits, Reference};
+use crate::frame::{FIRST, Frame, Routines};
+use crate::instruction::{is_call, writes_flags, writes_r26};
+
+/// Why an object cannot be read or written.
+#[derive(Debug)]
+pub struct ShrinkError(object::build::Error);
+
+impl fmt::Display for ShrinkError {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        write!(to, "the object file cannot be edited: {}", self.0)
+    }
+}
+
+impl std::error::Error for ShrinkError {}
+
+impl From<object::build::Error> for ShrinkError {
+    fn from(error: object::build::Error) -> Self {
+        Self(error)
+    }
+}
+
+/// What was saved, bytes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Savings {
+    /// By shared beginnings and ends; the linker shortens most calls further.
+    pub frames: i64,
+    /// By opposite branches.
+    pub branches: i64,
+}
+
+/// The object file with shorter functions, and how much was saved; none for what is no ELF file. The
+/// shared beginnings and ends that it refers to then are [`ROUTINES`](crate::ROUTINES).
+///
+/// # Errors
+/// See [`ShrinkError`].
+pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
+    if !file.starts_with(&elf::ELFMAG) {
+        return Ok(None);
+    }
+    let mut object = Object(Builder::read(file)?);
+    object.name_sections();
+    let routines = object.routines();
+    let mut savings = Savings::default();
+    for (section, edits) in object.frames(&routines) {
+        savings.frames += edits.gain();
+        object.apply(section, &edits);
+    }
+    for section in object.functions() {
+        while let Some(edits) = object.branch(section) {
+            savings.branches += edits.gain();
+            object.apply(section, &edits);
+        }
+    }
+    let mut new = Vec::new();
+    object.0.write(&mut new)?;
+    Ok(Some((new, savings)))
+}
+
+struct Object<'a>(Builder<'a>);
+
+impl Object<'_> {
+    /// LLVM keeps names of sections and of symbols in one table; what is written has two.
+    fn name_sections(&mut self) {
+        let is_there = |section: &Section| matches!(section.data, SectionData::SectionString);
+        if !self.0.sections.iter().any(is_there) {
+            let table = self.0.sections.add();
+            table.name = ".shstrtab".into();
+            table.sh_type = elf::SHT_STRTAB;
+            table.sh_addralign = 1;
+            table.data = SectionData::SectionString;
+        }
+    }
+
+    /// The routines of [`FIRST`], which another object has.
+    fn routines(&mut self) -> Vec<Routines> {
+        let mut elsewhere = |name: String| {
+            let symbol = self.0.symbols.add();
+            symbol.name = name.into_bytes().into();
+            symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
+            symbol.id()
+        };
+        let mut of = |first: &u8| Routines {
+            save: elsewhere(format!("__frame_save_{first}")),
+            restore: elsewhere(format!("__frame_restore_{first}")),
+        };
+        FIRST.iter().map(&mut of).collect()
+    }
+
+    /// The sections that are one function each, in their order. Interrupts and what is
+    /// written in assembly are not among them.
+    fn functions(&self) -> Vec<SectionId> {
+        let is_function = |section: &&Section| {
+            let mut whole = 0;
+            for symbol in &self.0.symbols {
+                if symbol.section != Some(section.id()) || symbol.st_type() == elf::STT_SECTION {
+                    continue;
+                }
+                let is_whole = symbol.st_value == 0 && symbol.st_size == section.sh_size;
+                let is_interrupt = symbol.name.starts_with(b"__vector");
+                if symbol.st_type() != elf::STT_FUNC || !is_whole || is_interrupt {
+                    return false;
+                }
+                whole += 1;
+            }
+            whole == 1 && section.name.starts_with(b".text.")
+        };
+        self.0
+            .sections
+            .iter()
+            .filter(is_function)
+            .map(Section::id)
+            .collect()
+    }
+
+    /// What a section's bytes refer to.
+    fn references(&self, section: SectionId) -> Vec<Reference> {
+        let mut references = Vec::new();
+        for table in &self.0.sections {
+            if let (Some(of), SectionData::Relocation(all)) = (table.sh_info_section, &table.data)
+                && of == section
+            {
+                references.extend(all.iter().filter_map(|relocation| {
+                    Some(Reference {
+                        offset: relocation.r_offset,
+                        kind: relocation.r_type,
+                        symbol: relocation.symbol?,
+                        addend: relocation.r_addend,
+                    })
+                }));
+            }
+        }
+        references
+    }
+
+    fn bytes(&self, section: SectionId) -> Vec<u8> {
+        match &self.0.sections.get(section).data {
+            SectionData::Data(bytes) => bytes.to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn code(&self, section: SectionId) -> Option<Code> {
+        Code::read(&self.bytes(section), self.references(section))
+    }
+
+    /// Where in a section a symbol and an addend lead.
+    fn place(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
+        let symbol = self.0.symbols.get(symbol);
+        (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
+    }
+
+    /// All offsets of a section that anything leads to.
+    fn targets(&self, section: SectionId) -> Vec<u64> {
+        let mut targets = Vec::new();
+        for table in &self.0.sections {
+            if let SectionData::Relocation(all) = &table.data {
+                let places = all.iter().filter_map(|relocation| {
+                    self.place(section, relocation.symbol?, relocation.r_addend)
+                });
+                targets.extend(places);
+            }
+        }
+        targets
+    }
+
+    /// The functions that certainly change r26 and the flags: what their callers know
+    /// (`-enable-ipra`), so that the routines may, too.
+    fn changing(&self, codes: &[(SectionId, Code)]) -> Vec<SectionId> {
+        let has =
+            |code: &Code, what: fn(u16) -> bool| code.instructions.iter().any(|at| what(at.code));
+        let mut changing = Vec::new();
+        loop {
+            let calls_one = |code: &Code| {
+                code.instructions.iter().any(|at| {
+                    let called = is_call(at.code)
+                        .then(|| code.reference(at.offset))
+                        .flatten();
+                    let section =
+                        called.and_then(|called| self.0.symbols.get(called.symbol).section);
+                    section.is_some_and(|section| changing.contains(&section))
+                })
+            };
+            let changes =
+                |code: &Code| has(code, writes_r26) && has(code, writes_flags) || calls_one(code);
+            let more = codes
+                .iter()
+                .filter(|(section, code)| !changing.contains(section) && changes(code));
+            let more: Vec<SectionId> = more.map(|(section, _)| *section).collect();
+            if more.is_empty() {
+                return changing;
+            }
+            changing.extend(more);
+        }
+    }
+
+    /// What shared beginnings and ends do to each function that gets shorter by them.
+    fn frames(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
+        let codes = self.functions().into_iter();
+        let codes: Vec<_> = codes
+            .filter_map(|section| Some((section, self.code(section)?)))
+            .collect();
+        let changing = self.changing(&codes);
+        let edits = |(section, code): &(SectionId, Code)| {
+            let frame = changing
+                .contains(section)
+                .then(|| Frame::of(code))
+                .flatten()?;
+            let edits = frame.edits(routines[frame.first]);
+            let edits = Edits::new(edits, &self.targets(*section))?;
+            (edits.gain() > 0).then_some((*section, edits))
+        };
+        codes.iter().filter_map(edits).collect()
+    }
+
+    /// The next branch of a section that can be turned round.
+    fn branch(&self, section: SectionId) -> Option<Edits> {
+        let code = self.code(section)?;
+        let targets = self.targets(section);
+        let place = |reference: &Reference| self.place(section, reference.symbol, reference.addend);
+        let edit: Edit = branch::edit(&code, &targets, place)?;
+        Edits::new(vec![edit], &targets)
+    }
+
+    /// Changes a section, and everything that says something of its offsets.
+    fn apply(&mut self, section: SectionId, edits: &Edits) {
+        let bytes = edits.bytes(&self.bytes(section));
+        let mut references = edits.references(&self.references(section));
+        let values: Vec<(SymbolId, u64)> = self
+            .0
+            .symbols
+            .iter()
+            .filter(|symbol| symbol.section == Some(section))
+            .map(|symbol| (symbol.id(), symbol.st_value))
+            .collect();
+        // An addend is moved by what its target moves beyond its symbol.
+        let addend = |symbol: SymbolId, addend: i64| {
+            let value = values.iter().find(|(id, _)| *id == symbol);
+            value.map_or(addend, |(_, value)| {
+                let place = value.wrapping_add_signed(addend);
+                edits.moved(place).wrapping_sub(edits.moved(*value)) as i64
+            })
+        };
+        for reference in &mut references {
+            reference.addend = addend(reference.symbol, reference.addend);
+        }
+        for table in &mut self.0.sections {
+            let own = table.sh_info_section == Some(section);
+            let SectionData::Relocation(all) = &mut table.data else {
+                continue;
+            };
+            if own {
+                all.clear();
+                all.extend(
+                    references
+                        .iter()
+                        .map(|reference| object::build::elf::Relocation {
+                            r_offset: reference.offset,
+                            symbol: Some(reference.symbol),
+                            r_type: reference.kind,
+                            r_addend: reference.addend,
+                        }),
+                );
+            } else {
+                for relocation in all {
+                    if let Some(symbol) = relocation.symbol {
+                        relocation.r_addend = addend(symbol, relocation.r_addend);
+                    }
+                }
+            }
+        }
+        for (id, value) in &values {
+            let symbol = self.0.symbols.get_mut(*id);
+            let end = edits.moved(value + symbol.st_size);
+            symbol.st_value = edits.moved(*value);
+            symbol.st_size = end - symbol.st_value;
+        }
+        let code = self.0.sections.get_mut(section);
+        code.sh_size = bytes.len() as u64;
+        code.data = SectionData::Data(bytes.into());
+    }
+}
