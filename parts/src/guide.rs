@@ -24,7 +24,7 @@ const LIFT: f64 = 45.0;
 /// # Errors
 /// [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
-    let steps = steps(assembly.robot().parts().strut);
+    let steps = steps(assembly.robot().drive().strut().is_some());
     let asides = assembly.asides(&steps)?;
     let mut files = Vec::new();
     let view = View::default();
@@ -208,18 +208,16 @@ fn html(markdown: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use lizard_robot::Strut;
-
     use super::*;
 
     #[test]
     fn every_body_is_put_on_in_exactly_one_step() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml");
         let text = std::fs::read_to_string(path).expect("paper");
-        for strut in [Strut::Spring, Strut::Rigid] {
-            let text = format!("{text}\n[parts]\nstrut = \"{}\"", strut.word());
+        for (word, slotted) in [("strut", true), ("rigid", false)] {
+            let text = format!("{text}\n[leg.drive]\nkind = \"{word}\"");
             let robot = lizard_robot::Robot::parse(&text).expect("paper");
-            let steps = steps(strut);
+            let steps = steps(slotted);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();
                 assert_eq!(count, 1, "{}", body.name);

@@ -4,8 +4,6 @@
 //! another, some of it on the bench before it is set on the robot: these are its
 //! stages, and a screw can be reached or not depending on the stage. `reach.rs` looks.
 
-use lizard_robot::Strut;
-
 use crate::body::{Body, Kind, Mount};
 
 /// One step of the guide.
@@ -60,13 +58,13 @@ fn bench(adds: fn(&Body) -> bool) -> Stage {
 }
 
 /// The steps of a robot with such struts.
-pub fn steps(strut: Strut) -> Vec<Step> {
+pub fn steps(slotted: bool) -> Vec<Step> {
     vec![
         chassis(),
         legs(),
         legs_on_plate(),
-        struts(strut),
-        links(strut),
+        struts(slotted),
+        links(slotted),
         sliders(),
         ends(),
         deck(),
@@ -148,14 +146,14 @@ fn legs_on_plate() -> Step {
     }
 }
 
-fn struts(strut: Strut) -> Step {
-    let (title, words) = match strut {
-        Strut::Spring => (
+fn struts(slotted: bool) -> Step {
+    let (title, words) = match slotted {
+        true => (
             "Struts and springs",
             "Lay each strut, recess up, with its slot over the crank's short arm. Hang one hook of the spring over the slot, put the \
              screw through hook, strut and crank and turn it into the sunk nut until the strut just moves freely.",
         ),
-        Strut::Rigid => (
+        false => (
             "Struts",
             "Lay each rigid strut with one hole over the crank's short arm, put the screw through strut and crank and turn it into \
              the sunk nut until the strut has no play and just moves freely.",
@@ -177,13 +175,13 @@ fn struts(strut: Strut) -> Step {
     }
 }
 
-fn links(strut: Strut) -> Step {
-    let anchor = match strut {
-        Strut::Spring => {
+fn links(slotted: bool) -> Step {
+    let anchor = match slotted {
+        true => {
             "Pull the spring's free hook under the link's third hole, lay the ring on it, and put the anchor's \
              screw from above through link, ring, hook and strut; the nut goes under the strut."
         }
-        Strut::Rigid => {
+        false => {
             "Lay the ring between strut and link, and put the anchor's screw from above through link, ring and strut; the nut goes \
              under the strut."
         }
