@@ -59,6 +59,10 @@ fn a_spring_that_cannot_be_wound_or_hung_is_refused() {
             ["--wire", "0.6", "--installed", "20"],
             "--installed is 20 mm, but without load the spring is 25.4 mm long already",
         ),
+        (
+            ["--wire", "0.6", "--length", "40"],
+            "between a strut's screws it has 33.2 mm, but without load the spring is 40 mm long already",
+        ),
     ] {
         let all = [&["spring"], &arguments[..]].concat();
         assert_eq!(complaint(&all), format!("lizard: {words}"));

@@ -135,13 +135,17 @@ impl Drive {
     /// The lag (deg) nearest to this one that the leg can have without a load while its
     /// servo is at this sweep, deg.
     pub(crate) fn within(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
-        let stops = self.of_leg(leg, sweep, 1.0).stops().map(f64::to_degrees);
+        let stops = self
+            .of_leg(leg, sweep, 1.0, 1.0)
+            .stops()
+            .map(f64::to_degrees);
         lag.clamp(stops[0], stops[1])
     }
 
     /// What a lag of this leg costs while its servo is at this sweep, deg. Forces are
-    /// counted in `force` N.
-    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64) -> Yield {
+    /// counted in `force` N, and no pad turns its leg with more than `most` of them at a
+    /// lever of 1 mm.
+    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, most: f64) -> Yield {
         let [lower, upper] = match &self.kind {
             Kind::Rigid => [Side::Stop; 2],
             Kind::Strut(strut) => strut.sides(leg, sweep, force),
@@ -149,6 +153,7 @@ impl Drive {
         };
         Yield {
             play: self.play.to_radians(),
+            stop: 1.25 * most,
             lower,
             upper,
         }

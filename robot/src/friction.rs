@@ -331,6 +331,8 @@ mod tests {
     use crate::yields::{Side, Stretch};
 
     const EVEN: [f64; 4] = [1.0; 4];
+    /// More than a pad at the end of a leg of 45 mm can push.
+    const STOP: f64 = 250.0;
     const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
     /// The friction's work and the springs' energy.
@@ -519,7 +521,7 @@ mod tests {
             prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
             let (rate, preload) = (10f64.powf(rate), preload.unwrap_or(0.0));
             let side = Side::Spring { rate, preload };
-            let drive = Yield { play: 0.0, lower: side, upper: side };
+            let drive = Yield { play: 0.0, stop: STOP, lower: side, upper: side };
             // The lags that the pads could hold before.
             let before = std::array::from_fn(|i| {
                 let torque: f64 = hold[i] * 45.0 * load[i];
@@ -550,7 +552,7 @@ mod tests {
             // The spring of the paper's size; one without a rate would pull less the
             // further it is stretched, where its lever shrinks.
             let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
-            let drive = Yield { play, lower: Side::Stop, upper };
+            let drive = Yield { play, stop: STOP, lower: Side::Stop, upper };
             let give = Some(Give {
                 along: [[45.0, 0.0]; 4],
                 before: within.map(|share| share * play),

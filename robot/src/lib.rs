@@ -82,7 +82,7 @@ pub use place::Place;
 pub use plate::Plate;
 pub use report::{Report, Row, UNDECIDED};
 pub use robot::Robot;
-pub use sensitivity::{MOUNTS, RATIOS, Sensitive, Sensitivity};
+pub use sensitivity::{LEAVES, LONG, MOUNTS, PLAYS, RATIOS, Sensitive, Sensitivity, TWISTS};
 pub use servo::{Pace, Servo};
 pub use spring::Spring;
 pub use sprung::Sprung;

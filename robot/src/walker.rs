@@ -172,6 +172,8 @@ impl Walker {
         let (load, ratio) = self.uneven;
         let loads = self.ground.loads(at);
         let (drive, grip) = (&self.ground.drive, self.ground.grip());
+        // No pad carries more than the whole robot.
+        let most = 4.0 * feet.reach * (self.ground.ratio * ratio).max(1.0);
         Pads {
             at,
             swing: each(&|i, j| to[i][j] - from[i][j] + (lag[i] - before[i]) * along[i][j]),
@@ -180,7 +182,7 @@ impl Walker {
             give: drive.lags().then(|| Give {
                 along,
                 before,
-                yields: std::array::from_fn(|i| drive.of_leg(i, servos[i], grip)),
+                yields: std::array::from_fn(|i| drive.of_leg(i, servos[i], grip, most)),
             }),
         }
     }

@@ -11,6 +11,9 @@
 pub(crate) struct Yield {
     /// How far the leg moves freely to either side.
     pub play: f64,
+    /// What a stop pushes back with: more than a pad can. Much more would only make the
+    /// cost harder to minimise.
+    pub stop: f64,
     /// What a lag below 0 meets.
     pub lower: Side,
     /// And one above 0.
@@ -53,10 +56,6 @@ pub(crate) struct Stretch {
     /// Between both while the leg does not lag, rad; a lag adds to it.
     pub angle: f64,
 }
-
-/// What a stop pushes back with: more than any pad holds, since none carries more than
-/// the whole robot at the end of a leg of half a metre.
-const STOP: f64 = 1e4;
 
 /// Energy, slope and curvature.
 type Expansion = (f64, f64, f64);
@@ -129,13 +128,13 @@ impl Side {
     }
 
     /// What so much lag beyond the play costs.
-    fn expand(&self, beyond: f64, eps: f64) -> Expansion {
+    fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
         let (far, slope, bend) = above(beyond, eps);
         let kink = |height: f64| (height * far, height * slope, height * bend);
         let sum = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         let x = beyond.max(0.0);
         match *self {
-            Self::Stop => kink(STOP),
+            Self::Stop => kink(stop),
             Self::Spring { preload, rate } => {
                 let curvature = if beyond > 0.0 { rate } else { 0.0 };
                 sum(kink(preload), (rate * x * x / 2.0, rate * x, curvature))
@@ -152,11 +151,11 @@ impl Side {
                 let curvature = if beyond > 0.0 { curvature } else { 0.0 };
                 let rest = (energy - preload * x, torque - preload, curvature);
                 let (past, slope, bend) = above(beyond - way, eps);
-                let stop = match way.is_finite() {
-                    true => (STOP * past, STOP * slope, STOP * bend),
+                let end = match way.is_finite() {
+                    true => (stop * past, stop * slope, stop * bend),
                     false => (0.0, 0.0, 0.0),
                 };
-                sum(sum(kink(preload), rest), stop)
+                sum(sum(kink(preload), rest), end)
             }
         }
     }
@@ -190,8 +189,8 @@ impl Yield {
     /// The energy at a lag (rad), its slope and its curvature, with kinks that are rounded
     /// off within `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
-        let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps);
-        let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps);
+        let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps, self.stop);
+        let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps, self.stop);
         (up + down, by_up - by_down, bend_up + bend_down)
     }
 
@@ -212,14 +211,14 @@ impl Yield {
         let side = if torque > 0.0 { self.upper } else { self.lower };
         let torque = torque.abs();
         let beyond = match side {
-            Side::Stop if torque <= STOP => 0.0,
+            Side::Stop if torque <= self.stop => 0.0,
             Side::Spring { preload, rate } => {
                 let beyond = (torque - preload).max(0.0);
                 beyond * beyond / (2.0 * rate)
             }
             // By golden section: torque times lag less the energy has one top.
-            Side::Strut { .. } if torque <= STOP => {
-                let gain = |x: f64| torque * x - side.expand(x, 0.0).0;
+            Side::Strut { .. } if torque <= self.stop => {
+                let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
                 let (mut low, mut high) = (0.0, side.end().min(std::f64::consts::PI));
                 for _ in 0..200 {
                     let third = (high - low) / 3.0;
@@ -240,6 +239,7 @@ impl Yield {
 mod tests {
     use super::*;
 
+    const STOP: f64 = 400.0;
     const SPRING: Side = Side::Spring {
         preload: 30.0,
         rate: 570.0,
@@ -279,7 +279,12 @@ mod tests {
     fn the_slope_of_the_energy_is_the_torque_and_its_slope_the_stiffness() {
         let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
         for play in [0.0, 0.02] {
-            let drive = |lower, upper| Yield { play, lower, upper };
+            let drive = |lower, upper| Yield {
+                play,
+                stop: STOP,
+                lower,
+                upper,
+            };
             assert_slopes(drive(SPRING, SPRING), lags.clone());
             assert_slopes(drive(Side::Stop, Side::Stop), lags.clone());
             let side = Side::strut(strut(70.0), 8.0, 0.7, 5.0);
@@ -291,6 +296,7 @@ mod tests {
     fn a_leg_is_free_within_its_play_and_no_further() {
         let drive = Yield {
             play: 0.1,
+            stop: STOP,
             lower: Side::Stop,
             upper: SPRING,
         };

@@ -127,12 +127,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let installed = args.installed.unwrap_or(robot.hung());
     if installed < coil.length {
+        let room = match args.installed {
+            Some(mm) => format!("--installed is {mm} mm"),
+            None => format!("between a strut's screws it has {installed:.1} mm"),
+        };
         return Err(Failure::Input(format!(
-            "{} {installed:.1} mm, but without load the spring is {} mm long already",
-            match args.installed {
-                Some(_) => "--installed is",
-                None => "from screw to screw of a strut there are",
-            },
+            "{room}, but without load the spring is {} mm long already",
             coil.length
         )));
     }
