@@ -38,12 +38,12 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "guide/guide.html",
         "guide/guide.md",
         "guide/robot.svg",
-        "guide/step-8-done.svg",
+        "guide/step-11-done.svg",
     ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
-    assert!(guide.contains("## 4. Struts and springs"), "{guide}");
+    assert!(guide.contains("## 9. Struts and springs"), "{guide}");
     assert!(
         guide.contains("Instead of the struts, 4 x rigid strut,"),
         "{guide}"
@@ -58,7 +58,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
 fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("light.toml");
     let text = fs::read_to_string(robots("paper")).expect("paper");
-    fs::write(&file, text.replace("mass = 307.0", "mass = 280.0")).expect("a file");
+    fs::write(&file, text.replace("mass = 395.0", "mass = 280.0")).expect("a file");
     let said = |robot: &str| {
         let made = lizard(&fresh("parts-light"), &["--robot", robot]);
         assert!(made.status.success(), "{made:?}");
@@ -66,7 +66,7 @@ fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
     };
     let light = said(&file.display().to_string());
     assert!(
-        light.contains("The parts weigh 307 g") && light.ends_with("\n[body]\nmass = 307.0\n"),
+        light.contains("The parts weigh 396 g") && light.ends_with("\n[body]\nmass = 396.0\n"),
         "{light}"
     );
     assert_eq!(said(&robots("paper")).lines().count(), 1);
@@ -88,7 +88,7 @@ fn struts_may_be_rigid() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
-    assert!(guide.contains("## 4. Struts\n"), "{guide}");
+    assert!(guide.contains("## 9. Struts\n"), "{guide}");
     assert!(
         guide.contains("Instead of the struts, 4 x strut,"),
         "{guide}"

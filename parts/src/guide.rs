@@ -5,6 +5,7 @@
 use std::fmt::Write;
 
 use lizard_kinematics::Solution;
+use lizard_robot::Strut;
 
 use crate::assembly::Assembly;
 use crate::bill::Bill;
@@ -24,7 +25,7 @@ const LIFT: f64 = 45.0;
 /// # Errors
 /// [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
-    let steps = steps(assembly.robot().parts().strut);
+    let steps = steps(assembly.robot().parts().strut == Strut::Spring);
     let asides = assembly.asides(&steps)?;
     let mut files = Vec::new();
     let view = View::default();
@@ -208,8 +209,6 @@ fn html(markdown: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use lizard_robot::Strut;
-
     use super::*;
 
     #[test]
@@ -219,7 +218,7 @@ mod tests {
         for strut in [Strut::Spring, Strut::Rigid] {
             let text = format!("{text}\n[parts]\nstrut = \"{}\"", strut.word());
             let robot = lizard_robot::Robot::parse(&text).expect("paper");
-            let steps = steps(strut);
+            let steps = steps(strut == Strut::Spring);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();
                 assert_eq!(count, 1, "{}", body.name);

@@ -23,7 +23,7 @@ fn every_robot_has_air_between_its_parts() {
     for name in NAMES {
         let assembly = Assembly::new(&Robot::parse(&text(name)).expect(name));
         assert!(assembly.poses(10).count() > 100, "{name}");
-        let near = assembly.nearest(assembly.poses(10), 0.5);
+        let near = assembly.nearest(assembly.poses(10), 0.2);
         assert!(near.is_empty(), "{name}: {}", near[0]);
     }
 }
