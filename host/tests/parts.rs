@@ -39,6 +39,10 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "guide/guide.md",
         "guide/robot.svg",
         "guide/step-11-done.svg",
+        "guide/step-1-near.svg",
+        "guide/step-2-below.svg",
+        "guide/placements.json",
+        "stl/head-plate.stl",
     ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
@@ -52,6 +56,39 @@ fn a_folder_holds_everything_to_build_the_robot() {
         let (_, file) = line.trim_end_matches(')').rsplit_once('(').expect("a file");
         assert!(folder.join("guide").join(file).is_file(), "{file}");
     }
+}
+
+#[test]
+fn one_corner_can_be_printed_first() {
+    let folder = fresh("parts-corner");
+    let made = lizard(
+        &folder,
+        &["--robot", &robots("paper"), "--corner", "--json"],
+    );
+    assert!(made.status.success(), "{made:?}");
+    let list: serde_json::Value = serde_json::from_slice(&made.stdout).expect("JSON");
+    let list = list.as_array().expect("a list");
+    let names: Vec<_> = list
+        .iter()
+        .filter_map(|part| part["part"].as_str())
+        .collect();
+    for part in [
+        "seat A1",
+        "link A1 A3",
+        "crank LF RH",
+        "follower",
+        "leg coupler",
+        "foot LF RH",
+    ] {
+        assert!(names.contains(&part), "{names:?}");
+    }
+    assert!(
+        names.iter().any(|name| name.ends_with("strut")),
+        "{names:?}"
+    );
+    assert!(list.iter().all(|part| part["count"] == 1), "{list:?}");
+    assert!(!names.contains(&"plate") && !folder.join("bill.json").exists());
+    assert!(folder.join("stl/seat-A1.stl").is_file());
 }
 
 #[test]

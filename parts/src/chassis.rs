@@ -145,6 +145,45 @@ fn plate(builder: &mut Builder) {
     builder.body("plate".to_owned(), Kind::Printed, Mount::Chassis, prisms);
 }
 
+/// A piece of the plate for one servo and its leg: what is printed first.
+pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
+    /// What is around the seat, mm.
+    const AROUND: f64 = 2.0;
+    let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
+    let leg = &builder.layout.legs[servo];
+    let middle = middle(builder, servo);
+    let size = at(
+        parts.servo.width + 2.0 * (parts.fit + parts.wall + AROUND),
+        parts.servo.flange + 2.0 + 2.0 * AROUND,
+    );
+    let mut add = vec![Shape::rectangle(middle, size, 1.0)];
+    let [between, driven, idle] = plate.arms[servo];
+    add.push(Shape::bar(between[0], between[1], plate.arm));
+    for [from, to] in [driven, idle] {
+        add.push(Shape::bar(from, to, plate.arm - 0.01));
+        add.push(Shape::bar(to, middle, plate.arm - 0.02));
+    }
+    let outward = End::of_servo(servo).sign();
+    let mut cut = vec![
+        opening(builder, servo, parts.fit),
+        leads::notch(&parts.servo, middle, parts.fit, outward),
+    ];
+    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    let pivots = [leg.driven, leg.idle].map(|at| builder.hole(at));
+    vec![
+        Prism {
+            add,
+            cut: [&cut[..], &pivots].concat(),
+            z: [0.0, parts.plate],
+        },
+        Prism {
+            add: vec![seat(builder, servo)],
+            cut,
+            z: stack.seat.map(|z| z + parts.plate),
+        },
+    ]
+}
+
 /// The servos' numbers, engraved beside the seats: so the plate says which end is which.
 fn numbers(builder: &Builder) -> Vec<Shape> {
     let body = &builder.parts.servo;

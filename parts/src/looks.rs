@@ -130,18 +130,18 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     let [point, way] = out(builder, servo, neutral);
     let at = |ahead: f64, left: f64| point + way * ahead + way.left() * left;
     let second = point - Vector::new(BACK, 0.0);
-    let wide = 0.35 * length;
+    let wide = 0.24 * length;
     let face = Shape::hull(
         &[
             at(length - ROUND, 0.0),
-            at(0.3 * length, wide),
-            at(0.3 * length, -wide),
-            at(-0.1 * length, 0.6 * wide),
-            at(-0.1 * length, -0.6 * wide),
+            at(0.34 * length, wide),
+            at(0.34 * length, -wide),
+            at(-0.1 * length, 0.4 * wide),
+            at(-0.1 * length, -0.4 * wide),
         ],
         ROUND,
     );
-    let eyes = [wide, -wide].map(|left| Shape::disc(at(0.38 * length, 0.95 * left), EYE));
+    let eyes = [wide, -wide].map(|left| Shape::disc(at(0.42 * length, left), EYE));
     let mut cut = vec![builder.hole(point)];
     cut.extend(eyes);
     let add = vec![Shape::bar(second, point, builder.half()), face];

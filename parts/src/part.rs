@@ -52,6 +52,12 @@ impl Part {
         roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
     }
 
+    /// The middles of the holes that are to be drilled, as the part is printed, mm.
+    #[must_use]
+    pub fn closed_holes(&self) -> Vec<Vector> {
+        roof::in_air(&self.prisms)
+    }
+
     /// Its volume, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {
@@ -180,7 +186,7 @@ fn lying(body: &Body) -> (Vec<Prism>, bool) {
 }
 
 /// The frame in which a part is drawn.
-fn home(body: &Body) -> Placement {
+pub fn home(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }

@@ -5,6 +5,8 @@
 //! draw a ring in the air. So the hole is closed there by one layer, which is drilled
 //! through when the part is done.
 
+use lizard_kinematics::Vector;
+
 use crate::body::Prism;
 use crate::outline::{Loop, Outline};
 use crate::shape::Shape;
@@ -45,6 +47,18 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
         });
     }
     (layers, count)
+}
+
+/// The middles of those holes.
+pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
+    let mut middles = Vec::new();
+    for pair in prisms.windows(2) {
+        let below = Outline::of(&pair[0]);
+        let holes = pair[1].cut.iter();
+        let in_air = holes.filter(|hole| begins_in_air(hole, &pair[1], &below));
+        middles.extend(in_air.map(Shape::middle));
+    }
+    middles
 }
 
 /// Whether nothing is below the edge of a hole, though it is in the material.

@@ -189,7 +189,7 @@ impl Default for Parts {
             spring: Coil::paper(0.6),
             battery: [31.0, 56.0, 16.0],
             tail: 85.0,
-            head: 34.0,
+            head: 42.0,
         }
     }
 }
