@@ -285,7 +285,7 @@ fn deck(builder: &mut Builder) {
         let length = stack.deck[0];
         let post = Prism {
             add: vec![Shape::disc(place, STANDOFF)],
-            cut: Vec::new(),
+            cut: vec![builder.thread(place)],
             z: [0.0, length],
         };
         builder.body(
