@@ -36,7 +36,7 @@ const PAD: f64 = 0.2;
 
 /// What is bought and hangs in the wires or between them: how many, what, g each. Their
 /// middle is that of the rest.
-const MORE: [(usize, &str, f64); 8] = [
+const MORE: [(usize, &str, f64); 12] = [
     (
         4,
         "resistor 10 kOhm, from each servo's signal to ground",
@@ -55,16 +55,24 @@ const MORE: [(usize, &str, f64); 8] = [
     ),
     (
         1,
-        "round plug 5.5 x 2.1 mm with two wires, from the strips to the UNO's socket",
+        "round plug 5.5 x 2.1 mm with two wires, from the battery's switch to the UNO's socket",
         4.0,
     ),
-    (2, "wire of 0.5 mm2, red and black, 0.5 m", 3.0),
+    (2, "wire of 0.5 mm2, one red and one black, 0.5 m long", 3.0),
     (
         12,
         "jumper wire, pin to pin, 20 cm, for the servos' plugs",
         0.4,
     ),
     (8, "cable tie, 2.5 mm wide, 100 mm long", 0.3),
+    (1, "double-sided foam tape, 20 mm wide, 20 cm", 1.0),
+    (1, "USB cable, A to B, that carries data", 0.0),
+    (1, "charger for the battery", 0.0),
+    (
+        1,
+        "drill of 3 mm, kitchen scale, hex key and sockets for M3",
+        0.0,
+    ),
 ];
 
 /// What an SG-90 turns at a stall with 4.8 V, N mm: 1.8 kg cm.
