@@ -19,7 +19,7 @@ use crate::names::names;
 use crate::part::Part;
 use crate::picture::{Drawn, Label, View, labelled, whole};
 use crate::reach::Aside;
-use crate::roof::SKIN;
+use crate::roof::LAYER;
 use crate::steps::{Near, Step, steps};
 use crate::unfit::Unfit;
 
@@ -116,7 +116,7 @@ fn drilled(parts: &[Part]) -> String {
         })
         .collect();
     format!(
-        "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {SKIN} mm; open it with a drill of 3 mm, \
+        "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER} mm; open it with a drill of 3 mm, \
          or a screw: {}. Parts that are alike but for left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
         list.join(", ")
     )

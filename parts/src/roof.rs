@@ -11,42 +11,64 @@ use crate::body::Prism;
 use crate::outline::{Loop, Outline};
 use crate::shape::Shape;
 
-/// Thickness of what closes a hole: one layer, mm.
-pub const SKIN: f64 = 0.2;
+/// What a printer lays at once, mm: a hole is closed by one of its layers.
+pub const LAYER: f64 = 0.2;
 /// How far beside a hole is looked for what it stands on, mm.
 const BESIDE: f64 = 0.3;
+/// Heights that differ by less are the same, mm.
+const SAME: f64 = 1e-6;
 
 /// Layers with the holes closed that would begin in the air, and how many holes are.
 #[must_use]
 pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
-    let mut layers: Vec<Prism> = Vec::new();
+    let mut layers = prisms.to_vec();
     let mut count = 0;
-    for (number, prism) in prisms.iter().enumerate() {
-        let below = number
-            .checked_sub(1)
-            .map(|below| Outline::of(&prisms[below]));
-        let (in_air, rest): (Vec<_>, Vec<_>) = prism.cut.iter().cloned().partition(|hole| {
-            below
-                .as_ref()
-                .is_some_and(|below| begins_in_air(hole, prism, below))
-        });
-        if in_air.is_empty() {
-            layers.push(prism.clone());
-            continue;
+    for (number, pair) in prisms.windows(2).enumerate() {
+        let below = Outline::of(&pair[0]);
+        let above = &prisms[number + 1];
+        let low = above.z[0];
+        let high = skin(low);
+        for hole in &above.cut {
+            if !begins_in_air(hole, above, &below) {
+                continue;
+            }
+            count += 1;
+            layers = layers
+                .into_iter()
+                .flat_map(|layer| split(layer, high))
+                .collect();
+            for layer in &mut layers {
+                if layer.z[0] > low - SAME && layer.z[1] < high + SAME {
+                    layer.cut.retain(|other| other != hole);
+                }
+            }
         }
-        count += in_air.len();
-        let [low, high] = prism.z;
-        layers.push(Prism {
-            cut: rest,
-            z: [low, low + SKIN],
-            ..prism.clone()
-        });
-        layers.push(Prism {
-            z: [low + SKIN, high],
-            ..prism.clone()
-        });
     }
     (layers, count)
+}
+
+/// Where the first of a printer's layers ends that lies above a height: a slicer looks at
+/// the middle of each.
+fn skin(low: f64) -> f64 {
+    let first = ((low - LAYER / 2.0 + SAME) / LAYER).floor() + 1.0;
+    LAYER * (first + 1.0)
+}
+
+/// A layer in two at a height, if it has that height within.
+fn split(layer: Prism, at: f64) -> Vec<Prism> {
+    let [low, high] = layer.z;
+    if at < low + SAME || at > high - SAME {
+        return vec![layer];
+    }
+    let upper = Prism {
+        z: [at, high],
+        ..layer.clone()
+    };
+    let lower = Prism {
+        z: [low, at],
+        ..layer
+    };
+    vec![lower, upper]
 }
 
 /// The middles of those holes.
@@ -79,4 +101,21 @@ fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
             .into_iter()
             .all(|point| own.holds(point) && !below.holds(point))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_closed_layer_is_one_that_a_slicer_sees() {
+        for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
+            let high = skin(low);
+            // Slicers look at 0.1, 0.3, 0.5 mm and so on.
+            let seen = (0..100).map(|i| 0.1 + LAYER * f64::from(i));
+            let count = seen.filter(|z| low + 1e-9 < *z && *z < high - 1e-9).count();
+            assert_eq!(count, 1, "{low} {high}");
+            assert!(high - low < 0.31 && high - low > 0.09, "{low} {high}");
+        }
+    }
 }

@@ -300,7 +300,7 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
             // There was room for it: some of the part is gone.
             let (printed, roofs) = part.printed();
             let solid = Solid::of(&printed);
-            let skins = 0.2 * 9.0 * roofs as f64;
+            let skins = 0.3 * 9.0 * roofs as f64;
             assert!(
                 solid.volume < part.volume() + skins - 0.5,
                 "{name}: {}",
@@ -332,6 +332,14 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
             let (printed, count) = part.printed();
             roofs += count * part.count();
             let layers = layers(&printed);
+            for pair in layers.windows(2) {
+                assert!(
+                    (pair[0].0[1] - pair[1].0[0]).abs() < 1e-9,
+                    "{name}: {}",
+                    part.name
+                );
+                assert!(pair[1].0[1] > pair[1].0[0] + 0.01, "{name}: {}", part.name);
+            }
             for pair in layers.windows(2) {
                 let [(_, below), (z, outline)] = pair else {
                     continue;

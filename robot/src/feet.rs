@@ -76,7 +76,7 @@ impl Body {
     /// What robot.toml means where it says nothing: what the parts of the paper's robot
     /// weigh.
     pub const DEFAULT: Self = Self {
-        mass: 395.0,
+        mass: 396.4,
         centre: [0.0; 2],
     };
 

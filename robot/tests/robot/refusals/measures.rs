@@ -95,22 +95,22 @@ pub const MISTAKES: &[Mistake] = &[
         "leg.preload is -1; it must be within 0 to 10000 N mm",
     ),
     (
-        "mass = 395.0 ",
+        "mass = 396.4 ",
         "weight = 395 ",
         "body.weight is not a known key; allowed are mass, centre",
     ),
     (
-        "mass = 395.0 ",
+        "mass = 396.4 ",
         "mass = 0.395 ",
         "body.mass is 0.395; it must be within 10 to 10000 g",
     ),
     (
-        "mass = 395.0 ",
+        "mass = 396.4 ",
         "centre = [56.0, 0.0] ",
         "body.centre is so far from the middle that foot RH is in the air at neutral; all four must carry",
     ),
     (
-        "mass = 395.0 ",
+        "mass = 396.4 ",
         "centre = 5.0 ",
         "body.centre is 5.0; it must be an array of two numbers",
     ),
