@@ -2,7 +2,9 @@
 //! leave open.
 
 use fastrand::Rng;
-use lizard_robot::{Body, CheckedGait, Feet, Ground, Robot, Spring, Travel, Walker};
+use lizard_robot::{
+    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Spring, Stance, Strut, Travel, Walker,
+};
 use lizard_twin::ServoModel;
 
 /// Phases of a cycle.
@@ -16,10 +18,18 @@ const CENTRE: f64 = 8.0;
 const MOUNT: f64 = 4.0;
 const HIPS: f64 = 2.0;
 const SPRING: (f64, f64) = (0.8, 1.2);
+/// Leaves of feet: a print has their thickness to a fifteenth, and it counts three times.
+const LEAF: (f64, f64) = (0.8, 1.25);
+/// A leg's play, deg: more than robot.toml's by up to this.
+const PLAY: f64 = 1.0;
 
 /// The same in words.
 pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
-mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2";
+mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
+-1 to 1 times what [feet] level says";
+
+/// What [`Variation::with_play`] adds, in words.
+pub const PLAYED: &str = "play of the legs 0 to 1 deg more";
 
 /// A robot and a floor that differ at random from those of robot.toml.
 #[derive(Debug, Clone, Copy)]
@@ -53,17 +63,43 @@ impl Variation {
                 ..ground.body
             },
             friction: ground.friction * within(FRICTION),
-            spring: ground.spring.map(|spring| Spring {
-                rate: spring.rate * within(SPRING),
-                preload: spring.preload * within(SPRING),
-            }),
+            drive: Drive {
+                kind: match ground.drive.kind {
+                    Kind::Rigid => Kind::Rigid,
+                    Kind::Strut(strut) => Kind::Strut(Strut {
+                        force: strut.force * within(SPRING),
+                        rate: strut.rate * within(SPRING),
+                        ..strut
+                    }),
+                    Kind::Spring(spring) => Kind::Spring(Spring {
+                        rate: spring.rate * within(SPRING),
+                        preload: spring.preload * within(SPRING),
+                    }),
+                },
+                ..ground.drive
+            },
             ..*ground
         };
+        let (pads, ratio) = (std::array::from_fn(|_| within(PADS)), within(PADS));
+        let stance = Stance {
+            stiffness: ground.stance.stiffness * within(LEAF),
+            twist: ground.stance.twist + ground.stance.level * within((-1.0, 1.0)),
+            ..ground.stance
+        };
         Self {
-            ground,
-            pads: std::array::from_fn(|_| within(PADS)),
-            ratio: within(PADS),
+            ground: Ground { stance, ..ground },
+            pads,
+            ratio,
         }
+    }
+
+    /// The same with legs that have some play as well, which takes longer to walk.
+    #[must_use]
+    pub fn with_play(mut self, seed: u64) -> Self {
+        // Numbers of their own: with and without it is otherwise the same robot.
+        let mut rng = Rng::with_seed(seed ^ 0x9E37_79B9_7F4A_7C15);
+        self.ground.drive.play += PLAY * rng.f64();
+        self
     }
 
     /// No variation: the ground as it is.
@@ -92,7 +128,7 @@ impl Variation {
         let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
         let [begin, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
         // Of rigid legs the first cycle leaves nothing but where the servos are.
-        let sprung = self.ground.spring.is_some();
+        let sprung = self.ground.drive.lags();
         let from = if sprung { begin } else { end };
         let mut walker = Walker::uneven(self.ground, from, self.pads, self.ratio);
         if sprung {
@@ -144,7 +180,10 @@ mod tests {
     #[test]
     fn without_variation_it_walks_as_the_twin_does() {
         let text = include_str!("../../robots/paper.toml");
-        let springs = text.replace("[leg]", "[leg]\nspring = 5.0");
+        let springs = text.replace(
+            "[leg]",
+            "[leg]\ndrive = { kind = \"spring\", stiffness = 5.0 }",
+        );
         for text in [text, &springs] {
             let robot = Robot::parse(text).expect("right");
             for name in ["walk", "left"] {

@@ -47,9 +47,13 @@ fn a_folder_holds_everything_to_build_the_robot() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
-    assert!(guide.contains("## 9. Struts and springs"), "{guide}");
+    assert!(guide.contains("## 9. Struts\n"), "{guide}");
     assert!(
-        guide.contains("Instead of the struts, 4 x rigid strut,"),
+        guide.contains("Instead of the struts, 4 x strut,"),
+        "{guide}"
+    );
+    assert!(
+        !guide.contains("hook") && !guide.contains("tension"),
         "{guide}"
     );
     for line in guide.lines().filter(|line| line.starts_with("![")) {
@@ -110,11 +114,15 @@ fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
 }
 
 #[test]
-fn struts_may_be_rigid() {
-    let folder = fresh("parts-rigid");
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rigid.toml");
+fn struts_may_have_springs() {
+    let folder = fresh("parts-strut");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("strut.toml");
     let text = fs::read_to_string(robots("paper")).expect("paper");
-    fs::write(&file, text + "\n[parts]\nstrut = \"rigid\"\n").expect("a file");
+    fs::write(
+        &file,
+        text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n",
+    )
+    .expect("a file");
     let made = lizard(&folder, &["--robot", &file.display().to_string()]);
     assert!(made.status.success(), "{made:?}");
     for file in [
@@ -125,15 +133,16 @@ fn struts_may_be_rigid() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
-    assert!(guide.contains("## 9. Struts\n"), "{guide}");
-    assert!(
-        guide.contains("Instead of the struts, 4 x strut,"),
-        "{guide}"
-    );
-    assert!(
-        !guide.contains("hook") && !guide.contains("tension"),
-        "{guide}"
-    );
+    assert!(guide.contains("## 9. Struts and springs"), "{guide}");
+    for words in [
+        "Instead of the struts, 4 x rigid strut,",
+        "hook",
+        "tension",
+        "pulls 4.0 N (0.40 N/mm)",
+        "[leg.drive]\nkind = \"strut\"\nforce = 4.00\nrate = 0.400\n",
+    ] {
+        assert!(guide.contains(words), "{words}: {guide}");
+    }
 }
 
 #[test]

@@ -59,6 +59,10 @@ fn a_spring_that_cannot_be_wound_or_hung_is_refused() {
             ["--wire", "0.6", "--installed", "20"],
             "--installed is 20 mm, but without load the spring is 25.4 mm long already",
         ),
+        (
+            ["--wire", "0.6", "--length", "40"],
+            "between a strut's screws it has 33.2 mm, but without load the spring is 40 mm long already",
+        ),
     ] {
         let all = [&["spring"], &arguments[..]].concat();
         assert_eq!(complaint(&all), format!("lizard: {words}"));
@@ -101,4 +105,34 @@ fn what_is_advised_does() {
             "{gait}"
         );
     }
+}
+
+#[test]
+fn a_spring_is_to_robot_toml_what_it_is_to_the_bill() {
+    let output = lizard(&["spring", "--wire=0.6"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    let (_, table) = text.split_once("In robot.toml:\n\n").expect("a table");
+    let drive = |table: &str| {
+        let path = PAPER.trim_start_matches("--robot=");
+        let text = std::fs::read_to_string(path).expect(path);
+        let robot = lizard_robot::Robot::parse(&format!("{text}\n{table}")).expect(table);
+        *robot.drive().strut().expect("a strut")
+    };
+    // Left out, force and rate follow from the same coil.
+    let (said, meant) = (drive(table), drive("[leg.drive]\nkind = \"strut\""));
+    assert!(
+        (said.force - meant.force).abs() < 0.005,
+        "{said:?} {meant:?}"
+    );
+    assert!(
+        (said.rate - meant.rate).abs() < 0.0005,
+        "{said:?} {meant:?}"
+    );
+    // Another geometry comes to an ideal spring.
+    let output = lizard(&["spring", "--wire=0.6", "--geometry=pair"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        text.contains("\n[leg.drive]\nkind = \"spring\"\nstiffness = "),
+        "{text}"
+    );
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use lizard_kinematics::{Solution, Vector};
-use lizard_robot::{Coil, Spring, Strut};
+use lizard_robot::Coil;
 use serde::{Serialize, Serializer};
 
 use crate::assembly::Assembly;
@@ -179,68 +179,59 @@ pub struct Hold {
     /// Up to this torque the leg follows its servo exactly wherever gaits lead, N mm.
     #[serde(serialize_with = "thousandths")]
     pub preload: f64,
-    /// Beyond it the leg lags by a degree for each, N mm/deg.
-    #[serde(serialize_with = "thousandths")]
-    pub per_degree: f64,
-    /// How far it may lag until the slot ends, deg.
-    #[serde(serialize_with = "thousandths")]
-    pub way: f64,
+    /// How far a leg lags at the slot's end, deg: the least and the most that gaits' poses
+    /// have.
+    #[serde(serialize_with = "each_in_thousandths")]
+    pub way: [f64; 2],
+    /// What holds the leg there, N mm, likewise.
+    #[serde(serialize_with = "each_in_thousandths")]
+    pub end: [f64; 2],
     /// What dry friction of its pad asks of a leg, N mm.
     #[serde(serialize_with = "thousandths")]
     pub friction: f64,
 }
 
 impl Hold {
-    /// Of the robot's legs, whose springs are alike. `None` where they have none.
+    /// Whether a servo can go on turning at the slot's end: with less than seven tenths of
+    /// the torque at which it stalls.
+    #[must_use]
+    pub fn spares(&self) -> bool {
+        self.end[1] < 0.7 * STALL
+    }
+
+    /// Of the robot's legs, whose struts are alike. `None` where these are rigid.
     #[must_use]
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
-        let parts = robot.parts();
-        if parts.strut == Strut::Rigid {
-            return None;
+        let strut = robot.drive().strut()?;
+        const NONE: [f64; 2] = [f64::INFINITY, 0.0];
+        let (mut lever, mut way, mut end) = (NONE, NONE, NONE);
+        let widen = |range: &mut [f64; 2], value: f64| {
+            *range = [range[0].min(value), range[1].max(value)];
+        };
+        for gait in robot.gaits() {
+            for (_, phase) in gait.frames() {
+                let sweeps = robot.sweeps(gait.table_angles(phase));
+                for (leg, sweep) in sweeps.into_iter().enumerate() {
+                    let (lag, torque) = strut.end(leg, sweep);
+                    widen(&mut lever, strut.lever(leg, sweep));
+                    widen(&mut way, lag);
+                    widen(&mut end, torque);
+                }
+            }
         }
-        let lever = levers(assembly);
-        let coil: Coil = parts.spring;
-        // Both hooks lie around the far sides of their screws.
-        let installed = assembly.layout().legs[0].strut_length + parts.screw.diameter;
-        let force = coil.force(installed);
         let ground = robot.ground();
         Some(Self {
-            installed,
-            force,
-            rate: coil.rate(),
+            installed: robot.hung(),
+            force: strut.force,
+            rate: strut.rate,
             lever,
-            preload: force * lever[0],
-            per_degree: (coil.rate() * lever[0] * lever[0]).to_radians(),
-            way: (crate::struts::SLOT / lever[1]).to_degrees(),
+            preload: strut.force * lever[0],
+            way,
+            end,
             friction: ground.grip() * ground.feet.reach,
         })
     }
-
-    /// As robot.toml has it under [leg].
-    #[must_use]
-    pub fn spring(&self) -> Spring {
-        Spring {
-            rate: self.per_degree,
-            preload: self.preload,
-        }
-    }
-}
-
-/// The least and the greatest lever of a strut about its leg's pivot, mm, over all gaits.
-fn levers(assembly: &Assembly) -> [f64; 2] {
-    let robot = assembly.robot();
-    let mut range = [f64::INFINITY, 0.0_f64];
-    for gait in robot.gaits() {
-        for angles in gait.frames().map(|(_, phase)| gait.table_angles(phase)) {
-            for (plan, angle) in robot.legs().iter().zip(angles) {
-                let [from, to] = plan.at(angle, angle).strut;
-                let lever = (from - plan.shaft).cross(to - from).abs() / plan.strut_length;
-                range = [range[0].min(lever), range[1].max(lever)];
-            }
-        }
-    }
-    range
 }
 
 /// A name for what is not printed, and its mass in g.
@@ -410,9 +401,9 @@ impl fmt::Display for Bill {
             "\nAbout {:.0} hours on a printer like an Ender 3, in layers of 0.2 mm with 30 % infill.",
             self.hours()
         )?;
-        let (other, strut) = match self.hold {
-            Some(_) => ("without springs", Strut::Rigid),
-            None => ("with springs", Strut::Spring),
+        let (other, kind) = match self.hold {
+            Some(_) => ("without springs", "rigid"),
+            None => ("with springs", "strut"),
         };
         for Item {
             count, what, grams, ..
@@ -421,8 +412,7 @@ impl fmt::Display for Bill {
             writeln!(
                 f,
                 "\nInstead of the struts, {count} x {what}, {grams:.1} g each, which make legs {other}; with \
-                 `strut = \"{}\"` under `[parts]` in robot.toml this guide is about them.",
-                strut.word()
+                 `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide is about them."
             )?;
         }
         writeln!(f, "\nTo buy:\n")?;
@@ -445,20 +435,20 @@ impl fmt::Display for Bill {
         }
         writeln!(f, "\nIn robot.toml:\n\n```toml")?;
         match &self.hold {
-            Some(hold) => {
-                let Spring { rate, preload } = hold.spring();
-                writeln!(f, "[leg]\nspring = {rate:.2}\npreload = {preload:.1}\n")?;
-            }
-            None => writeln!(f, "[leg]\n# spring and preload are left out\n")?,
+            Some(Hold { force, rate, .. }) => writeln!(
+                f,
+                "[leg.drive]\nkind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}\n"
+            )?,
+            None => writeln!(f, "[leg.drive]\nkind = \"rigid\"\n")?,
         }
         writeln!(f, "{}```", self.body_toml())
     }
 }
 
 /// What rigid struts come to.
-const RIGID: &str = "The struts are rigid: a foot follows its servo without any lag, and a foot that is held stalls its \
-                     servo, which gets hot and may burn out. Watch the robot while it walks, and switch the servos' supply off \
-                     when a foot is caught.";
+const RIGID: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \
+                     can stall its servo, which gets hot and may burn out; a strut with a spring is no help there. Watch the robot while it \
+                     walks, and switch the servos' supply off when a foot is caught.";
 
 impl fmt::Display for Hold {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -468,28 +458,27 @@ impl fmt::Display for Hold {
             rate,
             lever,
             preload,
-            per_degree,
             way,
+            end,
             friction,
         } = self;
-        let most = force * lever[1];
         writeln!(
             f,
             "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm), at a lever of \
-             {:.1} to {:.1} mm in gaits. Up to {preload:.0} N mm at the leg the foot follows its servo without any lag; the \
-             pad's friction asks for about {friction:.0} N mm. Beyond, it lags a degree for each {per_degree:.1} N mm and \
-             more, at least {way:.0} deg until the slot ends. {}",
+             {:.1} to {:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction asks for \
+             about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot and body \
+             both held, a front foot on its way forward or a hind foot on its way back, the slot ends after {:.0} to {:.0} \
+             deg, at {:.0} to {:.0} N mm; the other way the strut is a bar. An SG-90 stalls at {STALL:.0} N mm. {}",
             lever[0],
             lever[1],
-            if most < 0.7 * STALL {
-                format!(
-                    "An SG-90 stalls at {STALL:.0} N mm, so a foot that is held spares its servo: a front foot on its way \
-                     forward, a hind foot on its way back. The other way a strut is a rigid bar."
-                )
-            } else {
-                format!(
-                    "An SG-90 stalls at {STALL:.0} N mm, before the spring yields much: it spares no servo."
-                )
+            way[0],
+            way[1],
+            end[0],
+            end[1],
+            match self.spares() {
+                true => "So much less spares it.",
+                false =>
+                    "So a caught foot can stall its servo as with a rigid strut: switch the servos' supply off.",
             }
         )?;
         if preload < friction {

@@ -73,9 +73,14 @@ impl<'a> Builder<'a> {
         self.half().max(head + self.parts.wall)
     }
 
+    /// Whether the struts have a slot and a spring.
+    pub fn slotted(&self) -> bool {
+        self.robot.drive().strut().is_some()
+    }
+
     /// The name of a leg's strut.
     pub fn strut(&self, leg: &str) -> String {
-        names::strut(self.parts.strut, leg)
+        names::strut(self.slotted(), leg)
     }
 
     /// A hole through which a screw turns.

@@ -6,8 +6,6 @@
 use std::fmt::Write;
 
 use lizard_kinematics::Solution;
-use lizard_robot::Strut;
-use lizard_robot::servo::LEGS;
 
 use crate::assembly::Assembly;
 use crate::bill::Bill;
@@ -20,7 +18,7 @@ use crate::part::Part;
 use crate::picture::{Drawn, Label, View, labelled, whole};
 use crate::reach::Aside;
 use crate::roof::LAYER;
-use crate::steps::{Near, Step, steps};
+use crate::steps::{Near, Step, Where, steps};
 use crate::unfit::Unfit;
 
 /// How far new parts are lifted in the exploded pictures, mm.
@@ -43,7 +41,7 @@ roof: that is a bridge of 6.4 mm, which needs none.";
 /// # Errors
 /// [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
-    let steps = steps(assembly.robot().parts().strut == Strut::Spring);
+    let steps = steps(assembly.robot().drive().strut().is_some());
     let asides = assembly.asides(&steps)?;
     let parts = assembly.parts();
     let mut files = Vec::new();
@@ -73,7 +71,10 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         }
         let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
         let here = asides.iter().filter(|aside| aside.step == number);
-        let turns: Vec<_> = here.map(|aside| turned(assembly, aside)).collect();
+        let at_bench = step.stages.iter().any(|stage| stage.at == Where::Bench);
+        let turns: Vec<_> = here
+            .map(|aside| turned(assembly, aside, at_bench))
+            .collect();
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
@@ -208,7 +209,7 @@ fn at_corner(body: &Body) -> bool {
 }
 
 /// What has to be turned out of the way.
-fn turned(assembly: &Assembly, aside: &Aside) -> String {
+fn turned(assembly: &Assembly, aside: &Aside, at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
     let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
     let turns: Vec<_> = turns
@@ -219,8 +220,12 @@ fn turned(assembly: &Assembly, aside: &Aside) -> String {
             } else {
                 "clockwise"
             };
-            let leg = LEGS[servo];
-            format!("crank and follower {leg} by {:.0} deg {way}", by.abs())
+            let (name, leg) = names(servo);
+            let what = match at_bench {
+                true => format!("crank and follower {leg}"),
+                false => format!("link {name} with its leg"),
+            };
+            format!("{what} by {:.0} deg {way}", by.abs())
         })
         .collect();
     format!("{} for {}", turns.join(" and "), aside.screws.join(", "))
@@ -234,10 +239,10 @@ mod tests {
     fn every_body_is_put_on_in_exactly_one_step() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml");
         let text = std::fs::read_to_string(path).expect("paper");
-        for strut in [Strut::Spring, Strut::Rigid] {
-            let text = format!("{text}\n[parts]\nstrut = \"{}\"", strut.word());
+        for (word, slotted) in [("strut", true), ("rigid", false)] {
+            let text = format!("{text}\n[leg.drive]\nkind = \"{word}\"");
             let robot = lizard_robot::Robot::parse(&text).expect("paper");
-            let steps = steps(strut == Strut::Spring);
+            let steps = steps(slotted);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();
                 assert_eq!(count, 1, "{}", body.name);

@@ -1,6 +1,5 @@
 //! What parts are called.
 
-use lizard_robot::Strut;
 use lizard_robot::servo::{LEGS, NAMES};
 
 /// What a servo and its leg are called.
@@ -13,10 +12,10 @@ pub fn coupler(servo: usize) -> String {
     format!("coupler {}", names(servo).0)
 }
 
-/// The name of a leg's strut.
-pub fn strut(strut: Strut, leg: &str) -> String {
-    match strut {
-        Strut::Spring => format!("strut {leg}"),
-        Strut::Rigid => format!("rigid strut {leg}"),
+/// The name of a leg's strut, which has a slot or is rigid.
+pub fn strut(slotted: bool, leg: &str) -> String {
+    match slotted {
+        true => format!("strut {leg}"),
+        false => format!("rigid strut {leg}"),
     }
 }

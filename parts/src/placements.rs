@@ -7,7 +7,6 @@
 //! convex outlines, already in place. `drill` are the holes to be drilled in a printed part.
 
 use lizard_kinematics::{Solution, Vector};
-use lizard_robot::Strut;
 use serde::Serialize;
 
 use crate::assembly::Assembly;
@@ -97,7 +96,7 @@ fn word(kind: Kind) -> &'static str {
 /// None that a robot can cause: what is written is plain.
 pub fn placements(assembly: &Assembly, pose: &Solution) -> Result<String, serde_json::Error> {
     let parts = assembly.parts();
-    let steps = steps(assembly.robot().parts().strut == Strut::Spring);
+    let steps = steps(assembly.robot().drive().strut().is_some());
     let place = |body: &Body| {
         let stages = (1..).zip(&steps).flat_map(|(step, of)| {
             (1..)

@@ -15,21 +15,18 @@
 //! other was, and it keeps from everything at least what the other keeps.
 
 use lizard_kinematics::Vector;
-use lizard_robot::Strut;
+use lizard_robot::SLOT;
 
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::builder::Builder;
 use crate::names::{self, names};
 use crate::shape::Shape;
 
-/// Free way of the leg's screw in the strut's slot, mm.
-pub const SLOT: f64 = 5.0;
-
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        let strut = body(builder, servo, builder.parts.strut);
+        let strut = body(builder, servo, builder.slotted());
         builder.bodies.push(strut);
-        if builder.parts.strut == Strut::Spring {
+        if builder.slotted() {
             spring(builder, servo);
         }
     }
@@ -37,22 +34,20 @@ pub fn add(builder: &mut Builder) {
 
 /// The struts that the robot has not, but could have.
 pub fn instead(builder: &Builder) -> Vec<Body> {
-    let other = match builder.parts.strut {
-        Strut::Spring => Strut::Rigid,
-        Strut::Rigid => Strut::Spring,
-    };
-    (0..4).map(|servo| body(builder, servo, other)).collect()
+    (0..4)
+        .map(|servo| body(builder, servo, !builder.slotted()))
+        .collect()
 }
 
-fn body(builder: &Builder, servo: usize, strut: Strut) -> Body {
+fn body(builder: &Builder, servo: usize, slotted: bool) -> Body {
     let (_, leg) = names(servo);
     Body {
-        name: names::strut(strut, leg),
+        name: names::strut(slotted, leg),
         kind: Kind::Printed,
         mount: Mount::Strut(servo),
-        prisms: match strut {
-            Strut::Spring => slotted(builder, servo),
-            Strut::Rigid => vec![rigid(builder, servo)],
+        prisms: match slotted {
+            true => with_slot(builder, servo),
+            false => vec![rigid(builder, servo)],
         },
         meets: vec![format!("crank {leg}")],
     }
@@ -69,7 +64,7 @@ fn channel(builder: &Builder) -> f64 {
     (parts.screw.head / 2.0).max(spring) + parts.fit
 }
 
-fn slotted(builder: &Builder, servo: usize) -> Vec<Prism> {
+fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
     let (stack, channel) = (builder.stack, channel(builder));
     let length = builder.layout.legs[servo].strut_length;
     let whole = |half: f64| Shape::bar(at(0.0), at(length + SLOT), half);
@@ -105,8 +100,8 @@ fn spring(builder: &mut Builder, servo: usize) {
     let length = builder.layout.legs[servo].strut_length;
     let radius = parts.spring.outer / 2.0;
     // Each hook lies around the far side of its screw; between both is the coil.
-    let hook = parts.spring.outer - 2.0 * parts.spring.wire - parts.screw.diameter / 2.0;
-    let size = Vector::new(length - 2.0 * hook, parts.spring.outer);
+    let hook = parts.spring.outer - 2.0 * parts.spring.wire;
+    let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
     let coil = Prism {
         add: vec![Shape::rectangle(at(length / 2.0), size, 0.0)],
         cut: Vec::new(),

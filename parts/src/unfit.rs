@@ -31,9 +31,14 @@ pub enum Unfit {
         "the nut of a leg's anchor does not fit into its crank with a screw from the shop; raise parts.thickness or the servo's horn"
     )]
     Nut,
+    /// An ideal spring, which no part is.
+    #[error(
+        "leg.drive.kind is \"spring\", an ideal that no part here is; parts need \"rigid\" or \"strut\""
+    )]
+    Ideal,
     /// The leg's strut is shorter than its spring.
     #[error(
-        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; parts.strut = \"rigid\" needs no spring"
+        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; [leg.drive] kind = \"rigid\" needs no spring"
     )]
     Spring {
         /// LF, RF, RH, LH.
@@ -110,9 +115,7 @@ impl Assembly {
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
         self.prove(|_, _| ()).judge()?;
-        self.asides(&steps(
-            self.robot().parts().strut == lizard_robot::Strut::Spring,
-        ))?;
+        self.asides(&steps(self.robot().drive().strut().is_some()))?;
         Ok(())
     }
 
@@ -135,10 +138,12 @@ impl Assembly {
             let height = parts.height;
             return Err(Unfit::Low { height, least });
         }
+        if matches!(self.robot().drive().kind, lizard_robot::Kind::Spring(_)) {
+            return Err(Unfit::Ideal);
+        }
         let legs = lizard_robot::servo::LEGS.iter().zip(&self.layout().legs);
-        for (leg, layout) in legs.filter(|_| parts.strut == lizard_robot::Strut::Spring) {
-            let inside = layout.strut_length + parts.screw.diameter;
-            if inside <= parts.spring.length {
+        for (leg, layout) in legs.filter(|_| self.robot().drive().strut().is_some()) {
+            if self.robot().hung() <= parts.spring.length {
                 return Err(Unfit::Spring {
                     leg,
                     strut: layout.strut_length,

@@ -16,7 +16,7 @@ fn with(name: &str, more: &str) -> Assembly {
 }
 
 fn sprung(name: &str) -> Assembly {
-    with(name, "[parts]\nstrut = \"spring\"")
+    with(name, "[leg.drive]\nkind = \"strut\"")
 }
 
 fn at(x: f64, y: f64) -> Vector {
@@ -153,8 +153,8 @@ fn a_coil_that_rides_on_its_strut_is_found() {
 #[test]
 fn every_shop_has_the_screws() {
     for name in NAMES {
-        for kind in ["spring", "rigid"] {
-            let assembly = with(name, &format!("[parts]\nstrut = \"{kind}\""));
+        for kind in ["strut", "rigid"] {
+            let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let mut asked = 0;
             for body in assembly.bodies() {
                 if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind {

@@ -63,7 +63,7 @@ fn list(page: &str) -> (&str, &str, &str) {
 #[test]
 fn the_quickstart_quotes_the_list_of_the_bill() {
     let text = read("robots/paper.toml");
-    let robot = Robot::parse(&format!("{text}\n[parts]\nstrut = \"rigid\"")).expect("paper");
+    let robot = Robot::parse(&format!("{text}\n[leg.drive]\nkind = \"rigid\"")).expect("paper");
     let assembly = Assembly::new(&robot);
     let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
     let bill = Bill::of(&assembly, &assembly.parts(), &pose);

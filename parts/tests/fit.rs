@@ -4,6 +4,7 @@
 use lizard_parts::{Assembly, Clearance};
 use lizard_robot::Robot;
 
+const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
 fn text(name: &str) -> String {
@@ -13,7 +14,7 @@ fn text(name: &str) -> String {
 
 /// The nearest pair of the paper's robot with other parts.
 fn nearest(parts: &str) -> Option<Clearance> {
-    let robot = Robot::parse(&format!("{}\n{parts}", text("paper"))).expect(parts);
+    let robot = Robot::parse(&format!("{}\n{STRUT}\n{parts}", text("paper"))).expect(parts);
     let assembly = Assembly::new(&robot);
     assembly.nearest(assembly.poses(9), 1.0).into_iter().next()
 }
@@ -21,7 +22,8 @@ fn nearest(parts: &str) -> Option<Clearance> {
 #[test]
 fn every_robot_has_air_between_its_parts() {
     for name in NAMES {
-        let assembly = Assembly::new(&Robot::parse(&text(name)).expect(name));
+        let text = format!("{}\n{STRUT}", text(name));
+        let assembly = Assembly::new(&Robot::parse(&text).expect(name));
         assert!(assembly.poses(10).count() > 100, "{name}");
         let near = assembly.nearest(assembly.poses(10), 0.2);
         assert!(near.is_empty(), "{name}: {}", near[0]);
@@ -117,7 +119,7 @@ fn pins_meet_the_holes_of_what_they_hold() {
 #[test]
 fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
     let refused = |parts: &str| {
-        let robot = Robot::parse(&format!("{}\n{parts}", text("paper"))).expect(parts);
+        let robot = Robot::parse(&format!("{}\n{STRUT}\n{parts}", text("paper"))).expect(parts);
         let unfit = Assembly::new(&robot).fits().expect_err(parts);
         unfit.to_string()
     };

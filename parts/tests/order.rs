@@ -3,18 +3,27 @@
 
 use lizard_kinematics::{Solution, Vector};
 use lizard_parts::{Act, Assembly, Body, Kind, Outline, Stage, Step, Unfit, Where, steps};
-use lizard_robot::{Robot, Strut};
+use lizard_robot::Robot;
 
 const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
+
+/// What is added where nothing says what drives the legs: slotted struts, which are wider.
+fn driven(more: &str) -> String {
+    match more.contains("[leg.drive]") {
+        true => more.to_owned(),
+        false => format!("[leg.drive]\nkind = \"strut\"\n{more}"),
+    }
+}
 
 fn assembly(name: &str, more: &str) -> Assembly {
     let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
-    Assembly::new(&Robot::parse(&format!("{text}\n{more}")).expect(more))
+    let text = format!("{text}\n{}", driven(more));
+    Assembly::new(&Robot::parse(&text).expect(more))
 }
 
 fn order(assembly: &Assembly) -> Vec<Step> {
-    steps(assembly.robot().parts().strut == Strut::Spring)
+    steps(assembly.robot().drive().strut().is_some())
 }
 
 fn neutral(assembly: &Assembly) -> Solution {
@@ -25,16 +34,21 @@ fn neutral(assembly: &Assembly) -> Solution {
 #[test]
 fn every_screw_of_every_robot_can_be_reached() {
     for name in NAMES {
-        for strut in ["spring", "rigid"] {
-            let assembly = assembly(name, &format!("[parts]\nstrut = \"{strut}\""));
+        for kind in ["strut", "rigid"] {
+            let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let asides = assembly.asides(&order(&assembly));
             let asides = asides.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
             // At neutral the follower covers a screw of its foot: the leg, which lies on
-            // the bench, is swung aside.
+            // the bench, is swung aside. A shorter anchor of a strut is over its servo's
+            // seat, where no socket gets to its nut: the link is turned.
             for aside in asides {
-                assert_eq!(aside.step, 7, "{name}: {aside:?}");
-                for screw in aside.screws {
-                    assert!(screw.starts_with("screw foot"), "{name}: {screw}");
+                let screw = match aside.step {
+                    7 => "screw foot",
+                    9 if name == "unequal" => "screw anchor",
+                    _ => panic!("{name}: {aside:?}"),
+                };
+                for found in aside.screws {
+                    assert!(found.starts_with(screw), "{name}: {found}");
                 }
             }
         }
@@ -93,9 +107,9 @@ fn a_strut_under_a_head_is_found() {
         .expect_err("no key gets there");
     assert_eq!(
         (refused.screw.as_str(), refused.act),
-        ("screw tip A2", Act::Turn)
+        ("screw tip A4", Act::Turn)
     );
-    assert_eq!(refused.by, "strut RF");
+    assert_eq!(refused.by, "strut LH");
 }
 
 #[test]
@@ -169,7 +183,10 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
             if !matches!(screw.kind, Kind::Screw(_)) || !from_above || here == Some(6) {
                 continue;
             }
-            assert!(!blocked.iter().any(|of| of.screw == screw.name));
+            if blocked.iter().any(|of| of.screw == screw.name) {
+                assert!(name == "unequal" && screw.name.starts_with("screw anchor"));
+                continue;
+            }
             let at = assembly.place(screw.mount, &pose).map(high.add[0].middle());
             for turn in 0..12 {
                 let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;

@@ -129,7 +129,7 @@ impl CheckedGait {
     pub fn walked(&self, ground: &Ground) -> Walked {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
         let mut steps = STEPS;
-        if ground.spring.is_some() {
+        if ground.drive.lags() {
             steps = SPRUNG;
             self.cycle(steps).for_each(|sweeps| {
                 walker.step(sweeps);

@@ -98,6 +98,9 @@ pub enum Problem {
     /// A key that means nothing.
     #[error("is not a known key; {0}")]
     Unknown(Hint),
+    /// A key of an earlier form of the file.
+    #[error("is not read any more; write {0}")]
+    Moved(&'static str),
     /// A value of the wrong type.
     #[error("is {found}; it must be {expected}")]
     Type {

@@ -1,7 +1,6 @@
-//! Where the feet are, and how much of the body each of them carries.
+//! Where the feet are, and what stands on them.
 
 use crate::friction::Point;
-use crate::linear::solve;
 
 /// Which legs are in front, servo order.
 pub(crate) const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
@@ -85,48 +84,6 @@ impl Body {
     pub fn mean_load(&self) -> f64 {
         self.mass / 1000.0 * GRAVITY / 4.0
     }
-
-    /// What each foot carries over the mean.
-    ///
-    /// Feet that give a little under a chassis that does not: the chassis sinks and
-    /// tilts, so the load is linear in the foot's place, and three equations of
-    /// balance say how. A foot that would have to pull is in the air.
-    #[must_use]
-    pub fn loads(&self, feet: [Point; 4]) -> [f64; 4] {
-        let mut carries = [true; 4];
-        loop {
-            let loads = linear(feet, self.centre, carries);
-            let Some(pulls) = (0..4).find(|&i| carries[i] && loads[i] < 0.0) else {
-                return loads;
-            };
-            carries[pulls] = false;
-            // Two feet carry a robot that falls over; the rest is no walking.
-            if carries.iter().filter(|carries| **carries).count() < 3 {
-                return loads.map(|load| load.max(0.0));
-            }
-        }
-    }
-}
-
-/// The loads over the mean of the feet that carry.
-fn linear(feet: [Point; 4], centre: Point, carries: [bool; 4]) -> [f64; 4] {
-    let (mut matrix, mut whole) = ([[0.0; 3]; 3], [0.0; 3]);
-    for i in (0..4).filter(|&i| carries[i]) {
-        let row = [1.0, feet[i][0], feet[i][1]];
-        for j in 0..3 {
-            for k in 0..3 {
-                matrix[j][k] += row[j] * row[k];
-            }
-        }
-    }
-    for (part, arm) in whole.iter_mut().zip([1.0, centre[0], centre[1]]) {
-        *part = 4.0 * arm;
-    }
-    let [sinks, nods, rolls] = solve(matrix, whole);
-    std::array::from_fn(|i| match carries[i] {
-        true => sinks + nods * feet[i][0] + rolls * feet[i][1],
-        false => 0.0,
-    })
 }
 
 #[cfg(test)]
@@ -159,54 +116,6 @@ mod tests {
         }
         .at([0.0; 4]);
         assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-9);
-    }
-
-    const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
-
-    fn body(centre: Point) -> Body {
-        Body {
-            centre,
-            ..Body::DEFAULT
-        }
-    }
-
-    #[test]
-    fn what_the_feet_carry_balances_the_body() {
-        let feet = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
-        for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
-            let loads = body(centre).loads(feet);
-            let sum = |arm: fn(Point) -> f64| -> f64 {
-                loads
-                    .iter()
-                    .zip(feet)
-                    .map(|(load, at)| load * arm(at))
-                    .sum()
-            };
-            assert!((sum(|_| 1.0) - 4.0).abs() < 1e-9);
-            assert!((sum(|at| at[0]) - 4.0 * centre[0]).abs() < 1e-9);
-            assert!((sum(|at| at[1]) - 4.0 * centre[1]).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn feet_in_a_rectangle_share_by_lever() {
-        // A quarter of the way ahead: the front feet carry half as much again.
-        let loads = body([27.5, 0.0]).loads(AT);
-        for (load, wanted) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
-            assert!((load - wanted).abs() < 1e-9, "{loads:?}");
-        }
-        for load in Body::DEFAULT.loads(AT) {
-            assert!((load - 1.0).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn a_foot_never_pulls() {
-        // Beyond the line through two feet the third leaves the floor.
-        let loads = body([30.0, 50.0]).loads(AT);
-        assert_eq!(loads[2], 0.0);
-        assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
-        assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
     }
 
     #[test]

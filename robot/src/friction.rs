@@ -12,7 +12,7 @@
 //! symmetric one; [`crate::Ground::predict`] finds out where that matters.
 
 use crate::linear::solve;
-use crate::spring::Yield;
+use crate::yields::Yield;
 
 /// Position or slide of a pad: forward, left.
 pub(crate) type Point = [f64; 2];
@@ -58,8 +58,8 @@ pub(crate) struct Give {
     pub along: [Point; 4],
     /// The lags before the step, rad.
     pub before: [f64; 4],
-    /// What the lag costs.
-    pub spring: Yield,
+    /// What each leg's lag costs.
+    pub yields: [Yield; 4],
 }
 
 /// What the pads do.
@@ -183,9 +183,8 @@ impl Pads {
         let Some(give) = &self.give else { return 0.0 };
         let back = |i: usize| {
             let ([x, y], lag) = (give.along[i], give.before[i]);
-            let (_, torque, _) = give.spring.expand(lag, 0.0);
             let holds = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
-            match torque.abs() > holds * (1.0 + 1e-6) {
+            match give.yields[i].pulls(lag) > holds * (1.0 + 1e-6) {
                 true => x.hypot(y) * lag.abs(),
                 false => 0.0,
             }
@@ -243,9 +242,8 @@ impl Pads {
             let [bx, by] = give.along[i];
             let row = [-wx * bx * unit, -wy * by * unit];
             let back = slope(row);
-            let (energy, torque, stiffness) = give
-                .spring
-                .expand(displacement.lag[i], eps / scale.size * unit);
+            let (energy, torque, stiffness) =
+                give.yields[i].expand(displacement.lag[i], eps / scale.size * unit);
             cost += energy;
             let leg = Row {
                 slope: load * back + torque * unit,
@@ -330,7 +328,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    use crate::yields::{Side, Stretch};
+
     const EVEN: [f64; 4] = [1.0; 4];
+    /// More than a pad at the end of a leg of 45 mm can push.
+    const STOP: f64 = 250.0;
     const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
     /// The friction's work and the springs' energy.
@@ -343,7 +345,9 @@ mod tests {
         let friction: f64 = slides.map(|(slide, load)| load * length(slide)).sum();
         let energy = |give: Give| -> f64 {
             let each = displacement.lag.iter();
-            each.map(|lag| give.spring.expand(*lag, 0.0).0).sum()
+            each.zip(give.yields)
+                .map(|(lag, drive)| drive.expand(*lag, 0.0).0)
+                .sum()
         };
         friction + pads.give.map_or(0.0, energy)
     }
@@ -369,7 +373,7 @@ mod tests {
             work += along(pads.swing[i]);
             if let Some(give) = pads.give {
                 let torque = along(give.along[i]);
-                work += torque * give.before[i] - give.spring.conjugate(torque);
+                work += torque * give.before[i] - give.yields[i].conjugate(torque);
             }
             net[0] += force[0];
             net[1] += force[1];
@@ -515,14 +519,46 @@ mod tests {
                 [45.0 * cos, 45.0 * sin]
             });
             prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
-            let spring = Yield { rate: 10f64.powf(rate), preload: preload.unwrap_or(0.0) };
+            let (rate, preload) = (10f64.powf(rate), preload.unwrap_or(0.0));
+            let side = Side::Spring { rate, preload };
+            let drive = Yield { play: 0.0, stop: STOP, lower: side, upper: side };
             // The lags that the pads could hold before.
             let before = std::array::from_fn(|i| {
                 let torque: f64 = hold[i] * 45.0 * load[i];
-                (torque.abs() - spring.preload).max(0.0).copysign(torque) / spring.rate
+                (torque.abs() - preload).max(0.0).copysign(torque) / rate
             });
-            let give = Some(Give { along, before, spring });
+            let give = Some(Give { along, before, yields: [drive; 4] });
             assert_least(&Pads { at: AT, swing, ratio, load, give });
+        }
+
+        // Play beside stops, and slotted struts that yield one way.
+        #[test]
+        fn nor_does_another_place_within_the_play_or_the_slot(
+            swing in prop::array::uniform4(point(5.0)),
+            load in prop::array::uniform4(0.5f64..1.5),
+            play in 0.0f64..0.03,
+            within in prop::array::uniform4(-1.0f64..1.0),
+            force in prop::option::of(0.2f64..6.0),
+            arm in 40.0f64..85.0,
+        ) {
+            prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
+            let (sin, cos) = arm.to_radians().sin_cos();
+            let far = [22.0 * cos - 30.2, 22.0 * sin];
+            let stretch = Stretch {
+                far: far[0].hypot(far[1]),
+                near: 22.0,
+                angle: far[1].atan2(far[0]) - arm.to_radians(),
+            };
+            // The spring of the paper's size; one without a rate would pull less the
+            // further it is stretched, where its lever shrinks.
+            let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
+            let drive = Yield { play, stop: STOP, lower: Side::Stop, upper };
+            let give = Some(Give {
+                along: [[45.0, 0.0]; 4],
+                before: within.map(|share| share * play),
+                yields: [drive; 4],
+            });
+            assert_least(&Pads { at: AT, swing, ratio: 1.0, load, give });
         }
     }
 }

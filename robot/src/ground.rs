@@ -9,8 +9,9 @@
 //! work and the springs' energy together, and friction against stiffness decides
 //! how far a leg lags behind its servo.
 
+use crate::drive::Drive;
 use crate::feet::{Body, Feet};
-use crate::spring::Spring;
+use crate::stance::Stance;
 
 /// The contact model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,14 +20,16 @@ pub struct Ground {
     pub feet: Feet,
     /// What they carry.
     pub body: Body,
+    /// How they share it.
+    pub stance: Stance,
     /// Friction coefficient of a pad that slides forward. It matters only beside a
     /// spring.
     pub friction: f64,
     /// Friction of a pad that slides backward over that of one that slides
     /// forward.
     pub ratio: f64,
-    /// What pulls each leg along behind its servo's crank; none where it is rigid.
-    pub spring: Option<Spring>,
+    /// What drives each leg from its servo's link.
+    pub drive: Drive,
 }
 
 /// The friction coefficient that robot.toml means where it says nothing: rubber on
@@ -39,9 +42,15 @@ impl Ground {
     #[must_use]
     pub fn rigid(&self) -> Self {
         Self {
-            spring: None,
+            drive: Drive::RIGID,
             ..*self
         }
+    }
+
+    /// What each of the feet (forward, left in mm, servo order) carries over the mean.
+    #[must_use]
+    pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
+        self.stance.loads(&self.body, feet)
     }
 
     /// The friction of a foot that carries the mean, N: what a spring works against.

@@ -3,6 +3,7 @@
 use lizard_core::five_bar::SHORTEST_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
+use crate::drive::Drive;
 use crate::error::{Checked, Problem};
 use crate::feet::{Body, Feet};
 use crate::ground::{DEFAULT_FRICTION, Ground};
@@ -12,7 +13,7 @@ use crate::parts::Parts;
 use crate::reader::Section;
 use crate::scale::{self, LONGEST_BAR};
 use crate::servo::{LEGS, NAMES, Pace, Servo, pin};
-use crate::spring::Spring;
+use crate::stance::Stance;
 use crate::supply::Supplies;
 
 /// Lengths of a robot that hobby servos move, mm.
@@ -24,6 +25,9 @@ const GAINS: (f64, f64) = (1.0, 22.0);
 
 /// Slower than this and a move outlasts the firmware's count of its frames.
 const SLOWEST: f64 = 10.0;
+
+/// Where what drives the legs was said before it had a table of its own.
+const SPRING: &str = "[leg.drive] with kind = \"spring\", stiffness and preload, or with kind = \"strut\" and the force and rate of its spring";
 
 const LINKS: [&str; 20] = [
     "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",
@@ -50,21 +54,24 @@ impl Measures {
     /// safe.
     pub fn read(root: &Section) -> Checked<Self> {
         let links = links(root)?;
-        let (leg, hips, mount, spring) = leg(root)?;
+        let (leg, hips, mount) = leg(root)?;
         let servos = servos(root)?;
         let (limits, pace) = limits(root)?;
         let parts = Parts::read(root)?;
         let lizard = Lizard { links, leg };
         let feet = hips.feet(&lizard, &parts, mount)?;
+        let neutral = servos.map(|servo| servo.neutral);
+        let legs = std::array::from_fn(|servo| {
+            LegPlan::new(servo, neutral[servo], &lizard, &parts, &feet)
+        });
+        let drive = Drive::read(&root.open("leg")?, &legs, neutral, &parts)?;
         let measures = Self {
             servos,
             limits,
             pace,
-            ground: ground(root, feet, spring)?,
+            ground: ground(root, feet, drive)?,
             supplies: Supplies::read(root, &servos)?,
-            legs: std::array::from_fn(|servo| {
-                LegPlan::new(servo, servos[servo].neutral, &lizard, &parts, &feet)
-            }),
+            legs,
             lizard,
             parts,
         };
@@ -152,9 +159,8 @@ fn links(root: &Section) -> Checked<Links> {
     Ok(l)
 }
 
-/// The legs: their links, their hips, their sweep at neutral in deg, and what pulls
-/// them.
-fn leg(root: &Section) -> Checked<(Leg, Hips, f64, Option<Spring>)> {
+/// The legs: their links, their hips, and their sweep at neutral in deg.
+fn leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let keys = [
         "ground",
         "crank",
@@ -163,10 +169,11 @@ fn leg(root: &Section) -> Checked<(Leg, Hips, f64, Option<Spring>)> {
         "hip_forward",
         "hip_side",
         "mount",
-        "spring",
-        "preload",
+        "drive",
     ];
-    let section = root.section("leg", &keys)?;
+    let section = root.open("leg")?;
+    section.moved(&["spring", "preload"], SPRING)?;
+    let section = section.only(&keys)?;
     let bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
     let leg = Leg {
         ground: bar("ground")?,
@@ -191,18 +198,7 @@ fn leg(root: &Section) -> Checked<(Leg, Hips, f64, Option<Spring>)> {
     )?;
     let hips = Hips::read(&section)?;
     let mount = section.number("mount", -90.0, 90.0, "deg")?;
-    Ok((leg, hips, mount, spring(&section)?))
-}
-
-/// What pulls a leg along; none, and the leg is rigid.
-fn spring(section: &Section) -> Checked<Option<Spring>> {
-    if !section.has("spring") && !section.has("preload") {
-        return Ok(None);
-    }
-    Ok(Some(Spring {
-        rate: section.number("spring", 0.01, 10_000.0, "N mm/deg")?,
-        preload: section.number_or("preload", 0.0, 0.0, 10_000.0, "N mm")?,
-    }))
+    Ok((leg, hips, mount))
 }
 
 /// What stands on the feet. A mass centre that leaves a foot in the air at neutral is
@@ -218,7 +214,7 @@ fn body(root: &Section, feet: &Feet) -> Checked<Body> {
         false => Body::DEFAULT.centre,
     };
     let body = Body { mass, centre };
-    let loads = body.loads(feet.at([0.0; 4]));
+    let loads = Stance::LEVEL.loads(&body, feet.at([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {
         Some(foot) => Err(Problem::InTheAir(LEGS[foot]).at(section.path("centre"))),
         None => Ok(body),
@@ -317,15 +313,16 @@ fn limits(root: &Section) -> Checked<(Limits, Pace)> {
 }
 
 /// The contact model.
-fn ground(root: &Section, feet: Feet, spring: Option<Spring>) -> Checked<Ground> {
+fn ground(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> {
     const RATIO: &str = "friction_back_over_forward";
     let section = root.section("ground", &[RATIO, "friction"])?;
     Ok(Ground {
         feet,
         body: body(root, &feet)?,
+        stance: Stance::read(root)?,
         friction: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, "(a coefficient)")?,
         ratio: section.number(RATIO, 0.1, 10.0, "(a ratio)")?,
-        spring,
+        drive,
     })
 }
 

@@ -6,7 +6,7 @@
 //! depend on it. Where the feet stand does, see `hips.rs`. All of it may be left out.
 
 use crate::coil::Coil;
-use crate::error::{Checked, Hint, Problem};
+use crate::error::Checked;
 use crate::reader::Section;
 
 /// Measures of the parts, mm.
@@ -33,8 +33,6 @@ pub struct Parts {
     /// middle. So much lies the hip, the middle of the foot's circle, from the driven
     /// pivot. None where it is left out; [`crate::LegPlan`] has where the foot is.
     pub foot: Option<[f64; 2]>,
-    /// How a servo's link drives its leg.
-    pub strut: Strut,
     /// Where the strut holds the servo's link and, in parallel, the leg: distance from
     /// the shaft, and angle (deg) from the crank, away from the arm.
     pub anchor: [f64; 2],
@@ -55,42 +53,6 @@ pub struct Parts {
     pub tail: f64,
     /// Length of the head's plate ahead of the head's point; 0 leaves it out.
     pub head: f64,
-}
-
-/// The bar from a servo's link to its leg.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Strut {
-    /// With a slot and a spring: the leg yields when its foot is held.
-    Spring,
-    /// With two holes: the leg never lags, and a foot that is held stalls its servo.
-    Rigid,
-}
-
-impl Strut {
-    /// Its word in robot.toml.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Spring => "spring",
-            Self::Rigid => "rigid",
-        }
-    }
-
-    fn read(section: &Section, default: Self) -> Checked<Self> {
-        const ALL: [Strut; 2] = [Strut::Spring, Strut::Rigid];
-        if !section.has("strut") {
-            return Ok(default);
-        }
-        let word = section.text("strut")?;
-        let known = ALL.into_iter().find(|strut| strut.word() == word);
-        known.ok_or_else(|| {
-            let problem = Problem::Word {
-                word: word.to_string(),
-                hint: Hint::new(word, &ALL.map(Self::word)),
-            };
-            problem.at(section.path("strut"))
-        })
-    }
 }
 
 /// A servo without its horn, mm. Heights are from the bottom of its case.
@@ -158,7 +120,6 @@ impl Default for Parts {
             kerf: 0.2,
             pivot: [28.5, 10.0],
             foot: None,
-            strut: Strut::Spring,
             anchor: [22.0, 0.0],
             height: 34.0,
             servo: ServoBody {
@@ -194,7 +155,7 @@ impl Default for Parts {
     }
 }
 
-const KEYS: [&str; 19] = [
+const KEYS: [&str; 18] = [
     "fit",
     "wall",
     "bar",
@@ -204,7 +165,6 @@ const KEYS: [&str; 19] = [
     "kerf",
     "pivot",
     "foot",
-    "strut",
     "anchor",
     "height",
     "servo",
@@ -216,6 +176,9 @@ const KEYS: [&str; 19] = [
     "head",
 ];
 
+/// Where the kind of strut is said now.
+const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
+
 impl Parts {
     /// Reads the table, all of which may be left out.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
@@ -223,7 +186,9 @@ impl Parts {
         if !root.has("parts") {
             return Ok(all);
         }
-        let section = root.section("parts", &KEYS)?;
+        let section = root.open("parts")?;
+        section.moved(&["strut"], STRUT)?;
+        let section = section.only(&KEYS)?;
         let mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
         let list = |name, default: [f64; 2], min, max| match section.has(name) {
             true => section.pair(name, min, max, "(mm; an angle in deg)"),
@@ -247,7 +212,6 @@ impl Parts {
             kerf: mm("kerf", all.kerf, 0.0, 2.0)?,
             pivot: list("pivot", all.pivot, -500.0, 500.0)?,
             foot,
-            strut: Strut::read(&section, all.strut)?,
             anchor: list("anchor", all.anchor, -90.0, 500.0)?,
             height: mm("height", all.height, 5.0, 500.0)?,
             servo: ServoBody::read(&section, all.servo)?,
@@ -317,13 +281,10 @@ mod tests {
     #[test]
     fn what_is_left_out_is_what_the_papers_robot_is_built_of() {
         assert_eq!(built(""), Ok(Parts::default()));
-        let parts = built(
-            "[parts]\nbar = 10.0\npivot = [30, 11]\nstrut = \"rigid\"\n[parts.servo]\nshaft = 5.9",
-        );
+        let parts = built("[parts]\nbar = 10.0\npivot = [30, 11]\n[parts.servo]\nshaft = 5.9");
         let expected = Parts {
             bar: 10.0,
             pivot: [30.0, 11.0],
-            strut: Strut::Rigid,
             servo: ServoBody {
                 shaft: 5.9,
                 ..Parts::default().servo
@@ -358,10 +319,9 @@ mod tests {
             ),
             ("[parts]\nservo = 3", "parts.servo is"),
             (
-                "[parts]\nstrut = \"stiff\"",
-                "parts.strut is \"stiff\"; allowed are spring, rigid",
+                "[parts]\nstrut = \"spring\"",
+                "parts.strut is not read any more; write [leg.drive] with kind = \"strut\" or \"rigid\"",
             ),
-            ("[parts]\nstrut = \"rigit\"", "did you mean \"rigid\"?"),
         ] {
             let refused = built(table).expect_err(table);
             assert!(refused.contains(sentence), "{refused}");

@@ -127,8 +127,10 @@ impl Ground {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drive::Drive;
     use crate::feet::{Body, Feet};
     use crate::ground::DEFAULT_FRICTION;
+    use crate::stance::Stance;
     use std::f64::consts::PI;
 
     const GROUND: Ground = Ground {
@@ -141,7 +143,8 @@ mod tests {
         ratio: 1.0,
         body: Body::DEFAULT,
         friction: DEFAULT_FRICTION,
-        spring: None,
+        drive: Drive::RIGID,
+        stance: Stance::LEVEL,
     };
 
     /// A cycle of legs that all do the same, each from a phase of its own.

@@ -52,6 +52,14 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Refuses keys that are said elsewhere now, and tells where.
+    pub fn moved(&self, names: &[&str], to: &'static str) -> Checked<()> {
+        match names.iter().find(|name| self.has(name)) {
+            Some(name) => Err(Problem::Moved(to).at(self.path(name))),
+            None => Ok(()),
+        }
+    }
+
     /// The keys in the order of the file.
     pub fn names(&self) -> Vec<&'a str> {
         let mut keys: Vec<_> = self.table.keys().collect();

@@ -27,7 +27,8 @@ pub struct Row {
     pub error: TableError,
     /// Where one cycle takes the robot, by the contact model.
     pub way: Prediction,
-    /// What the springs of its legs take from it; none where legs are rigid.
+    /// What the drive of its legs takes from it; none where these are rigid and have no
+    /// play.
     pub sprung: Option<Sprung>,
 }
 
@@ -85,19 +86,19 @@ impl fmt::Display for Report {
             self.flash,
             self.hash
         )?;
-        let springs = self.rows.iter().any(|row| row.sprung.is_some());
+        let lags = self.rows.iter().any(|row| row.sprung.is_some());
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
             "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg{}",
             "",
-            if springs { "   springs, deg and %" } else { "" }
+            if lags { "   drive, deg and %" } else { "" }
         )?;
         writeln!(
             f,
             "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn{}",
             "gait",
-            if springs { "      lag  of rigid" } else { "" }
+            if lags { "      lag  of rigid" } else { "" }
         )?;
         for row in &self.rows {
             let Row {

@@ -8,8 +8,10 @@ use toml::de::DeTable;
 
 use crate::audit;
 use crate::checked_gait::CheckedGait;
+use crate::coil::Coil;
 use crate::core_robot::CoreRobot;
 use crate::define;
+use crate::drive::Drive;
 use crate::error::{Checked, Error, Fault, Problem};
 use crate::file;
 use crate::ground::Ground;
@@ -20,6 +22,7 @@ use crate::parts::Parts;
 use crate::plate::Plate;
 use crate::reader::{self, Section};
 use crate::servo::{self, FORWARD, Pace, Servo};
+use crate::strut::Strut;
 use crate::supply::Supplies;
 use crate::table::{Tables, Unfit};
 use crate::tabled_gait::TabledGait;
@@ -97,7 +100,8 @@ impl Robot {
         let root = Section::root(
             table,
             &[
-                "links", "leg", "servo", "limits", "supply", "body", "ground", "parts", "gait",
+                "links", "leg", "servo", "limits", "supply", "body", "feet", "ground", "parts",
+                "gait",
             ],
         )?;
         Self::walking(Measures::read(&root)?, &root)
@@ -159,6 +163,31 @@ impl Robot {
     /// What it is built of.
     pub fn parts(&self) -> &Parts {
         &self.measures.parts
+    }
+
+    /// What drives its legs.
+    pub fn drive(&self) -> &Drive {
+        &self.ground().drive
+    }
+
+    /// Its slotted strut, which drives its legs or would: with this force (N) and rate
+    /// (N/mm) of the spring in it.
+    pub fn strut_with(&self, force: f64, rate: f64) -> Strut {
+        Strut {
+            force,
+            rate,
+            ..self.strut_of(&self.parts().spring)
+        }
+    }
+
+    /// The same with a spring from the shop hung in it.
+    pub fn strut_of(&self, coil: &Coil) -> Strut {
+        Strut::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
+    }
+
+    /// The length of a spring inside its hooks as it hangs in a strut, mm.
+    pub fn hung(&self) -> f64 {
+        Strut::hung(self.legs(), self.parts())
     }
 
     /// Its legs seen from above, servo order.

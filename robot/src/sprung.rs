@@ -1,14 +1,14 @@
-//! What springs take from a gait: how far its legs lag, and how much of the way of
-//! rigid legs is left.
+//! What springs and play take from a gait: how far its legs lag, and how much of the way
+//! of rigid legs is left.
 
 use crate::checked_gait::CheckedGait;
 use crate::ground::Ground;
 use crate::travel::Prediction;
 
-/// A gait on springs beside the same gait on rigid legs.
+/// A gait on legs that lag beside the same gait on rigid ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sprung {
-    /// Where a cycle leads on springs, as [`CheckedGait::predict`] has it.
+    /// Where a cycle leads, as [`CheckedGait::predict`] has it.
     pub way: Prediction,
     /// How far a leg is behind its servo at most, deg.
     pub lag: f64,
@@ -22,10 +22,12 @@ pub struct Sprung {
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 
 impl Sprung {
-    /// What this ground's springs do to a gait; none if its legs are rigid.
+    /// What this ground's drive does to a gait; none if its legs do not lag.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
-        ground.spring?;
+        if !ground.drive.lags() {
+            return None;
+        }
         let walked = gait.walked(ground);
         let way = gait.predict(&ground.rigid());
         let part = |sprung: f64, rigid: Option<f64>, least: f64| {

@@ -83,13 +83,12 @@ impl Walker {
         &self.ground
     }
 
-    /// Changes floor, pads or springs from here on. Legs that are rigid then do
-    /// not lag any more.
+    /// Changes floor, pads or springs from here on. A leg that is further behind than its
+    /// drive allows comes to its stop.
     pub fn set_ground(&mut self, ground: Ground) {
         self.ground = ground;
-        if ground.spring.is_none() {
-            self.lag = [0.0; 4];
-        }
+        let (drive, servos) = (&self.ground.drive, self.servos);
+        self.lag = std::array::from_fn(|i| drive.within(i, servos[i], self.lag[i]));
     }
 
     /// How far each leg is behind its servo, deg.
@@ -171,16 +170,19 @@ impl Walker {
         let at = each(&|i, j| (from[i][j] + to[i][j]) / 2.0);
         let before = self.lag.map(f64::to_radians);
         let (load, ratio) = self.uneven;
-        let loads = self.ground.body.loads(at);
+        let loads = self.ground.loads(at);
+        let (drive, grip) = (&self.ground.drive, self.ground.grip());
+        // No pad carries more than the whole robot.
+        let most = 4.0 * feet.reach * (self.ground.ratio * ratio).max(1.0);
         Pads {
             at,
             swing: each(&|i, j| to[i][j] - from[i][j] + (lag[i] - before[i]) * along[i][j]),
             ratio: self.ground.ratio * ratio,
             load: std::array::from_fn(|i| loads[i] * load[i]),
-            give: self.ground.spring.map(|spring| Give {
+            give: drive.lags().then(|| Give {
                 along,
                 before,
-                spring: spring.over(self.ground.grip()),
+                yields: std::array::from_fn(|i| drive.of_leg(i, servos[i], grip, most)),
             }),
         }
     }

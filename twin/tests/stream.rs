@@ -1,6 +1,6 @@
 //! Frames pushed one by one, against the model's prediction for the gait.
 
-use lizard_robot::{CheckedGait, Ground, Place, Robot, Spring};
+use lizard_robot::{CheckedGait, Drive, Ground, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin};
 
 fn paper() -> Robot {
@@ -37,10 +37,7 @@ fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally
 fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     let robot = paper();
     let springs = Ground {
-        spring: Some(Spring {
-            rate: 5.0,
-            preload: 0.0,
-        }),
+        drive: Drive::spring(5.0, 0.0),
         ..*robot.ground()
     };
     for ground in [*robot.ground(), springs] {

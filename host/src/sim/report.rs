@@ -119,10 +119,10 @@ impl Report<'_> {
                 cell(leg.turn, 2)
             )?;
         }
-        if self.frames.robot.ground().spring.is_some() {
+        if self.frames.robot.drive().lags() {
             writeln!(
                 out,
-                "Legs count as rigid here; `lizard twin` lets their springs lag."
+                "Legs are where their servos are here; `lizard twin` lets them lag."
             )?;
         }
         let parts = |leg: &Leg| [leg.forward, leg.left, leg.turn];

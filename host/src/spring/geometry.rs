@@ -1,6 +1,6 @@
 //! Three ways to hang a spring between a servo's crank and its leg.
 
-use lizard_robot::{Coil, Spring};
+use lizard_robot::{Coil, Drive, Kind, Robot, Spring, Strut};
 
 /// How the leg is pulled along.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub enum Geometry {
     Pair,
     /// One spring in line with the crank: it holds by its tension
     Radial,
-    /// A strut with a stop and the spring inside: rigid up to its preload
+    /// A strut with a slot and the spring inside: rigid up to its preload, and one way
     #[default]
     Strut,
 }
@@ -31,25 +31,43 @@ impl Hung {
         self.coil.force(self.installed)
     }
 
-    /// What the leg feels of it.
-    pub fn spring(&self) -> Spring {
+    /// What the legs of a robot are driven by, whose play stays.
+    pub fn drive(&self, robot: &Robot) -> Drive {
+        let kind = match self.geometry {
+            Geometry::Strut => Kind::Strut(self.strut(robot)),
+            Geometry::Pair | Geometry::Radial => Kind::Spring(self.ideal()),
+        };
+        Drive {
+            kind,
+            ..*robot.drive()
+        }
+    }
+
+    /// The robot's slotted strut with this spring in it, its anchors at this radius.
+    pub fn strut(&self, robot: &Robot) -> Strut {
+        Strut {
+            radius: self.radius,
+            ..robot.strut_with(self.force(), self.coil.rate())
+        }
+    }
+
+    /// What a pair or a radial spring comes to.
+    fn ideal(&self) -> Spring {
         let (rate, radius) = (self.coil.rate(), self.radius);
         // N mm per radian.
-        let (per_radian, preload) = match self.geometry {
-            // One gets longer by what the other gets shorter.
-            Geometry::Pair => (2.0 * rate * radius * radius, 0.0),
+        let per_radian = match self.geometry {
             // Anchors in line with the pivot, one `installed` further out: turned by z,
             // the pull has a lever of both radii over their distance, times sin z.
             Geometry::Radial => {
                 let outer = radius + self.installed;
-                (self.force() * radius * outer / self.installed, 0.0)
+                self.force() * radius * outer / self.installed
             }
-            // Up to the preload the strut stands at its stop.
-            Geometry::Strut => (rate * radius * radius, self.force() * radius),
+            // One gets longer by what the other gets shorter.
+            _ => 2.0 * rate * radius * radius,
         };
         Spring {
             rate: per_radian.to_radians(),
-            preload,
+            preload: 0.0,
         }
     }
 }
@@ -82,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_radial_spring_holds_by_its_tension() {
-        let spring = hung(Geometry::Radial).spring();
+        let spring = hung(Geometry::Radial).ideal();
         let degree = 1f64.to_radians();
         let torque = torque(COIL, 20.0, 50.0, degree);
         assert!(
@@ -93,13 +111,23 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_doubles_the_rate_and_a_strut_holds_before_it_yields() {
-        let (pair, strut) = (
-            hung(Geometry::Pair).spring(),
-            hung(Geometry::Strut).spring(),
-        );
-        assert!((pair.rate - 2.0 * strut.rate).abs() < 1e-12);
-        assert!((strut.rate - (COIL.rate() * 400.0).to_radians()).abs() < 1e-12);
-        assert!((strut.preload - 20.0 * COIL.force(30.0)).abs() < 1e-9);
+    fn a_pair_has_the_rate_of_both_springs() {
+        let pair = hung(Geometry::Pair).ideal();
+        assert!((pair.rate - (2.0 * COIL.rate() * 400.0).to_radians()).abs() < 1e-12);
+        assert_eq!(pair.preload, 0.0);
+    }
+
+    #[test]
+    fn in_a_strut_it_is_the_robots_own() {
+        let text = include_str!("../../../robots/paper.toml");
+        let own = format!("{text}\n[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
+        let robot = Robot::parse(&own).expect("right");
+        let hung = Hung {
+            coil: robot.parts().spring,
+            geometry: Geometry::Strut,
+            radius: robot.parts().anchor[0],
+            installed: robot.hung(),
+        };
+        assert_eq!(hung.drive(&robot), *robot.drive());
     }
 }

@@ -4,7 +4,7 @@ mod geometry;
 
 use std::io::{self, Write};
 
-use lizard_robot::{Coil, Ground, Robot, Spring, Sprung};
+use lizard_robot::{Coil, Drive, Ground, Kind, Robot, Sprung};
 use serde::Serialize;
 
 use crate::json;
@@ -15,15 +15,16 @@ use geometry::{Geometry, Hung};
 ///
 /// The paper pulls each leg along by a tension spring and gives nothing but its size,
 /// 5.55 x 25.4 mm. Whether the robot walks depends on it: each leg lags behind its servo
-/// by the friction of its pad over the stiffness. This prints both, which gaits keep
-/// 90 % of the way of rigid legs, and what would do.
+/// where the friction of its pad is more than the spring holds. This prints both, which
+/// gaits keep 90 % of the way of rigid legs, what would do, and what to write into
+/// robot.toml.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard spring --wire 0.6
   lizard spring --wire 0.5 --geometry pair --radius 15
   lizard spring --wire 0.8 --outer 6 --length 20 --installed 24 --geometry radial
 
-What it prints as `spring` and `preload` goes under [leg] in robot.toml.")]
+What it prints at its end goes into robot.toml.")]
 pub struct Args {
     /// Diameter of the wire, mm
     #[arg(long, value_name = "MM", value_parser = length)]
@@ -34,12 +35,14 @@ pub struct Args {
     /// Length inside the hooks without load, mm
     #[arg(long, value_name = "MM", value_parser = length, default_value_t = 25.4)]
     length: f64,
-    /// Length inside the hooks where it is hung, mm
-    #[arg(long, value_name = "MM", value_parser = length, default_value_t = 30.2)]
-    installed: f64,
-    /// From the leg's pivot to the anchor on the leg, mm
-    #[arg(long, value_name = "MM", value_parser = length, default_value_t = 20.0)]
-    radius: f64,
+    /// Length inside the hooks where it is hung, mm [default: from screw to screw of the
+    /// robot's struts]
+    #[arg(long, value_name = "MM", value_parser = length)]
+    installed: Option<f64>,
+    /// From the leg's pivot to the anchor on the leg, mm [default: robot.toml's, `[parts]
+    /// anchor`]
+    #[arg(long, value_name = "MM", value_parser = length)]
+    radius: Option<f64>,
     /// How it is hung
     #[arg(long, value_enum, default_value_t)]
     geometry: Geometry,
@@ -77,10 +80,14 @@ struct Answer {
     force: f64,
     /// N/mm^2, likewise
     stress: f64,
-    /// What robot.toml calls `spring`, N mm/deg.
-    spring: f64,
-    /// What robot.toml calls `preload`, N mm.
-    preload: f64,
+    /// As robot.toml has it under `[leg.drive]`: "strut" with `rate` and `force`, or
+    /// "spring" with `stiffness`.
+    kind: &'static str,
+    /// N mm for each degree; null in a strut
+    stiffness: Option<f64>,
+    /// What the leg withstands before it lags, N mm: the least and the most that the poses
+    /// of gaits have
+    holds: [f64; 2],
     /// How far a pad gives that is pulled back with 50 g, mm.
     give_at_50_g: f64,
     gaits: Vec<GaitAnswer>,
@@ -118,17 +125,22 @@ pub fn run(args: Args) -> Result<(), Failure> {
             coil.length
         )));
     }
-    if args.installed < coil.length {
+    let installed = args.installed.unwrap_or(robot.hung());
+    if installed < coil.length {
+        let room = match args.installed {
+            Some(mm) => format!("--installed is {mm} mm"),
+            None => format!("between a strut's screws it has {installed:.1} mm"),
+        };
         return Err(Failure::Input(format!(
-            "--installed is {} mm, but without load the spring is {} mm long already",
-            args.installed, coil.length
+            "{room}, but without load the spring is {} mm long already",
+            coil.length
         )));
     }
     let hung = Hung {
         coil,
         geometry: args.geometry,
-        radius: args.radius,
-        installed: args.installed,
+        radius: args.radius.unwrap_or(robot.parts().anchor[0]),
+        installed,
     };
     let answer = Answer::of(&robot, &hung);
     let mut out = io::stdout().lock();
@@ -140,17 +152,17 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The robot's ground with other springs.
-fn on(robot: &Robot, spring: Spring) -> Ground {
+/// The robot's ground with another drive of its legs.
+fn on(robot: &Robot, drive: Drive) -> Ground {
     Ground {
-        spring: Some(spring),
+        drive,
         ..*robot.ground()
     }
 }
 
 /// Whether every gait keeps enough of its way.
-fn is_enough(robot: &Robot, spring: Spring) -> bool {
-    let ground = on(robot, spring);
+fn is_enough(robot: &Robot, drive: Drive) -> bool {
+    let ground = on(robot, drive);
     let mut gaits = robot.gaits().iter().filter(|gait| gait.moves());
     gaits.all(|gait| {
         let share = Sprung::of(gait, &ground).and_then(|on| on.share);
@@ -160,8 +172,8 @@ fn is_enough(robot: &Robot, spring: Spring) -> bool {
 
 impl Answer {
     fn of(robot: &Robot, hung: &Hung) -> Self {
-        let spring = hung.spring();
-        let ground = on(robot, spring);
+        let drive = hung.drive(robot);
+        let ground = on(robot, drive);
         let reach = ground.feet.reach;
         let gaits = robot.gaits().iter().filter(|gait| gait.moves());
         let gaits = gaits.filter_map(|gait| {
@@ -177,9 +189,16 @@ impl Answer {
             initial_tension: hung.coil.initial_tension(),
             force: hung.force(),
             stress: hung.coil.stress(hung.force()),
-            spring: spring.rate,
-            preload: spring.preload,
-            give_at_50_g: spring.lag(pull(reach)).to_radians() * reach,
+            kind: drive.word(),
+            stiffness: match drive.kind {
+                Kind::Spring(spring) => Some(spring.rate),
+                _ => None,
+            },
+            holds: holds(robot, &drive),
+            give_at_50_g: match drive.kind {
+                Kind::Spring(spring) => spring.lag(pull(reach)).to_radians() * reach,
+                _ => give(robot, hung),
+            },
             gaits: gaits.collect(),
         }
     }
@@ -194,14 +213,20 @@ impl Answer {
         )?;
         writeln!(
             out,
-            "hung        {force:.2} N at {} mm, {:.0} N/mm^2 in the wire",
+            "hung        {force:.2} N at {:.1} mm, {:.0} N/mm^2 in the wire",
             hung.installed, self.stress
         )?;
-        writeln!(
-            out,
-            "leg         spring = {:.2} (N mm/deg), preload = {:.1} (N mm)",
-            self.spring, self.preload
-        )?;
+        match self.stiffness {
+            Some(stiffness) => writeln!(
+                out,
+                "leg         lags a degree for each {stiffness:.2} N mm"
+            )?,
+            None => writeln!(
+                out,
+                "leg         follows up to {:.0} N mm, at the best lever of a gait {:.0}",
+                self.holds[0], self.holds[1]
+            )?,
+        }
         let ground = robot.ground();
         let reach = ground.feet.reach;
         writeln!(
@@ -234,7 +259,16 @@ impl Answer {
                 "\nThe wire bears about {BEARS:.0} N/mm^2 for good; hang this spring less far."
             )?;
         }
-        self.advise(robot, hung, out)
+        self.advise(robot, hung, out)?;
+        writeln!(
+            out,
+            "\nIn robot.toml:\n\n[leg.drive]\nkind = \"{}\"",
+            self.kind
+        )?;
+        match self.stiffness {
+            Some(stiffness) => writeln!(out, "stiffness = {stiffness:.2}"),
+            None => writeln!(out, "force = {force:.2}\nrate = {rate:.3}"),
+        }
     }
 
     /// What would do, if this does not.
@@ -261,9 +295,9 @@ impl Answer {
                 found = true;
                 writeln!(
                     out,
-                    "- {}: a wire of {} mm in a coil of {} x {} mm, its anchor {:.0} mm from the leg's pivot, {:.1} N at {} mm;",
+                    "- {}: a wire of {} mm in a coil of {} x {} mm, its anchor {:.0} mm from the leg's pivot, {:.1} N at {:.1} mm;",
                     match geometry {
-                        Geometry::Strut => "a strut with a stop",
+                        Geometry::Strut => "a strut with a slot",
                         Geometry::Pair => "two springs against each other",
                         Geometry::Radial => "one in line with the crank",
                     },
@@ -298,11 +332,7 @@ fn needed(robot: &Robot) -> f64 {
     let (mut low, mut high) = (grip / 10.0, grip * 4.0);
     for _ in 0..7 {
         let middle = (low * high).sqrt();
-        let spring = Spring {
-            rate: middle,
-            preload: 0.0,
-        };
-        if is_enough(robot, spring) {
+        if is_enough(robot, Drive::spring(middle, 0.0)) {
             high = middle;
         } else {
             low = middle;
@@ -328,9 +358,45 @@ fn enough(robot: &Robot, hung: &Hung, geometry: Geometry, needed: f64) -> Option
                 radius: f64::from(radius),
                 ..*hung
             };
-            let spring = other.spring();
-            let holds = spring.rate >= needed || spring.preload >= 1.5 * grip;
+            let drive = other.drive(robot);
+            let holds = match drive.kind {
+                Kind::Spring(spring) => spring.rate >= needed,
+                _ => holds(robot, &drive)[0] >= 1.5 * grip,
+            };
             (holds && coil.stress(other.force()) < BEARS && other.force() < PULLS).then_some(other)
         })
     })
+}
+
+/// What a leg withstands before it lags, N mm: the least and the most over the poses of all
+/// gaits; 0 without a stop.
+fn holds(robot: &Robot, drive: &Drive) -> [f64; 2] {
+    let Some(strut) = drive.strut() else {
+        return [0.0; 2];
+    };
+    let mut range = [f64::INFINITY, 0.0_f64];
+    for gait in robot.gaits() {
+        for (_, phase) in gait.frames() {
+            let sweeps = robot.sweeps(gait.table_angles(phase));
+            for (leg, sweep) in sweeps.into_iter().enumerate() {
+                let preload = strut.preload(leg, sweep);
+                range = [range[0].min(preload), range[1].max(preload)];
+            }
+        }
+    }
+    range
+}
+
+/// How far a pad gives at neutral that is pulled with 50 g the way in which its strut
+/// grows, mm.
+fn give(robot: &Robot, hung: &Hung) -> f64 {
+    let (strut, reach) = (hung.strut(robot), robot.ground().feet.reach);
+    let beyond = pull(reach) - strut.preload(0, 0.0);
+    let rate = strut.rate * strut.lever(0, 0.0) * strut.lever(0, 0.0);
+    let (most, _) = strut.end(0, 0.0);
+    let lag = match beyond > 0.0 {
+        true => (beyond / rate).min(most.to_radians()),
+        false => 0.0,
+    };
+    lag * reach
 }

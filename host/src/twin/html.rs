@@ -39,6 +39,7 @@ struct Run {
     tubes: [f64; 2],
     stages: Vec<Stage>,
     springs: bool,
+    lags: bool,
 }
 
 /// The plate with its arms and the servos in it, as [`lizard_robot::Plate`].
@@ -174,6 +175,7 @@ fn run(replay: &Replay, report: &Report) -> Run {
                 text: row.sentence(),
             })
             .collect(),
-        springs: replay.robot.ground().spring.is_some(),
+        springs: replay.robot.drive().kind != lizard_robot::Kind::Rigid,
+        lags: replay.robot.drive().lags(),
     }
 }

@@ -60,8 +60,8 @@ pub struct Args {
     /// Write a moving picture (APNG) of the first gait, two cycles of it
     #[arg(long, value_name = "FILE")]
     apng: Option<PathBuf>,
-    /// Then walk each gait again N times with random friction, loads, mounting, hips
-    /// and springs, and say how far its way spreads
+    /// Then walk each gait again N times with random friction, loads, mounting, hips,
+    /// feet, springs and play, and say how far its way spreads
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     robust: Option<u32>,
     #[command(flatten)]

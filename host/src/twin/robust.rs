@@ -11,7 +11,7 @@ use super::replay::Replay;
 use super::report::known;
 use crate::Failure;
 use crate::json;
-use crate::variation::{SPREAD, Variation, quantiles};
+use crate::variation::{PLAYED, SPREAD, Variation, quantiles};
 
 /// What a gait's ways come to.
 #[derive(Debug, Serialize)]
@@ -53,7 +53,9 @@ pub fn run(
         }
         let way = |seed: u64| {
             bar.inc(1);
-            Variation::of(robot.ground(), seed).walked(robot, gait, model)
+            Variation::of(robot.ground(), seed)
+                .with_play(seed)
+                .walked(robot, gait, model)
         };
         let ways: Vec<Travel> = (0..u64::from(times)).map(way).collect();
         spreads.push(Spread::of(gait.name(), &ways));
@@ -86,7 +88,7 @@ impl Spread {
 fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "\n{times} robots and floors: {SPREAD}; a cycle, mm and deg:\n"
+        "\n{times} robots and floors: {SPREAD}, {PLAYED}; a cycle, mm and deg:\n"
     )?;
     let columns = [
         "ahead  5 %",

@@ -1,6 +1,6 @@
 //! docs/gaits.md shows what the commands print, docs/twin.md what springs cost.
 
-use lizard_robot::{Ground, Report, Sensitivity, Spring};
+use lizard_robot::{Drive, Ground, Report, Sensitivity};
 
 use crate::{gait, paper};
 
@@ -51,7 +51,7 @@ fn check(path: &str, page: &str, now: &str) {
 /// What a gait of the paper's robot comes to on springs of a rate; none is rigid.
 fn sprung(name: &str, rate: Option<f64>) -> lizard_robot::Travel {
     let ground = Ground {
-        spring: rate.map(|rate| Spring { rate, preload: 0.0 }),
+        drive: rate.map_or(Drive::RIGID, |rate| Drive::spring(rate, 0.0)),
         ..*paper().ground()
     };
     gait(paper(), name).walked(&ground).travel

@@ -6,11 +6,13 @@ use std::sync::LazyLock;
 use lizard_robot::{CheckedGait, Error, Robot};
 
 mod docs;
+mod drives;
 mod golden;
 mod predictions;
 mod refusals;
 mod robots;
 mod springs;
+mod standing;
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml");
 

@@ -1,7 +1,7 @@
 //! Legs that springs pull along: figures of a separate implementation of the same
 //! model, and consequences that hold exactly.
 
-use lizard_robot::{Body, Ground, Spring, Sprung, Walker};
+use lizard_robot::{Body, Drive, Ground, Sprung, Walker};
 
 use crate::{gait, paper, paper_with};
 
@@ -14,7 +14,7 @@ const STUDIED: Body = Body {
 /// The paper's robot, 280 g, on a friction of 0.7 and springs of this rate.
 fn springs(rate: f64) -> Ground {
     Ground {
-        spring: Some(Spring { rate, preload: 0.0 }),
+        drive: Drive::spring(rate, 0.0),
         body: STUDIED,
         ..*paper().ground()
     }
@@ -79,20 +79,20 @@ fn stiff_springs_are_rigid_legs() {
 }
 
 #[test]
-fn a_strut_is_rigid_up_to_its_preload() {
-    let strut = |preload: f64| {
+fn a_leg_is_rigid_up_to_its_springs_preload() {
+    let on = |preload: f64| {
         let ground = Ground {
-            spring: Some(Spring { rate: 2.0, preload }),
+            drive: Drive::spring(2.0, preload),
             ..springs(2.0)
         };
         gait(paper(), "walk").walked(&ground)
     };
     let rigid = gait(paper(), "walk").walked(paper().ground());
     // The pads' friction at the leg is 22 N mm, 24 where they carry most.
-    let held = strut(26.0);
+    let held = on(26.0);
     assert!(held.lag < 1e-3, "{held:?}");
     assert!((held.travel.forward - rigid.travel.forward).abs() < 0.06);
-    let yields = strut(10.0);
+    let yields = on(10.0);
     assert!((yields.lag - (21.6 - 10.0) / 2.0).abs() < 0.6, "{yields:?}");
     assert!(yields.travel.forward < 30.0);
 }
@@ -105,7 +105,7 @@ fn no_leg_is_held_back_further_than_its_pad_can() {
     let mut walker = Walker::new(ground, crawl.sweeps(0.0));
     for i in 1..=500 {
         walker.step(crawl.sweeps(f64::from(i) / 250.0));
-        let loads = ground.body.loads(ground.feet.at(walker.legs()));
+        let loads = ground.loads(ground.feet.at(walker.legs()));
         for (lag, load) in walker.lag().into_iter().zip(loads) {
             let most = ground.grip() * load * ground.feet.reach / 3.0;
             assert!(lag.abs() < most + 0.02, "{lag} {most}");
@@ -149,7 +149,11 @@ fn a_report_says_how_far_legs_lag_and_what_is_left() {
     assert!((share("left") - 11.9 / 15.3).abs() < 0.01);
     assert_eq!((of("stand").share, of("look").share), (None, None));
 
-    let robot = paper_with("mount = 0.0", "mount = 0.0\nspring = 5.0").expect("a spring");
+    let robot = paper_with(
+        "mount = 0.0",
+        "mount = 0.0\ndrive = { kind = \"spring\", stiffness = 5.0 }",
+    )
+    .expect("a spring");
     let heavier = Ground {
         body: paper().ground().body,
         ..springs(5.0)

@@ -10,7 +10,7 @@ mod engine;
 use std::sync::LazyLock;
 
 use engine::{Setup, Yaw, walked};
-use lizard_robot::{Body, Feet, Ground, Robot, Spring, Travel};
+use lizard_robot::{Body, Drive, Feet, Ground, Robot, Travel};
 
 fn paper() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
@@ -75,7 +75,7 @@ fn agree_of(
     assert!(
         off <= mm && (theirs.turn - ours.turn).abs() <= deg,
         "{name} goes {theirs:?} by the engine, {ours:?} by the model, with {:?}",
-        ground.spring
+        ground.drive
     );
     theirs
 }
@@ -107,7 +107,7 @@ fn rigid_legs_on_a_rough_floor_go_where_the_engine_goes() {
 
 fn springs(rate: f64) {
     let ground = Ground {
-        spring: Some(Spring { rate, preload: 0.0 }),
+        drive: Drive::spring(rate, 0.0),
         ..ground()
     };
     for name in KINDS {

@@ -88,23 +88,13 @@ pub extern "C" fn lizard_edit(value: f64) {
     });
 }
 
-/// [`Page::edit_floor`] of the input; the values of a [`Floor`] in its order.
+/// [`Page::edit_floor`]: the input is a line as [`Floor::read`] takes it, and then a text.
 #[unsafe(no_mangle)]
-pub extern "C" fn lizard_edit_floor(
-    friction: f64,
-    ratio: f64,
-    mass: f64,
-    stiffness: f64,
-    preload: f64,
-) {
-    let floor = Floor {
-        friction,
-        ratio,
-        mass,
-        stiffness,
-        preload,
-    };
-    answer(|_, text| either(Page::edit_floor(text, floor)));
+pub extern "C" fn lizard_edit_floor() {
+    answer(|_, input| {
+        let (line, text) = input.split_once('\n')?;
+        Some(either(Page::edit_floor(text, Floor::read(line)?)))
+    });
 }
 
 /// [`Page::pulses`].
@@ -132,23 +122,10 @@ pub extern "C" fn lizard_way(x0: f64, y0: f64, h0: f64, x1: f64, y1: f64, h1: f6
     answer(|_, _| Way::from(place(x0, y0, h0).way_to(place(x1, y1, h1))));
 }
 
-/// [`Page::set_floor`]; the values of a [`Floor`] in its order.
+/// [`Page::set_floor`]: the input is a line as [`Floor::read`] takes it.
 #[unsafe(no_mangle)]
-pub extern "C" fn lizard_set_floor(
-    friction: f64,
-    ratio: f64,
-    mass: f64,
-    stiffness: f64,
-    preload: f64,
-) {
-    let floor = Floor {
-        friction,
-        ratio,
-        mass,
-        stiffness,
-        preload,
-    };
-    answer(|page, _| page.set_floor(floor));
+pub extern "C" fn lizard_set_floor() {
+    answer(|page, line| Floor::read(line).map(|floor| page.set_floor(floor)));
 }
 
 /// [`Page::set_servos`]: the input is a name.

@@ -143,7 +143,7 @@ pub struct Description {
     pub supply: [f64; 3],
     /// The channel of the converter that measures the servos' rail, and the volts there.
     pub rail: Option<(u8, f64)>,
-    /// Its floor, weight and springs.
+    /// Its floor, weight, feet, and what drives its legs.
     pub floor: Floor,
     /// What its servos may be taken for.
     pub models: Vec<ModelEntry>,
@@ -198,7 +198,7 @@ impl Description {
                 .zip(robot.firmware().rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
-            floor: Floor::of(robot.ground()),
+            floor: Floor::of(robot),
             models: SERVO_MODELS.map(ModelEntry::from).into(),
             words: words(),
         }

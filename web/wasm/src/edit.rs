@@ -6,13 +6,19 @@ use toml::de::{DeTable, DeValue};
 /// Where the hips are, ahead and aside: they follow from the legs until they are set.
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
-/// Numbers that a robot.toml may leave out: they follow from others until they are set, or
-/// are what most robots have.
-pub const LEFT_OUT: [&str; 6] = [
+/// What a robot.toml may leave out: it follows from other values until it is set, or is what
+/// most robots have.
+pub const LEFT_OUT: [&str; 12] = [
     HIPS[0],
     HIPS[1],
-    "leg.spring",
-    "leg.preload",
+    "leg.drive.kind",
+    "leg.drive.stiffness",
+    "leg.drive.preload",
+    "leg.drive.force",
+    "leg.drive.rate",
+    "leg.drive.play",
+    "feet.stiffness",
+    "feet.twist",
     "ground.friction",
     "body.mass",
 ];
@@ -37,6 +43,27 @@ impl std::fmt::Display for NoSuchLength {
 /// # Errors
 /// If the text is not TOML or has no number there.
 pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchLength> {
+    with_value(text, key, &format!("{value:?}"), |value| {
+        matches!(value, DeValue::Float(_) | DeValue::Integer(_))
+    })
+}
+
+/// The same with a word in place of a number.
+///
+/// # Errors
+/// If the text is not TOML or has no string there.
+pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchLength> {
+    with_value(text, key, &format!("\"{word}\""), |value| {
+        matches!(value, DeValue::String(_))
+    })
+}
+
+fn with_value(
+    text: &str,
+    key: &str,
+    value: &str,
+    is_one: fn(&DeValue) -> bool,
+) -> Result<String, NoSuchLength> {
     let missing = || NoSuchLength(key.to_string());
     let document = DeTable::parse(text).map_err(|_| missing())?;
     let (tables, name) = key.rsplit_once('.').ok_or_else(missing)?;
@@ -46,7 +73,7 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchLe
             Some(DeValue::Table(inner)) => inner,
             None if LEFT_OUT.contains(&key) => {
                 let end = if text.ends_with('\n') { "" } else { "\n" };
-                return Ok(format!("{text}{end}\n[{tables}]\n{name} = {value:?}\n"));
+                return Ok(format!("{text}{end}\n[{tables}]\n{name} = {value}\n"));
             }
             _ => return Err(missing()),
         };
@@ -57,31 +84,31 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchLe
             false => Err(missing()),
         };
     };
-    if !matches!(place.get_ref(), DeValue::Float(_) | DeValue::Integer(_)) {
+    if !is_one(place.get_ref()) {
         return Err(missing());
     }
     let mut changed = text.to_string();
-    changed.replace_range(place.span(), &format!("{value:?}"));
+    changed.replace_range(place.span(), value);
     Ok(changed)
 }
 
 /// The text with a new line at the end of a table; none where that would not be in it, as
 /// in a table that is written on one line.
-fn added(text: &str, table: &DeTable, tables: &str, name: &str, value: f64) -> Option<String> {
+fn added(text: &str, table: &DeTable, tables: &str, name: &str, value: &str) -> Option<String> {
     let last = table.values().map(|value| value.span().end).max()?;
     let end = line_end(text, last);
     let mut longer = text.to_string();
-    longer.insert_str(end, &format!("\n{name} = {value:?}"));
+    longer.insert_str(end, &format!("\n{name} = {value}"));
     let there = place(&longer, tables, name)?;
     (there.start > end).then_some(longer)
 }
 
-/// The text without the line of a number that may be left out; as it is where that is not
+/// The text without the line of a value that may be left out; as it is where that is not
 /// there.
 ///
 /// # Errors
 /// If it is in a table that is written on one line.
-pub fn without_number(text: &str, key: &str) -> Result<String, NoSuchLength> {
+pub fn without(text: &str, key: &str) -> Result<String, NoSuchLength> {
     let missing = || NoSuchLength(key.to_string());
     let (tables, name) = key.rsplit_once('.').ok_or_else(missing)?;
     let Some(there) = place(text, tables, name) else {
@@ -154,12 +181,25 @@ mod tests {
 
     #[test]
     fn a_number_is_taken_away_with_its_line() {
-        const LEG: &str = "[leg]\nground = 50.0\nspring = 10.0 # soft\nmount = 0.0\n";
-        let rigid = without_number(LEG, "leg.spring").expect("it may be left out");
-        assert_eq!(rigid, "[leg]\nground = 50.0\nmount = 0.0\n");
-        assert_eq!(without_number(&rigid, "leg.spring"), Ok(rigid.clone()));
-        let one = "leg = { ground = 50.0, spring = 10.0 }\n";
-        assert!(without_number(one, "leg.spring").is_err());
+        const DRIVE: &str = "[leg.drive]\nkind = \"strut\"\nforce = 3.0 # N\nplay = 0.5\n";
+        let rest = without(DRIVE, "leg.drive.force").expect("it may be left out");
+        assert_eq!(rest, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
+        assert_eq!(without(&rest, "leg.drive.force"), Ok(rest.clone()));
+        let one = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
+        assert!(without(one, "leg.drive.force").is_err());
+    }
+
+    #[test]
+    fn a_word_takes_the_place_of_another() {
+        const DRIVE: &str = "[leg.drive] # bars\nkind = \"rigid\" # or not\n";
+        let changed = with_word(DRIVE, "leg.drive.kind", "strut").expect("there");
+        assert_eq!(changed, DRIVE.replace("rigid", "strut"));
+        let added = with_word("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut").expect("new");
+        assert_eq!(
+            added,
+            "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n"
+        );
+        assert!(with_word("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
     }
 
     #[test]

@@ -1,9 +1,12 @@
-//! What the page's sliders set: floor, weight and springs.
+//! What the page's sliders set: floor, weight, feet, and what drives the legs.
 
-use lizard_robot::{Body, Ground, Spring};
+use lizard_robot::{Body, Drive, Ground, Kind, Robot, Spring, Stance};
 use serde::Serialize;
 
-/// What a robot stands on, what it weighs and what pulls its legs. The rest of the ground is
+/// The kinds of drive as robot.toml calls them.
+pub const KINDS: [&str; 3] = ["rigid", "strut", "spring"];
+
+/// What a robot stands on, what it weighs and what drives its legs. The rest of the ground is
 /// the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Floor {
@@ -13,49 +16,151 @@ pub struct Floor {
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,
-    /// Of a leg's spring, N mm/deg, above 0; infinite where legs are rigid, which is `null` in
-    /// JSON.
+    /// One of [`KINDS`].
+    pub kind: &'static str,
+    /// Of an ideal spring, N mm/deg, above 0.
     pub stiffness: f64,
-    /// Torque up to which a leg does not lag at all, N mm: a strut with a stop.
+    /// Torque up to which a leg on it does not lag at all, N mm.
     pub preload: f64,
+    /// What the spring in a strut pulls, N, above 0.
+    pub force: f64,
+    /// What it pulls more for each mm, N/mm.
+    pub rate: f64,
+    /// A leg's play to either side, deg.
+    pub play: f64,
+    /// What lifts a foot by a mm, N, above 0.
+    pub leaf: f64,
+    /// By how much the front left foot is too long, mm.
+    pub twist: f64,
 }
 
+/// What an ideal spring has where the robot has none, N mm/deg.
+const STIFFNESS: f64 = 10.0;
+
 impl Floor {
-    /// As a robot.toml has it.
+    /// Reads what JavaScript writes: the kind, and then the numbers in this order, with
+    /// blanks between. None where it is anything else.
     #[must_use]
-    pub fn of(ground: &Ground) -> Self {
+    pub fn read(line: &str) -> Option<Self> {
+        let (kind, numbers) = line.split_once(' ')?;
+        let numbers: Vec<f64> = numbers
+            .split(' ')
+            .map(|word| word.parse().ok())
+            .collect::<Option<_>>()?;
+        let [
+            friction,
+            ratio,
+            mass,
+            stiffness,
+            preload,
+            force,
+            rate,
+            play,
+            leaf,
+            twist,
+        ] = numbers[..]
+        else {
+            return None;
+        };
+        Some(Self {
+            friction,
+            ratio,
+            mass,
+            kind: KINDS.into_iter().find(|known| *known == kind)?,
+            stiffness,
+            preload,
+            force,
+            rate,
+            play,
+            leaf,
+            twist,
+        })
+    }
+
+    /// As a robot has it.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        let ground = robot.ground();
+        let spring = match ground.drive.kind {
+            Kind::Spring(spring) => spring,
+            _ => Spring {
+                rate: STIFFNESS,
+                preload: 0.0,
+            },
+        };
+        let own = robot.strut_of(&robot.parts().spring);
+        let strut = ground.drive.strut().unwrap_or(&own);
         Self {
             friction: ground.friction,
             ratio: ground.ratio,
             mass: ground.body.mass,
-            stiffness: ground.spring.map_or(f64::INFINITY, |spring| spring.rate),
-            preload: ground.spring.map_or(0.0, |spring| spring.preload),
+            kind: ground.drive.word(),
+            stiffness: spring.rate,
+            preload: spring.preload,
+            force: strut.force,
+            rate: strut.rate,
+            play: ground.drive.play,
+            leaf: ground.stance.stiffness,
+            twist: ground.stance.twist,
         }
     }
 
-    /// A robot's ground with these values. One that is out of its range leaves the ground's
-    /// own.
+    /// The same where no value is out of its range: such a one is the robot's own.
     #[must_use]
-    pub fn over(self, ground: &Ground) -> Ground {
-        let own = Self::of(ground);
+    pub fn within(self, robot: &Robot) -> Self {
+        let own = Self::of(robot);
         let pick = |value: f64, own: f64| match value > 0.0 && value.is_finite() {
             true => value,
             false => own,
         };
-        Ground {
+        let least = |value: f64, own: f64| match value >= 0.0 && value.is_finite() {
+            true => value,
+            false => own,
+        };
+        Self {
             friction: pick(self.friction, own.friction),
             ratio: pick(self.ratio, own.ratio),
+            mass: pick(self.mass, own.mass),
+            kind: self.kind,
+            stiffness: pick(self.stiffness, own.stiffness),
+            preload: least(self.preload, own.preload),
+            force: pick(self.force, own.force),
+            rate: least(self.rate, own.rate),
+            play: least(self.play, own.play),
+            leaf: pick(self.leaf, own.leaf),
+            twist: match self.twist.is_finite() {
+                true => self.twist,
+                false => own.twist,
+            },
+        }
+    }
+
+    /// A robot's ground with these values.
+    #[must_use]
+    pub fn over(self, robot: &Robot) -> Ground {
+        let (floor, ground) = (self.within(robot), robot.ground());
+        Ground {
+            friction: floor.friction,
+            ratio: floor.ratio,
             body: Body {
-                mass: pick(self.mass, own.mass),
+                mass: floor.mass,
                 ..ground.body
             },
-            spring: match self.stiffness {
-                f64::INFINITY => None,
-                rate if rate > 0.0 => Some(Spring {
-                    rate,
-                    preload: self.preload.max(0.0),
-                }),
-                _ => ground.spring,
+            stance: Stance {
+                stiffness: floor.leaf,
+                twist: floor.twist,
+                ..ground.stance
+            },
+            drive: Drive {
+                kind: match floor.kind {
+                    "strut" => Kind::Strut(robot.strut_with(floor.force, floor.rate)),
+                    "spring" => Kind::Spring(Spring {
+                        rate: floor.stiffness,
+                        preload: floor.preload,
+                    }),
+                    _ => Kind::Rigid,
+                },
+                play: floor.play,
             },
             ..*ground
         }
@@ -64,31 +169,74 @@ impl Floor {
 
 #[cfg(test)]
 mod tests {
-    use lizard_robot::Robot;
-
     use super::*;
 
-    #[test]
-    fn what_is_out_of_range_stays_as_it_was() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
-        let nonsense = Floor {
-            friction: 0.0,
-            ratio: -1.0,
-            mass: f64::NAN,
-            stiffness: f64::NAN,
-            preload: f64::NAN,
-        };
-        assert_eq!(nonsense.over(robot.ground()), *robot.ground());
+    const PAPER: &str = include_str!("../../../robots/paper.toml");
+
+    fn robot(more: &str) -> Robot {
+        Robot::parse(&format!("{PAPER}\n{more}")).expect("right")
     }
 
     #[test]
-    fn a_floor_of_a_ground_is_that_ground() {
-        let text = include_str!("../../../robots/paper.toml");
-        let springs = text.replace("[leg]", "[leg]\nspring = 5.0\npreload = 12.0");
-        for text in [text, &springs] {
-            let robot = Robot::parse(text).expect("right");
-            let ground = robot.ground();
-            assert_eq!(Floor::of(ground).over(ground), *ground);
+    fn what_is_out_of_range_stays_as_it_was() {
+        for more in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
+            let robot = robot(more);
+            let nonsense = Floor {
+                friction: 0.0,
+                ratio: -1.0,
+                mass: f64::NAN,
+                stiffness: f64::NAN,
+                preload: f64::NAN,
+                force: 0.0,
+                rate: -1.0,
+                play: -0.1,
+                leaf: 0.0,
+                twist: f64::INFINITY,
+                ..Floor::of(&robot)
+            };
+            assert_eq!(nonsense.over(&robot), *robot.ground());
+        }
+    }
+
+    #[test]
+    fn what_javascript_writes_is_read() {
+        let floor = Floor::of(&robot(""));
+        let line = "rigid 0.6 1.1 310 5 0 4 0.4 0.5 2 -0.6";
+        let read = Floor {
+            friction: 0.6,
+            ratio: 1.1,
+            mass: 310.0,
+            stiffness: 5.0,
+            force: 4.0,
+            rate: 0.4,
+            play: 0.5,
+            leaf: 2.0,
+            twist: -0.6,
+            ..floor
+        };
+        assert_eq!(Floor::read(line), Some(read));
+        for wrong in [
+            "",
+            "rigid",
+            "rigid 1 2",
+            "soft 1 1 1 1 1 1 1 1 1 1",
+            "rigid a",
+        ] {
+            assert_eq!(Floor::read(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_floor_of_a_robot_is_its_ground() {
+        for more in [
+            "",
+            "[leg.drive]\nkind = \"spring\"\nstiffness = 5.0\npreload = 12.0",
+            "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",
+            "[feet]\nstiffness = 2.0\ntwist = -0.6",
+        ] {
+            let robot = robot(more);
+            assert_eq!(Floor::of(&robot).over(&robot), *robot.ground(), "{more}");
+            assert!(KINDS.contains(&Floor::of(&robot).kind));
         }
     }
 }

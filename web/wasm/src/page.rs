@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Outlook, SERVO_MODELS};
-use crate::edit::{NoSuchLength, with_number, without_number};
+use crate::edit::{NoSuchLength, with_number, with_word, without};
 use crate::floor::Floor;
 use crate::map::Map;
 use crate::place::Place;
@@ -96,31 +96,45 @@ impl Page {
         Ok(Edited { text, refusal })
     }
 
-    /// The text with a floor, a weight and springs: what it has already stays as it is written.
+    /// The text with a floor, a weight, feet and a drive of the legs: what it has already stays as it is written.
     /// The page's robot stays as it is.
     ///
     /// # Errors
     /// If the text is that of no robot, or has no room for one of the numbers.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text).map_err(|error| refused(&error))?;
-        let own = Floor::of(robot.ground());
-        let wanted = Floor::of(&floor.over(robot.ground()));
+        let own = Floor::of(&robot);
+        // Out of its range a value is the robot's own.
+        let wanted = floor.within(&robot);
         let mut text = text.to_string();
-        if wanted.stiffness.is_infinite() {
-            for key in ["leg.spring", "leg.preload"] {
-                text = without_number(&text, key).map_err(unwritten)?;
-            }
-        } else {
-            for (key, own, wanted) in [
-                ("leg.spring", own.stiffness, wanted.stiffness),
-                ("leg.preload", own.preload, wanted.preload),
-            ] {
-                if own != wanted {
-                    text = with_number(&text, key, wanted).map_err(unwritten)?;
+        let kind = wanted.kind;
+        if kind != own.kind {
+            text = with_word(&text, "leg.drive.kind", kind).map_err(unwritten)?;
+        }
+        for (of, key, own, wanted) in [
+            (
+                "spring",
+                "leg.drive.stiffness",
+                own.stiffness,
+                wanted.stiffness,
+            ),
+            ("spring", "leg.drive.preload", own.preload, wanted.preload),
+            ("strut", "leg.drive.force", own.force, wanted.force),
+            ("strut", "leg.drive.rate", own.rate, wanted.rate),
+        ] {
+            text = match of == kind {
+                false => without(&text, key),
+                true if kind != robot.drive().word() || own != wanted => {
+                    with_number(&text, key, wanted)
                 }
+                true => Ok(text),
             }
+            .map_err(unwritten)?;
         }
         for (key, own, wanted) in [
+            ("leg.drive.play", own.play, wanted.play),
+            ("feet.stiffness", own.leaf, wanted.leaf),
+            ("feet.twist", own.twist, wanted.twist),
             ("ground.friction", own.friction, wanted.friction),
             ("ground.friction_back_over_forward", own.ratio, wanted.ratio),
             ("body.mass", own.mass, wanted.mass),
@@ -178,10 +192,10 @@ impl Page {
         }
     }
 
-    /// Sets the floor, the weight and the springs, from the next frame on.
+    /// Sets the floor, the weight, the feet and what drives the legs, from the next frame on.
     pub fn set_floor(&mut self, floor: Floor) {
         if let Some(twin) = &mut self.twin {
-            twin.set_ground(floor.over(twin.robot().ground()));
+            twin.set_ground(floor.over(twin.robot()));
         }
     }
 

@@ -97,7 +97,7 @@ impl Scene {
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
         let shape = Shape::of_solved(robot, &solution, twin.legs());
-        let sprung = twin.ground().spring.is_some();
+        let sprung = twin.ground().drive.kind != lizard_robot::Kind::Rigid;
         let named = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,

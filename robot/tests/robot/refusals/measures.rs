@@ -81,18 +81,78 @@ pub const MISTAKES: &[Mistake] = &[
     ),
     (
         "mount = 0.0 ",
-        "spring = 0\nmount = 0.0 ",
-        "leg.spring is 0; it must be within 0.01 to 10000 N mm/deg",
+        "spring = 10.0\nmount = 0.0 ",
+        r#"leg.spring is not read any more; write [leg.drive] with kind = "spring", stiffness and preload, or with kind = "strut" and the force and rate of its spring"#,
     ),
     (
         "mount = 0.0 ",
         "preload = 60.0\nmount = 0.0 ",
-        "leg.spring is missing; it must be a number",
+        r#"leg.preload is not read any more; write [leg.drive] with kind = "spring", stiffness and preload, or with kind = "strut" and the force and rate of its spring"#,
     ),
     (
         "mount = 0.0 ",
-        "spring = 2\npreload = -1\nmount = 0.0 ",
-        "leg.preload is -1; it must be within 0 to 10000 N mm",
+        "drive = 3\nmount = 0.0 ",
+        "leg.drive is 3; it must be a table",
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { kind = \"sprung\" }\nmount = 0.0 ",
+        r#"leg.drive.kind is "sprung"; did you mean "spring"?"#,
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { kind = \"spring\", stiffness = 0 }\nmount = 0.0 ",
+        "leg.drive.stiffness is 0; it must be within 0.01 to 10000 N mm/deg",
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { kind = \"spring\", preload = 60 }\nmount = 0.0 ",
+        "leg.drive.stiffness is missing; it must be a number",
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { kind = \"spring\", stiffness = 2, preload = -1 }\nmount = 0.0 ",
+        "leg.drive.preload is -1; it must be within 0 to 10000 N mm",
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { force = 4.0 }\nmount = 0.0 ",
+        r#"leg.drive.force does not go with kind = "rigid""#,
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { kind = \"strut\", stiffness = 4.0 }\nmount = 0.0 ",
+        r#"leg.drive.stiffness does not go with kind = "strut""#,
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { kind = \"strut\", force = 0 }\nmount = 0.0 ",
+        "leg.drive.force is 0; it must be within 0.01 to 100 N",
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { paly = 1 }\nmount = 0.0 ",
+        r#"leg.drive.paly is not a known key; did you mean "play"?"#,
+    ),
+    (
+        "mount = 0.0 ",
+        "drive = { play = -1 }\nmount = 0.0 ",
+        "leg.drive.play is -1; it must be within 0 to 20 deg",
+    ),
+    (
+        "[body]",
+        "[feet]\nstiffness = 0\n[body]",
+        "feet.stiffness is 0; it must be within 0.01 to 1000 N/mm",
+    ),
+    (
+        "[body]",
+        "[feet]\ntwist = 30.0\n[body]",
+        "feet.twist is 30; it must be within -20 to 20 mm",
+    ),
+    (
+        "[body]",
+        "[feet]\nlevels = 0.1\n[body]",
+        r#"feet.levels is not a known key; did you mean "level"?"#,
     ),
     (
         "mass = 396.4 ",

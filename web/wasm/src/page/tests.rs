@@ -155,8 +155,9 @@ fn springs_that_are_set_act_and_are_predicted() {
     assert_eq!((rigid.lag, rigid.share), (None, None));
     for stiffness in [2.0, 5.0] {
         page.set_floor(Floor {
+            kind: "spring",
             stiffness,
-            ..Floor::of(page.robot().expect("a robot").ground())
+            ..Floor::of(page.robot().expect("a robot"))
         });
         let soft = page.predict(walk).expect("a gait");
         let (way, _, lag) = cycle(&mut page, "walk", 1);
@@ -182,9 +183,10 @@ fn springs_that_are_set_act_and_are_predicted() {
 fn a_stop_that_bears_the_friction_is_as_good_as_rigid() {
     let mut page = page();
     let floor = Floor {
+        kind: "spring",
         stiffness: 1.0,
         preload: 60.0,
-        ..Floor::of(page.robot().expect("a robot").ground())
+        ..Floor::of(page.robot().expect("a robot"))
     };
     page.set_floor(floor);
     let strut = page.predict(index(&page, "walk")).expect("a gait");
@@ -193,23 +195,24 @@ fn a_stop_that_bears_the_friction_is_as_good_as_rigid() {
 
 #[test]
 fn weight_and_friction_matter_to_springs_alone() {
-    let walked = |stiffness: f64, mass: f64, friction: f64| {
+    let walked = |kind: &'static str, mass: f64, friction: f64| {
         let mut page = page();
         let floor = Floor {
-            stiffness,
+            kind,
+            stiffness: 5.0,
             mass,
             friction,
-            ..Floor::of(page.robot().expect("a robot").ground())
+            ..Floor::of(page.robot().expect("a robot"))
         };
         page.set_floor(floor);
         let way = page.predict(index(&page, "walk")).expect("a gait").way;
         way.forward().expect("decided")
     };
-    let rigid = f64::INFINITY;
+    let [rigid, spring] = ["rigid", "spring"];
     assert_eq!(walked(rigid, 280.0, 0.7), walked(rigid, 560.0, 0.2));
-    let same = walked(5.0, 280.0, 0.7) - walked(5.0, 140.0, 1.4);
+    let same = walked(spring, 280.0, 0.7) - walked(spring, 140.0, 1.4);
     assert!(same.abs() < 1e-6, "{same}");
-    assert!(walked(5.0, 280.0, 1.4) < walked(5.0, 280.0, 0.7) - 1.0);
+    assert!(walked(spring, 280.0, 1.4) < walked(spring, 280.0, 0.7) - 1.0);
 }
 
 #[test]
@@ -219,7 +222,7 @@ fn friction_that_differs_by_direction_changes_the_prediction() {
     let even = page.predict(walk);
     let floor = Floor {
         ratio: 1.4,
-        ..Floor::of(page.robot().expect("a robot").ground())
+        ..Floor::of(page.robot().expect("a robot"))
     };
     page.set_floor(floor);
     assert_ne!(page.predict(walk), even);
@@ -228,7 +231,7 @@ fn friction_that_differs_by_direction_changes_the_prediction() {
 
 #[test]
 fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
-    let own = |text: &str| Floor::of(Robot::parse(text).expect("right").ground());
+    let own = |text: &str| Floor::of(&Robot::parse(text).expect("right"));
     let written = |text: &str, floor| {
         let edited = Page::edit_floor(text, floor).expect("it has room");
         assert_eq!(edited.refusal, None);
@@ -239,12 +242,41 @@ fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
         friction: 0.55,
         ratio: 1.5,
         mass: 412.0,
+        leaf: 2.0,
+        twist: -0.6,
+        kind: "spring",
         stiffness: 5.0,
         preload: 12.0,
+        play: 0.5,
+        ..own(PAPER)
     };
     let sprung = written(PAPER, floor);
     assert_eq!(own(&sprung), floor);
-    let rigid = written(&sprung, own(PAPER));
+    let strut = Floor {
+        kind: "strut",
+        force: 2.5,
+        rate: 0.25,
+        stiffness: own(PAPER).stiffness,
+        preload: own(PAPER).preload,
+        ..floor
+    };
+    let slotted = written(&sprung, strut);
+    assert_eq!(own(&slotted), strut);
+    assert!(!slotted.contains("\nstiffness = 5"), "{slotted}");
+    let rigid = written(&slotted, own(PAPER));
     assert_eq!(own(&rigid), own(PAPER));
-    assert!(!rigid.contains("\nspring ="), "{rigid}");
+    assert!(!rigid.contains("\nforce ="), "{rigid}");
+}
+
+#[test]
+fn a_foot_that_is_too_long_is_predicted() {
+    let mut page = page();
+    let (walk, own) = (index(&page, "walk"), Floor::of(page.robot().expect("one")));
+    let mut ahead = |leaf: f64, twist: f64| {
+        page.set_floor(Floor { leaf, twist, ..own });
+        let way = page.predict(walk).expect("a gait").way;
+        way.forward().expect("decided")
+    };
+    let level = ahead(2.0, 0.0);
+    assert!(ahead(2.0, 0.6) < 0.75 * level && ahead(own.leaf, 1.0) > 0.9 * level);
 }

@@ -1,0 +1,161 @@
+//! What drives a leg from its servo's link: `[leg.drive]` in robot.toml.
+//!
+//! One table says it, and parts, bill, contact model, twin and page follow from it. A bar
+//! with two holes makes the leg go as its servo does. A strut with a slot and a spring
+//! follows as exactly up to the pull of its spring, and beyond it yields in one of its
+//! two directions. An ideal spring yields in both: no part that `lizard parts` draws does,
+//! but the paper's robot may have had one. With each of them pins and gears have play,
+//! within which nothing drives the leg.
+
+use crate::error::{Checked, Hint, Problem};
+use crate::legs::LegPlan;
+use crate::parts::Parts;
+use crate::reader::Section;
+use crate::spring::Spring;
+use crate::strut::Strut;
+use crate::yields::{Side, Yield};
+
+/// What drives the legs, which are alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Its kind.
+    pub kind: Kind,
+    /// How far a leg moves freely to either side, deg.
+    pub play: f64,
+}
+
+/// What stands between a servo's link and its leg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A bar: the leg is where its servo is, but for the play.
+    Rigid,
+    /// A strut with a slot and a tension spring, which yields one way.
+    Strut(Strut),
+    /// A spring that yields both ways.
+    Spring(Spring),
+}
+
+const TABLE: &str = "drive";
+const KEYS: [&str; 6] = ["kind", "play", "force", "rate", "stiffness", "preload"];
+/// The kinds' words, and the keys beside `kind` and `play` that each of them has.
+const KINDS: [(&str, &[&str]); 3] = [
+    ("rigid", &[]),
+    ("strut", &["force", "rate"]),
+    ("spring", &["stiffness", "preload"]),
+];
+
+impl Drive {
+    /// A leg that is always where its servo is.
+    pub const RIGID: Self = Self {
+        kind: Kind::Rigid,
+        play: 0.0,
+    };
+
+    /// The same legs on an ideal spring, without play.
+    #[must_use]
+    pub const fn spring(rate: f64, preload: f64) -> Self {
+        Self {
+            kind: Kind::Spring(Spring { rate, preload }),
+            play: 0.0,
+        }
+    }
+
+    /// Whether a leg can be elsewhere than its servo.
+    #[must_use]
+    pub fn lags(&self) -> bool {
+        self.kind != Kind::Rigid || self.play > 0.0
+    }
+
+    /// Its strut with a slot, if that is what drives the legs.
+    #[must_use]
+    pub fn strut(&self) -> Option<&Strut> {
+        match &self.kind {
+            Kind::Strut(strut) => Some(strut),
+            _ => None,
+        }
+    }
+
+    /// Its word in robot.toml.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        let place = match self.kind {
+            Kind::Rigid => 0,
+            Kind::Strut(_) => 1,
+            Kind::Spring(_) => 2,
+        };
+        KINDS[place].0
+    }
+
+    /// Reads `[leg.drive]` of the table `[leg]`; left out, the legs are rigid.
+    pub(crate) fn read(
+        leg: &Section,
+        legs: &[LegPlan; 4],
+        neutral: [f64; 4],
+        parts: &Parts,
+    ) -> Checked<Self> {
+        if !leg.has(TABLE) {
+            return Ok(Self::RIGID);
+        }
+        let section = leg.section(TABLE, &KEYS)?;
+        let word = match section.has("kind") {
+            true => section.text("kind")?,
+            false => KINDS[0].0,
+        };
+        let Some((_, own)) = KINDS.into_iter().find(|(known, _)| *known == word) else {
+            let problem = Problem::Word {
+                word: word.to_string(),
+                hint: Hint::new(word, &KINDS.map(|(known, _)| known)),
+            };
+            return Err(problem.at(section.path("kind")));
+        };
+        let mut others = KINDS.into_iter().flat_map(|(_, keys)| keys);
+        if let Some(other) = others.find(|key| !own.contains(key) && section.has(key)) {
+            let problem = Problem::Conflict(format!("kind = \"{word}\""));
+            return Err(problem.at(section.path(other)));
+        }
+        let kind = match word {
+            "strut" => {
+                let coil = Strut::of_coil(legs, neutral, parts, &parts.spring);
+                Kind::Strut(Strut {
+                    force: section.number_or("force", coil.force, 0.01, 100.0, "N")?,
+                    rate: section.number_or("rate", coil.rate, 0.0, 100.0, "N/mm")?,
+                    ..coil
+                })
+            }
+            "spring" => Kind::Spring(Spring {
+                rate: section.number("stiffness", 0.01, 10_000.0, "N mm/deg")?,
+                preload: section.number_or("preload", 0.0, 0.0, 10_000.0, "N mm")?,
+            }),
+            _ => Kind::Rigid,
+        };
+        let play = section.number_or("play", 0.0, 0.0, 20.0, "deg")?;
+        Ok(Self { kind, play })
+    }
+
+    /// The lag (deg) nearest to this one that the leg can have without a load while its
+    /// servo is at this sweep, deg.
+    pub(crate) fn within(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
+        let stops = self
+            .of_leg(leg, sweep, 1.0, 1.0)
+            .stops()
+            .map(f64::to_degrees);
+        lag.clamp(stops[0], stops[1])
+    }
+
+    /// What a lag of this leg costs while its servo is at this sweep, deg. Forces are
+    /// counted in `force` N, and no pad turns its leg with more than `most` of them at a
+    /// lever of 1 mm.
+    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, most: f64) -> Yield {
+        let [lower, upper] = match &self.kind {
+            Kind::Rigid => [Side::Stop; 2],
+            Kind::Strut(strut) => strut.sides(leg, sweep, force),
+            Kind::Spring(spring) => [spring.side(force); 2],
+        };
+        Yield {
+            play: self.play.to_radians(),
+            stop: 1.25 * most,
+            lower,
+            upper,
+        }
+    }
+}

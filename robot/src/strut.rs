@@ -1,0 +1,116 @@
+//! A strut with a slot and a tension spring in it, from a servo's link to its leg.
+//!
+//! Shaft, leg's pivot and two equal, parallel arms make a parallelogram whose fourth side
+//! is the strut. The leg's screw runs in a slot of it, and a spring pulls the screw against
+//! the slot's end. So the strut can grow longer and never shorter: the leg may stay behind
+//! its servo in one direction only, forward at the front and back at the hind legs of the
+//! paper's robot. What the spring does to the leg is its pull times a lever, the arm's
+//! part square to the strut, which is another one at every pose.
+
+use crate::coil::Coil;
+use crate::legs::LegPlan;
+use crate::parts::Parts;
+use crate::servo::{FORWARD, HAND};
+use crate::yields::{Side, Stretch};
+use lizard_kinematics::wrap;
+
+/// How far the leg's screw can run in its slot, mm.
+pub const SLOT: f64 = 5.0;
+
+/// A slotted strut and its spring; all four are alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strut {
+    /// What the spring pulls while the screw is at its end of the slot, N.
+    pub force: f64,
+    /// What it pulls more for each mm that the screw runs, N/mm.
+    pub rate: f64,
+    /// How far the screw runs until the slot ends, mm.
+    pub slot: f64,
+    /// From screw to screw while the leg does not lag, mm.
+    pub length: f64,
+    /// Length of both arms, mm.
+    pub radius: f64,
+    /// From the strut's direction to the servo's arm at neutral, deg, for each leg in
+    /// servo order.
+    pub angles: [f64; 4],
+}
+
+impl Strut {
+    /// The length of a spring inside its hooks as it hangs in a strut, mm: both hooks lie
+    /// around the far sides of their screws.
+    #[must_use]
+    pub fn hung(legs: &[LegPlan; 4], parts: &Parts) -> f64 {
+        legs[0].strut_length + parts.screw.diameter
+    }
+
+    /// The strut of a robot with this spring in it; its servos' neutral angles are in deg,
+    /// chassis frame.
+    #[must_use]
+    pub fn of_coil(legs: &[LegPlan; 4], neutral: [f64; 4], parts: &Parts, coil: &Coil) -> Self {
+        let [radius, angle] = parts.anchor;
+        let arm = |leg: usize| neutral[leg] - HAND[leg] * angle - legs[leg].strut.angle();
+        Self {
+            force: coil.force(Self::hung(legs, parts)),
+            rate: coil.rate(),
+            slot: SLOT,
+            length: legs[0].strut_length,
+            radius,
+            angles: std::array::from_fn(arm),
+        }
+    }
+
+    /// How a leg can stretch it while its servo is at this sweep (deg, foot forward
+    /// positive).
+    fn stretch(&self, leg: usize, sweep: f64) -> Stretch {
+        let arm = self.angles[leg] + FORWARD[leg] * sweep;
+        let (sin, cos) = arm.to_radians().sin_cos();
+        // From the leg's pivot to the servo's end of the strut.
+        let far = [self.radius * cos - self.length, self.radius * sin];
+        let between = wrap(arm - far[1].atan2(far[0]).to_degrees());
+        Stretch {
+            far: far[0].hypot(far[1]),
+            near: self.radius,
+            // A lag turns the leg's arm against the way forward.
+            angle: -FORWARD[leg] * between.to_radians(),
+        }
+    }
+
+    /// The lever of its pull at the leg's pivot, mm, while the leg does not lag.
+    #[must_use]
+    pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
+        self.stretch(leg, sweep).lever(0.0).abs()
+    }
+
+    /// What the leg withstands before it lags at all, N mm.
+    #[must_use]
+    pub fn preload(&self, leg: usize, sweep: f64) -> f64 {
+        self.force * self.lever(leg, sweep)
+    }
+
+    /// How far the leg can lag until the slot ends (deg), and the torque there, N mm.
+    #[must_use]
+    pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
+        let stretch = self.stretch(leg, sweep);
+        let way = stretch.way(self.slot);
+        let force = self.force + self.rate * self.slot;
+        let torque = force * stretch.lever(way.copysign(stretch.angle)).abs();
+        (way.to_degrees(), torque)
+    }
+
+    /// Whether a leg yields when its foot is held on its way forward; else on its way
+    /// back.
+    #[must_use]
+    pub fn yields_forward(&self, leg: usize, sweep: f64) -> bool {
+        self.stretch(leg, sweep).lever(0.0) > 0.0
+    }
+
+    /// What a lag against the sweep's direction and along it costs, in `force` N.
+    pub(crate) fn sides(&self, leg: usize, sweep: f64, force: f64) -> [Side; 2] {
+        let stretch = self.stretch(leg, sweep);
+        let side = Side::strut(stretch, self.force / force, self.rate / force, self.slot);
+        match stretch.lever(0.0) > 0.0 {
+            true => [Side::Stop, side],
+            false => [side, Side::Stop],
+        }
+    }
+}

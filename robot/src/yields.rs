@@ -1,0 +1,324 @@
+//! What it costs a leg to be elsewhere than its servo.
+//!
+//! In the contact model all of a leg's drive is one function, the energy of its lag: none
+//! within the play, beyond it what the spring takes on that side, and beyond a stop a
+//! slope that no pad can climb. It has kinks where the lag likes to stay. They are rounded
+//! off within `eps`, as the lengths of slides are in `friction.rs`.
+
+/// A lag's energy, in the units of the contact problem: forces over the mean friction of a
+/// pad, mm and radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Yield {
+    /// How far the leg moves freely to either side.
+    pub play: f64,
+    /// What a stop pushes back with: more than a pad can. Much more would only make the
+    /// cost harder to minimise.
+    pub stop: f64,
+    /// What a lag below 0 meets.
+    pub lower: Side,
+    /// And one above 0.
+    pub upper: Side,
+}
+
+/// What a leg meets on one side, beyond its play.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Side {
+    /// A stop.
+    Stop,
+    /// A spring.
+    Spring {
+        /// Its torque at the smallest lag.
+        preload: f64,
+        /// How much more it is per radian.
+        rate: f64,
+    },
+    /// A spring in a strut, and where its slot ends a stop.
+    Strut {
+        /// How the strut is stretched.
+        stretch: Stretch,
+        /// What it pulls before.
+        force: f64,
+        /// How much more for each mm.
+        rate: f64,
+        /// The lag at which the slot ends, beyond the play, rad.
+        way: f64,
+    },
+}
+
+/// How a leg's lag stretches its strut: the strut is the third side of a triangle, between
+/// the leg's arm and the line from the leg's pivot to the strut's other end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stretch {
+    /// Length of that line, mm.
+    pub far: f64,
+    /// Length of the arm, mm.
+    pub near: f64,
+    /// Between both while the leg does not lag, rad; a lag adds to it.
+    pub angle: f64,
+}
+
+/// Energy, slope and curvature.
+type Expansion = (f64, f64, f64);
+
+/// How far x is above 0, rounded off within `eps`.
+fn above(x: f64, eps: f64) -> Expansion {
+    let length = x.hypot(eps);
+    if length == 0.0 {
+        return (0.0, 0.5, 0.0);
+    }
+    let bend = eps / length;
+    (
+        (x + length) / 2.0,
+        (1.0 + x / length) / 2.0,
+        bend * bend / length / 2.0,
+    )
+}
+
+impl Stretch {
+    /// Length of the strut at a lag, mm.
+    fn length(&self, lag: f64) -> f64 {
+        let Self { far, near, angle } = self;
+        (far * far + near * near - 2.0 * far * near * (angle + lag).cos()).sqrt()
+    }
+
+    /// By how much the strut is longer for each radian more, mm: the lever of its pull.
+    pub fn lever(&self, lag: f64) -> f64 {
+        self.far * self.near * (self.angle + lag).sin() / self.length(lag)
+    }
+
+    /// The lag at which the strut is longer by so much, rad, without its sign; infinite
+    /// where it never is.
+    pub fn way(&self, longer: f64) -> f64 {
+        let Self { far, near, angle } = self;
+        let length = self.length(0.0) + longer;
+        let cos = (far * far + near * near - length * length) / (2.0 * far * near);
+        match cos < -1.0 {
+            true => f64::INFINITY,
+            false => cos.acos() - angle.abs(),
+        }
+    }
+
+    /// What a spring takes that pulls the strut together with `force` and `rate`, where
+    /// `lag` is counted in the direction in which it grows.
+    fn energy(&self, lag: f64, force: f64, rate: f64) -> Expansion {
+        let lag = lag.copysign(self.angle);
+        let length = self.length(lag);
+        let (longer, lever) = (length - self.length(0.0), self.lever(lag));
+        let turns = (self.far * self.near * (self.angle + lag).cos() - lever * lever) / length;
+        let pull = force + rate * longer;
+        (
+            force * longer + rate * longer * longer / 2.0,
+            pull * lever.abs(),
+            // A lever that shrinks faster than the pull grows would bend the cost the
+            // other way, which Newton's method takes for flat.
+            (rate * lever * lever + pull * turns).max(0.0),
+        )
+    }
+}
+
+impl Side {
+    /// A strut's side.
+    pub fn strut(stretch: Stretch, force: f64, rate: f64, slot: f64) -> Self {
+        Self::Strut {
+            stretch,
+            force,
+            rate,
+            way: stretch.way(slot),
+        }
+    }
+
+    /// What so much lag beyond the play costs.
+    fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
+        let (far, slope, bend) = above(beyond, eps);
+        let kink = |height: f64| (height * far, height * slope, height * bend);
+        let sum = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
+        let x = beyond.max(0.0);
+        match *self {
+            Self::Stop => kink(stop),
+            Self::Spring { preload, rate } => {
+                let curvature = if beyond > 0.0 { rate } else { 0.0 };
+                sum(kink(preload), (rate * x * x / 2.0, rate * x, curvature))
+            }
+            Self::Strut {
+                stretch,
+                force,
+                rate,
+                way,
+            } => {
+                // The kink holds the preload; the rest begins smoothly.
+                let preload = force * stretch.lever(0.0).abs();
+                let (energy, torque, curvature) = stretch.energy(x, force, rate);
+                let curvature = if beyond > 0.0 { curvature } else { 0.0 };
+                let rest = (energy - preload * x, torque - preload, curvature);
+                let (past, slope, bend) = above(beyond - way, eps);
+                let end = match way.is_finite() {
+                    true => (stop * past, stop * slope, stop * bend),
+                    false => (0.0, 0.0, 0.0),
+                };
+                sum(sum(kink(preload), rest), end)
+            }
+        }
+    }
+
+    /// With how much torque the spring pulls at so much lag beyond the play.
+    fn pulls(&self, beyond: f64) -> f64 {
+        match *self {
+            _ if beyond <= 0.0 => 0.0,
+            Self::Stop => 0.0,
+            Self::Spring { preload, rate } => preload + rate * beyond,
+            Self::Strut {
+                stretch,
+                force,
+                rate,
+                ..
+            } => stretch.energy(beyond, force, rate).1,
+        }
+    }
+
+    /// How far a leg can be beyond its play.
+    fn end(&self) -> f64 {
+        match self {
+            Self::Stop => 0.0,
+            Self::Spring { .. } => f64::INFINITY,
+            Self::Strut { way, .. } => *way,
+        }
+    }
+}
+
+impl Yield {
+    /// The energy at a lag (rad), its slope and its curvature, with kinks that are rounded
+    /// off within `eps` rad.
+    pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
+        let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps, self.stop);
+        let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps, self.stop);
+        (up + down, by_up - by_down, bend_up + bend_down)
+    }
+
+    /// With how much torque the spring pulls the leg back, without its sign.
+    pub fn pulls(&self, lag: f64) -> f64 {
+        self.upper.pulls(lag - self.play) + self.lower.pulls(-lag - self.play)
+    }
+
+    /// The least and the greatest lag that the stops allow, rad.
+    pub fn stops(&self) -> [f64; 2] {
+        [-self.play - self.lower.end(), self.play + self.upper.end()]
+    }
+
+    /// The most that a torque can gain on this drive: the convex conjugate of the energy,
+    /// which the proof by duality needs. A torque that no stop bears gains without end.
+    #[cfg(test)]
+    pub fn conjugate(&self, torque: f64) -> f64 {
+        let side = if torque > 0.0 { self.upper } else { self.lower };
+        let torque = torque.abs();
+        let beyond = match side {
+            Side::Stop if torque <= self.stop => 0.0,
+            Side::Spring { preload, rate } => {
+                let beyond = (torque - preload).max(0.0);
+                beyond * beyond / (2.0 * rate)
+            }
+            // By golden section: torque times lag less the energy has one top.
+            Side::Strut { .. } if torque <= self.stop => {
+                let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
+                let (mut low, mut high) = (0.0, side.end().min(std::f64::consts::PI));
+                for _ in 0..200 {
+                    let third = (high - low) / 3.0;
+                    match gain(low + third) < gain(high - third) {
+                        true => low += third,
+                        false => high -= third,
+                    }
+                }
+                gain((low + high) / 2.0).max(0.0)
+            }
+            _ => f64::INFINITY,
+        };
+        beyond + torque * self.play
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STOP: f64 = 400.0;
+    const SPRING: Side = Side::Spring {
+        preload: 30.0,
+        rate: 570.0,
+    };
+
+    /// A strut with arms of 22 mm across a line of 30.2 mm, turned by `angle` deg.
+    fn strut(angle: f64) -> Stretch {
+        let (sin, cos) = f64::to_radians(angle).sin_cos();
+        let far = [22.0 * cos - 30.2, 22.0 * sin];
+        Stretch {
+            far: f64::hypot(far[0], far[1]),
+            near: 22.0,
+            angle: f64::to_radians(angle) - f64::atan2(far[1], far[0]),
+        }
+    }
+
+    fn assert_slopes(drive: Yield, lags: impl IntoIterator<Item = f64>) {
+        for lag in lags {
+            let (_, slope, curvature) = drive.expand(lag, 1e-3);
+            let at = |lag| drive.expand(lag, 1e-3);
+            let step = 1e-6;
+            let (before, after) = (at(lag - step), at(lag + step));
+            let by = (after.0 - before.0) / (2.0 * step);
+            assert!(
+                (by - slope).abs() < 1e-4 * (1.0 + slope.abs()),
+                "{lag} {by} {slope}"
+            );
+            let by = (after.1 - before.1) / (2.0 * step);
+            assert!(
+                (by - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
+                "{lag} {by} {curvature}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_slope_of_the_energy_is_the_torque_and_its_slope_the_stiffness() {
+        let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
+        for play in [0.0, 0.02] {
+            let drive = |lower, upper| Yield {
+                play,
+                stop: STOP,
+                lower,
+                upper,
+            };
+            assert_slopes(drive(SPRING, SPRING), lags.clone());
+            assert_slopes(drive(Side::Stop, Side::Stop), lags.clone());
+            let side = Side::strut(strut(70.0), 8.0, 0.7, 5.0);
+            assert_slopes(drive(Side::Stop, side), lags.clone());
+        }
+    }
+
+    #[test]
+    fn a_leg_is_free_within_its_play_and_no_further() {
+        let drive = Yield {
+            play: 0.1,
+            stop: STOP,
+            lower: Side::Stop,
+            upper: SPRING,
+        };
+        for lag in [-0.1, -0.05, 0.0, 0.1] {
+            assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
+        }
+        assert!((drive.expand(0.11, 0.0).1 - 35.7).abs() < 1e-9);
+        assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
+        assert_eq!(drive.stops(), [-0.1, f64::INFINITY]);
+        assert!((drive.pulls(0.11) - 35.7).abs() < 1e-9);
+        assert_eq!(drive.pulls(-0.2), 0.0, "a stop does not pull");
+    }
+
+    #[test]
+    fn a_strut_is_a_triangles_side() {
+        let strut = strut(70.0);
+        assert!((strut.length(0.0) - 30.2).abs() < 1e-9, "parallel arms");
+        // The arm's part square to the strut.
+        assert!((strut.lever(0.0).abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
+        let way = strut.way(5.0);
+        let longer = strut.length(way.copysign(strut.angle)) - 30.2;
+        assert!((longer - 5.0).abs() < 1e-9, "{longer}");
+        assert_eq!(strut.way(50.0), f64::INFINITY);
+    }
+}

@@ -1,0 +1,124 @@
+//! The load that statics leaves free: what a foot that is too long takes from a gait.
+
+use lizard_robot::{Body, CheckedGait, Ground, Stance, Walker};
+
+use crate::{gait, paper, paper_with};
+
+const GAITS: [&str; 8] = [
+    "walk",
+    "trot",
+    "crawl",
+    "back",
+    "left",
+    "right",
+    "arc-left",
+    "arc-right",
+];
+
+/// The mass for which the other implementation was asked, g.
+const STUDIED: Body = Body {
+    mass: 307.0,
+    ..Body::DEFAULT
+};
+
+/// The paper's ground with feet of this stiffness, the front left one too long.
+fn on(stiffness: f64, twist: f64) -> Ground {
+    Ground {
+        stance: Stance {
+            stiffness,
+            twist,
+            ..Stance::DEFAULT
+        },
+        body: STUDIED,
+        ..*paper().ground()
+    }
+}
+
+/// A cycle's way: ahead, or the turn of a gait that turns in place.
+fn way(gait: &CheckedGait, ground: &Ground) -> f64 {
+    let travel = gait.walked(ground).travel;
+    match gait.name() {
+        "left" | "right" => travel.turn,
+        _ => travel.forward,
+    }
+}
+
+#[test]
+fn four_tenths_on_a_diagonal_take_what_another_solver_found() {
+    // An implementation of its own, in which both feet of a diagonal carry so much more
+    // at every instant, and the others as much less.
+    for (name, expected) in [
+        ("walk", 24.8),
+        ("crawl", 17.4),
+        ("left", 9.0),
+        ("trot", 17.6),
+    ] {
+        let gait = gait(paper(), name);
+        let at = |i: i32| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
+        let ground = *paper().ground();
+        let mut walker = Walker::uneven(ground, at(0), [1.4, 0.6, 1.4, 0.6], 1.0);
+        (1..=1000).for_each(|i| {
+            walker.step(at(i));
+        });
+        let place = walker.place();
+        let found = match name {
+            "left" => place.travel().turn,
+            _ => place.travel().forward,
+        };
+        assert!((found - expected).abs() < 0.45, "{name} {found}");
+    }
+}
+
+#[test]
+fn on_the_feet_that_are_meant_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
+    let Stance {
+        stiffness, twist, ..
+    } = paper().ground().stance;
+    assert_eq!((stiffness, twist), (0.5, 0.0));
+    for name in GAITS {
+        let gait = gait(paper(), name);
+        let level = way(gait, paper().ground());
+        for twist in [1.0, -1.0] {
+            let share = way(gait, &on(stiffness, twist)) / level;
+            assert!((0.97..1.03).contains(&share), "{name} {twist} {share}");
+        }
+    }
+}
+
+#[test]
+fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
+    let share = |name: &str| {
+        let gait = gait(paper(), name);
+        way(gait, &on(3.3, 0.6)) / way(gait, paper().ground())
+    };
+    assert!(share("walk") < 0.25 && share("crawl") < 0.15 && share("left") < 0.25);
+    // Feet can be set to a fifth of a millimetre, and then it does not matter.
+    let gait = gait(paper(), "walk");
+    assert!(way(gait, &on(3.3, 0.2)) > 33.5);
+}
+
+#[test]
+fn what_counts_is_stiffness_times_length_over_weight() {
+    let gait = gait(paper(), "walk");
+    let one = way(gait, &on(2.0, 0.6));
+    assert!((way(gait, &on(0.5, 2.4)) - one).abs() < 1e-6);
+    let heavy = Ground {
+        body: Body {
+            mass: 614.0,
+            ..Body::DEFAULT
+        },
+        ..on(2.0, 1.2)
+    };
+    assert!((way(gait, &heavy) - one).abs() < 1e-6);
+    // Feet that all give as much are no matter while they are level.
+    assert_eq!(way(gait, &on(50.0, 0.0)), way(gait, paper().ground()));
+}
+
+#[test]
+fn how_the_feet_stand_is_read_from_the_file() {
+    let robot = paper_with("[body]", "[feet]\nstiffness = 2.0\ntwist = -0.6\n[body]");
+    let stance = robot.expect("feet").ground().stance;
+    assert_eq!((stance.stiffness, stance.twist), (2.0, -0.6));
+    assert_eq!(stance.level, Stance::DEFAULT.level);
+    assert!((stance.diagonal() + 0.3).abs() < 1e-12);
+}
