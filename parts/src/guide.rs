@@ -50,7 +50,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         &whole(assembly),
         pose,
         &View::default(),
-        &legend::places(assembly),
+        &legend::places(assembly, pose),
     );
     files.push(File::text("guide/robot.svg".to_owned(), robot));
     let mut text = format!(
@@ -189,7 +189,7 @@ impl Scene<'_> {
             pale: !which(body),
         });
         let drawn: Vec<_> = old.chain(new).collect();
-        let mut labels: Vec<Label> = legend::places(self.assembly);
+        let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
         if named {
             labels.extend(legend::names(self.assembly, self.parts, &drawn, self.pose));
         }

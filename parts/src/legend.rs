@@ -7,7 +7,7 @@ use lizard_kinematics::{Solution, Vector};
 use lizard_robot::servo::NAMES;
 
 use crate::assembly::Assembly;
-use crate::body::{Body, Kind};
+use crate::body::{Body, Kind, Mount};
 use crate::part::Part;
 use crate::picture::{Drawn, Label};
 
@@ -95,7 +95,7 @@ pub fn names(assembly: &Assembly, parts: &[Part], drawn: &[Drawn], pose: &Soluti
 }
 
 /// The servos' names at their places, and which end is which.
-pub fn places(assembly: &Assembly) -> Vec<Label> {
+pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// As high as the links, mm.
     const HIGH: f64 = 18.0;
     let label = |at: Vector, text: &str| Label {
@@ -104,9 +104,15 @@ pub fn places(assembly: &Assembly) -> Vec<Label> {
         text: text.to_owned(),
         beside: false,
     };
-    let shafts = assembly.layout().shafts;
+    // On its link, beside the shaft, which the board may hide.
+    let on_link = |servo: usize| {
+        let out = 0.7 * assembly.layout().crank[servo];
+        assembly
+            .place(Mount::Link(servo), pose)
+            .map(Vector::new(out, 0.0))
+    };
     let mut labels: Vec<_> = (0..4)
-        .map(|servo| label(shafts[servo], NAMES[servo]))
+        .map(|servo| label(on_link(servo), NAMES[servo]))
         .collect();
     let ends = assembly.layout().plate.half.y + 16.0;
     labels.push(label(Vector::new(0.0, ends), "HEAD"));
