@@ -31,7 +31,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "step/plate.step",
         "stl/link-A1-A3.stl",
         "cut/link-A1-A3.dxf",
-        "cut/coupler.svg",
+        "cut/coupler-A1.svg",
         "stl/coupon.stl",
         "stl/rigid-strut.stl",
         "bill.json",
