@@ -178,6 +178,36 @@ mod tests {
     }
 
     #[test]
+    fn soft_feet_leave_a_walk_where_stiff_ones_lose_it() {
+        let text = include_str!("../../robots/paper.toml");
+        let least = |feet: &str| {
+            let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
+            let walk = robot.gait("walk").expect("walk");
+            let ways = (0..60).map(|seed| {
+                Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90)
+            });
+            let [least] = quantiles(ways.map(|way| way.forward).collect(), [0.05]);
+            least
+        };
+        let level = least("[feet]\nlevel = 0.0");
+        assert!(least("") > 0.97 * level && least("[feet]\nstiffness = 3.3") < 0.5 * level);
+    }
+
+    #[test]
+    fn play_is_added_to_the_same_robots() {
+        let robot = Robot::parse(include_str!("../../robots/paper.toml")).expect("right");
+        for seed in 0..50 {
+            let plain = Variation::of(robot.ground(), seed);
+            let played = plain.with_play(seed);
+            let play = played.ground.drive.play;
+            assert!((0.0..=PLAY).contains(&play) && play > 0.0, "{play}");
+            let mut without = played;
+            without.ground.drive.play = 0.0;
+            assert_eq!(without.ground, plain.ground);
+        }
+    }
+
+    #[test]
     fn without_variation_it_walks_as_the_twin_does() {
         let text = include_str!("../../robots/paper.toml");
         let springs = text.replace(

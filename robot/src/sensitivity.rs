@@ -19,13 +19,13 @@ pub const RATIOS: [f64; 6] = [0.8, 1.0, 1.1, 1.25, 1.5, 2.0];
 pub const MOUNTS: [f64; 5] = [0.0, 20.0, 41.4, 49.0, -41.4];
 
 /// By how much the front left foot may be too long, mm, on the feet that robot.toml has.
-pub const TWISTS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, -1.0];
+pub const TWISTS: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
 /// Other feet, N/mm, the front left one too long by [`LONG`]; the last are leaves of 2 mm.
-pub const LEAVES: [f64; 4] = [0.5, 1.0, 2.0, 3.3];
+pub const LEAVES: [f64; 3] = [1.0, 2.0, 3.3];
 /// How much too long it is on each of [`LEAVES`], mm.
 pub const LONG: f64 = 0.6;
 /// A leg's play to either side, deg.
-pub const PLAYS: [f64; 3] = [0.5, 1.0, 2.0];
+pub const PLAYS: [f64; 2] = [1.0, 2.0];
 
 /// Predictions for one gait.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ export interface Kept {
   original: string;
   /** The robot.toml with its changes. */
   toml: string;
-  /** What the page has set of floor, weight and springs; null for what robot.toml says. */
+  /** What the page has set of floor, weight, feet and drive; null for what robot.toml says. */
   floor: Floor | null;
   servos: string;
   volts: number;
@@ -32,7 +32,9 @@ export const kept = {
   get(): Kept | null {
     try {
       const state = JSON.parse(localStorage.getItem(KEY) ?? 'null') as Kept | null;
-      return state && typeof state.toml === 'string' && typeof state.file === 'string' ? state : null;
+      if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return null;
+      // An earlier page kept springs in another form: what it had set is let go.
+      return { ...state, floor: state.floor && typeof state.floor.twist === 'number' ? state.floor : null };
     } catch {
       return null;
     }

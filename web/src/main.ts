@@ -4,7 +4,7 @@ import { files } from './files';
 import { kept } from './kept';
 import { hasSerial, NO_SERIAL } from './link/port-link';
 import { Predictor } from './predictor';
-import { Robot } from './robot';
+import { lags, Robot } from './robot';
 import { Session } from './session';
 import { sentence } from './trouble';
 import { Calibrate } from './view/calibrate';
@@ -153,8 +153,8 @@ async function start(): Promise<void> {
     const [measured, outlook] = [session.measured(), drive.outlook(gait)];
     put('cycle', short(measured) || '–');
     put('predicted', short(outlook) || '–');
-    // Rigid legs do not lag.
-    const sprung = session.floor.stiffness !== null;
+    // Rigid legs without play do not lag.
+    const sprung = lags(session.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !sprung;
     put('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
     put('share', outlook?.share == null ? '–' : `${(100 * outlook.share).toFixed(0)} %`);

@@ -60,7 +60,10 @@ export interface Plate {
   case: Spot;
 }
 
-/** What the robot stands on, what it weighs, and what pulls its legs. */
+/** What drives the legs, as robot.toml calls it. */
+export type Kind = 'rigid' | 'strut' | 'spring';
+
+/** What the robot stands on, what it weighs, and what drives its legs. */
 export interface Floor {
   /** Of a pad that slides forward. */
   friction: number;
@@ -68,11 +71,28 @@ export interface Floor {
   ratio: number;
   /** g */
   mass: number;
-  /** Of a leg's spring, N mm/deg; null where legs are rigid. */
-  stiffness: number | null;
-  /** Torque up to which a leg does not lag at all, N mm. */
+  kind: Kind;
+  /** Of an ideal spring, N mm/deg. */
+  stiffness: number;
+  /** Torque up to which a leg on it does not lag at all, N mm. */
   preload: number;
+  /** What the spring in a strut pulls, N, and how much more for each mm, N/mm. */
+  force: number;
+  rate: number;
+  /** A leg's play to either side, deg. */
+  play: number;
+  /** What lifts a foot by a mm, N. */
+  leaf: number;
+  /** By how much the front left foot is too long, mm. */
+  twist: number;
 }
+
+/** Whether legs can be elsewhere than their servos. */
+export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
+
+/** The line in which WebAssembly takes it. */
+const line = ({ kind, friction, ratio, mass, stiffness, preload, force, rate, play, leaf, twist }: Floor) =>
+  [kind, friction, ratio, mass, stiffness, preload, force, rate, play, leaf, twist].join(' ');
 
 /** What servos may be taken for. */
 export interface ServoModel {
@@ -158,12 +178,12 @@ interface Exports {
   lizard_output_length(): number;
   lizard_read(): void;
   lizard_edit(value: number): void;
-  lizard_edit_floor(friction: number, ratio: number, mass: number, stiffness: number, preload: number): void;
+  lizard_edit_floor(): void;
   lizard_pulses(a1: number, a2: number, a3: number, a4: number): void;
   lizard_pose(a1: number, a2: number, a3: number, a4: number, frames: number): void;
   lizard_restart(): void;
   lizard_way(x0: number, y0: number, h0: number, x1: number, y1: number, h1: number): void;
-  lizard_set_floor(friction: number, ratio: number, mass: number, stiffness: number, preload: number): void;
+  lizard_set_floor(): void;
   lizard_set_servos(): void;
   lizard_predict(gait: number): void;
   lizard_map(end: number): void;
@@ -203,10 +223,10 @@ export class Robot {
     return this.answer();
   }
 
-  /** A robot.toml with this floor, weight and these springs, and whether it will do. */
-  editFloor(toml: string, { friction, ratio, mass, stiffness, preload }: Floor): { text: string; refusal: Refused | null } | Refused {
-    this.give(toml);
-    this.wasm.lizard_edit_floor(friction, ratio, mass, stiffness ?? Infinity, preload);
+  /** A robot.toml with this floor, weight, feet and drive, and whether it will do. */
+  editFloor(toml: string, floor: Floor): { text: string; refusal: Refused | null } | Refused {
+    this.give(`${line(floor)}\n${toml}`);
+    this.wasm.lizard_edit_floor();
     return this.answer();
   }
 
@@ -233,8 +253,9 @@ export class Robot {
     return this.answer();
   }
 
-  setFloor({ friction, ratio, mass, stiffness, preload }: Floor): void {
-    this.wasm.lizard_set_floor(friction, ratio, mass, stiffness ?? Infinity, preload);
+  setFloor(floor: Floor): void {
+    this.give(line(floor));
+    this.wasm.lizard_set_floor();
   }
 
   /** What its servos are taken for, by its name among the models of the description. */

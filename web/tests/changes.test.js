@@ -33,8 +33,12 @@ function number(toml, table, key) {
 
 async function changed() {
   const opened = await standing();
-  await slide(opened, 'Leg springs', '7');
+  await opened.getByLabel('Driven by').selectOption('spring');
+  await slide(opened, 'Ideal spring', '7');
   await slide(opened, 'Preload', '12');
+  await slide(opened, 'Play of a leg', '0.5');
+  await slide(opened, 'Front left foot too long', '-0.6');
+  await slide(opened, 'Stiffness of a foot', '2');
   await slide(opened, 'Pad friction', '0.5');
   await slide(opened, 'Friction back : ahead', '1.5');
   await slide(opened, 'Mass', '412');
@@ -46,18 +50,22 @@ async function changed() {
   return opened;
 }
 
-test('the downloaded robot.toml has lengths, springs, floor and mass', async () => {
+test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async () => {
   const opened = await changed();
   const toml = await downloaded(opened);
   const found = [
     ['leg', 'crank'],
-    ['leg', 'spring'],
-    ['leg', 'preload'],
+    ['leg.drive', 'stiffness'],
+    ['leg.drive', 'preload'],
+    ['leg.drive', 'play'],
+    ['feet', 'twist'],
+    ['feet', 'stiffness'],
     ['ground', 'friction'],
     ['ground', 'friction_back_over_forward'],
     ['body', 'mass'],
   ].map(([table, key]) => number(toml, table, key));
-  assert.deepEqual(found, [40, 5, 12, 0.5, 1.5, 412]);
+  assert.deepEqual(found, [40, 5, 12, 0.5, -0.6, 2, 0.5, 1.5, 412]);
+  assert.match(toml, /^kind = "spring"$/m);
 });
 
 test('a file of which nothing was changed is given as it is', async () => {
@@ -76,7 +84,10 @@ test('a reload keeps what was changed', async () => {
     const { floor, link, description, servos } = window.lizard;
     return { floor, link: link.name, lengths: description.lengths, servos };
   });
-  assert.deepEqual(floor, { friction: 0.5, ratio: 1.5, mass: 412, stiffness: 5, preload: 12 });
+  const { force, rate, ...set } = floor;
+  const drive = { kind: 'spring', stiffness: 5, preload: 12, play: 0.5 };
+  assert.deepEqual(set, { friction: 0.5, ratio: 1.5, mass: 412, leaf: 2, twist: -0.6, ...drive });
+  assert.ok(force > 1 && rate > 0, 'the strut that it would have is kept');
   assert.equal(lengths.find(({ key }) => key === 'leg.crank').value, 40);
   assert.equal(link, 'core in the page');
   assert.equal(servos, 'ideal');
@@ -116,12 +127,23 @@ test('the pace slider has what the robot has, after a typed line and after a res
 
 test('what moves nothing with rigid legs says so and cannot be set', async () => {
   const opened = await standing();
-  const note = opened.getByText('The legs are rigid: friction and mass cancel out');
+  const note = opened.getByText('The legs are rigid and the feet stand evenly: friction and mass cancel out');
   assert.ok(await note.isVisible());
   for (const label of ['Pad friction', 'Mass', 'Preload']) assert.ok(await opened.getByLabel(label).isDisabled(), label);
   assert.ok(await opened.getByLabel('Friction back : ahead').isEnabled());
-  await slide(opened, 'Leg springs', '7');
+  // With a foot that is too long, weight counts, and so does what the feet are like.
+  await slide(opened, 'Front left foot too long', '1');
   assert.equal(await note.isVisible(), false);
+  for (const label of ['Mass', 'Stiffness of a foot']) assert.ok(await opened.getByLabel(label).isEnabled(), label);
+  assert.ok(await opened.getByLabel('Pad friction').isDisabled());
+  await slide(opened, 'Front left foot too long', '0');
+  assert.ok(await opened.getByLabel('Stiffness of a foot').isDisabled());
+  await opened.getByLabel('Driven by').selectOption('strut');
+  assert.ok(await opened.getByLabel('Pull in the strut').isEnabled());
+  assert.ok(await opened.getByLabel('Preload').isDisabled());
+  await opened.getByLabel('Driven by').selectOption('spring');
+  assert.equal(await note.isVisible(), false);
+  assert.ok(await opened.getByLabel('Pull in the strut').isDisabled());
   for (const label of ['Pad friction', 'Mass', 'Preload']) assert.ok(await opened.getByLabel(label).isEnabled(), label);
 });
 

@@ -61,7 +61,8 @@ test('sixty pictures a second leave time to spare', async (t) => {
 test('a slider of the springs does not keep the page from drawing', async () => {
   const { opened, metrics } = await walking();
   await opened.addStyleTag({ content: 'canvas { display: none !important }' });
-  await opened.getByLabel('Leg springs').fill('7');
+  await opened.getByLabel('Driven by').selectOption('spring');
+  await opened.getByLabel('Ideal spring').fill('7');
   // Ten gaits are predicted meanwhile, for seconds; in another thread.
   const { least } = await cost(opened, metrics);
   assert.ok(least < PICTURE / 2, `${least} ms without painting`);

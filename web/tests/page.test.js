@@ -280,9 +280,10 @@ test('weak springs take of the way what the contact model says', async () => {
   const twin = await readFile(new URL('../../docs/twin.md', import.meta.url), 'utf8');
   const row = (name) => twin.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
   const [rates, walked, lags] = ['stiffness', '`walk`', 'lag'].map(row);
-  for (const [steps, stiffness] of [[7, 5], [11, 2]]) {
+  await opened.getByLabel('Driven by').selectOption('spring');
+  for (const [steps, stiffness] of [[6, 5], [10, 2]]) {
     const [mm, lag] = [walked, lags].map((values) => values[rates.indexOf(stiffness)]);
-    assert.equal(await fromTheRight(opened, 'Leg springs', steps), `${stiffness}`);
+    assert.equal(await fromTheRight(opened, 'Ideal spring', steps), `${stiffness}`);
     await advance(opened, 4000);
     const { predicted, measured } = await ways(opened, 'walk');
     near(predicted.forward, mm, 0.01, 'mm predicted, as the docs have it');
@@ -304,6 +305,29 @@ test('weak springs take of the way what the contact model says', async () => {
   near(again.predicted.forward, rigid, 0.03, 'rigid again');
   near(again.measured.forward, rigid, 0.03, 'rigid again');
   assert.deepEqual([again.predicted.lag, again.measured.lag], [null, 0]);
+});
+
+test('a foot that is too long costs what the contact model says, and on soft feet nothing', async () => {
+  const opened = await standing();
+  await opened.locator('#servos').selectOption('ideal');
+  await advance(opened, 2500);
+  const level = (await walks(opened, 'walk')).measured.forward;
+  const set = async (label, value) => {
+    const slider = opened.getByLabel(label);
+    await slider.fill(`${value}`);
+    await slider.dispatchEvent('change');
+  };
+  await set('Front left foot too long', 1);
+  await advance(opened, 4000);
+  const soft = await ways(opened, 'walk');
+  near(soft.measured.forward, soft.predicted.forward, 0.03, 'mm ahead on soft feet');
+  assert.ok(soft.measured.forward > 0.9 * level, `${soft.measured.forward} of ${level} mm`);
+  await set('Stiffness of a foot', 3.3);
+  await advance(opened, 4000);
+  const stiff = await ways(opened, 'walk');
+  near(stiff.measured.forward, stiff.predicted.forward, 0.5, 'mm ahead on stiff feet');
+  assert.ok(stiff.measured.forward < 0.3 * level, `${stiff.measured.forward} of ${level} mm`);
+  assert.equal(await opened.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
 });
 
 test('a dead band costs its share of the stroke, as predicted', async () => {

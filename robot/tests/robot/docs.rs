@@ -1,6 +1,6 @@
 //! docs/gaits.md shows what the commands print, docs/twin.md what springs cost.
 
-use lizard_robot::{Drive, Ground, Report, Sensitivity};
+use lizard_robot::{Drive, Ground, Kind, Report, Sensitivity};
 
 use crate::{gait, paper};
 
@@ -57,6 +57,23 @@ fn sprung(name: &str, rate: Option<f64>) -> lizard_robot::Travel {
     gait(paper(), name).walked(&ground).travel
 }
 
+/// A row of the table of slotted struts, whose springs have the rate of the paper's coil.
+fn slotted(name: &str, of: fn(lizard_robot::Travel) -> f64) -> String {
+    let rate = paper().parts().spring.rate();
+    let forces = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
+    let ways = forces.map(|force| {
+        let kind = force.map_or(Kind::Rigid, |force| {
+            Kind::Strut(paper().strut_with(force, rate))
+        });
+        let ground = Ground {
+            drive: Drive { kind, play: 0.0 },
+            ..*paper().ground()
+        };
+        format!(" {:.1} |", of(gait(paper(), name).walked(&ground).travel))
+    });
+    ways.concat()
+}
+
 /// Where a gait goes less far than this in a cycle it stops, mm.
 const STOPS: f64 = 1.0;
 
@@ -79,7 +96,9 @@ fn the_page_on_the_twin_shows_what_springs_cost() {
          | stiffness, N mm/deg | 2 | 5 | 10 | 20 | rigid |\n|---|---|---|---|---|---|\n\
          | lag, deg | {:.1} | {:.1} | {:.1} | {:.1} | 0 |\n\
          | `walk`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n\n\
-         `trot`, whose stroke is 15 deg, stops below {trot} N mm/deg.\n",
+         `trot`, whose stroke is 15 deg, stops below {trot} N mm/deg.\n\n\
+         | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\
+         | `walk`, mm in a cycle |{}\n| `trot`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n",
         ground.body.mass,
         ground.friction,
         grip * leg,
@@ -89,6 +108,9 @@ fn the_page_on_the_twin_shows_what_springs_cost() {
         grip * leg / 20.0,
         row("walk", |way| way.forward),
         row("left", |way| way.turn),
+        slotted("walk", |way| way.forward),
+        slotted("trot", |way| way.forward),
+        slotted("left", |way| way.turn),
     );
     let now = filled(&page, "springs of robots/paper.toml", &text);
     check(TWIN, &page, &now);

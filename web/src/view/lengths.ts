@@ -81,7 +81,7 @@ export class Lengths {
   private download(): void {
     const { robot, toml, floor } = this.session();
     const refused = download(robot, toml, floor);
-    if (refused) this.say(`This robot.toml has not what Springs and floor are set to: ${refused.refused}`);
+    if (refused) this.say(`This robot.toml has not what Legs, feet and floor are set to: ${refused.refused}`);
   }
 
   private say(sentence: string | null): void {

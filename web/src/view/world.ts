@@ -1,9 +1,9 @@
-// The sliders of what is around the robot: springs, floor, weight, servos, supply.
-import type { Floor, ServoModel } from '../robot';
+// The sliders of what is around the robot: drive, feet, floor, weight, servos, supply.
+import { type Floor, type Kind, lags, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 
-/** Stiffnesses that the slider has, N mm/deg; its last position is a rigid leg. */
+/** Stiffnesses that the slider of an ideal spring has, N mm/deg. */
 const STIFFNESS = [0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 7, 10, 15, 20, 30, 50];
 
 const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
@@ -11,14 +11,25 @@ const round = (value: number, digits: number) => Number(value.toFixed(digits)).t
 /** How a slider's number is written; its unit is in its label. */
 const SHOWN = {
   preload: (value: number) => round(value, 1),
+  force: (value: number) => value.toFixed(1),
+  play: (value: number) => value.toFixed(1),
+  leaf: (value: number) => value.toFixed(1),
+  twist: (value: number) => value.toFixed(1),
   friction: (value: number) => value.toFixed(2),
   ratio: (value: number) => value.toFixed(2),
   mass: (value: number) => round(value, 0),
 };
 type Plain = keyof typeof SHOWN;
 const PLAIN = Object.keys(SHOWN) as Plain[];
+/** The sliders that only one kind of drive has; `springs` is that of the stiffness. */
+const OF_KIND: [string, Kind][] = [
+  ['springs', 'spring'],
+  ['preload', 'spring'],
+  ['force', 'strut'],
+];
 
 export class World {
+  private readonly drive = element<HTMLSelectElement>('drive');
   private readonly springs = element<HTMLInputElement>('springs');
   private readonly servos = element<HTMLSelectElement>('servos');
   private readonly supply = element<HTMLInputElement>('supply');
@@ -29,7 +40,8 @@ export class World {
     private readonly session: () => Session,
     private readonly onFloor: () => void,
   ) {
-    this.springs.addEventListener('input', () => this.showSprings());
+    this.drive.addEventListener('change', () => this.use());
+    this.springs.addEventListener('input', () => this.show(this.springs, round(this.rate, 2)));
     this.springs.addEventListener('change', () => this.use());
     for (const name of PLAIN) {
       const input = this.input(name);
@@ -53,12 +65,11 @@ export class World {
   /** Shows the values of the session's robot. */
   take(): void {
     const { floor, description } = this.session();
-    const own = description.floor.stiffness;
-    this.stiffness = [...new Set([...STIFFNESS, ...(own === null ? [] : [own])])].sort((a, b) => a - b);
-    this.springs.max = String(this.stiffness.length);
-    const at = floor.stiffness === null ? -1 : this.stiffness.indexOf(floor.stiffness);
-    this.springs.value = String(at < 0 ? this.stiffness.length : at);
-    this.showSprings();
+    this.drive.value = floor.kind;
+    this.stiffness = [...new Set([...STIFFNESS, description.floor.stiffness, floor.stiffness])].sort((a, b) => a - b);
+    this.springs.max = String(this.stiffness.length - 1);
+    this.springs.value = String(this.stiffness.indexOf(floor.stiffness));
+    this.show(this.springs, round(this.rate, 2));
     for (const name of PLAIN) {
       const input = this.input(name);
       // A robot may be heavier than most.
@@ -67,6 +78,7 @@ export class World {
       input.value = String(floor[name]);
       this.show(input, SHOWN[name](floor[name]));
     }
+    this.enable(floor);
     if (this.servos.length === 0) {
       for (const model of description.models) this.servos.add(new Option(describe(model), model.name));
     }
@@ -82,18 +94,20 @@ export class World {
     return element<HTMLInputElement>(name);
   }
 
-  /** The stiffness that the slider is at; null for rigid legs. */
-  private get rate(): number | null {
-    return this.stiffness[this.springs.valueAsNumber] ?? null;
+  /** The stiffness that the slider is at. */
+  private get rate(): number {
+    return this.stiffness[this.springs.valueAsNumber];
   }
 
-  private showSprings(): void {
-    const { rate } = this;
-    this.show(this.springs, rate === null ? 'rigid' : round(rate, 2));
-    this.input('preload').disabled = rate === null;
-    // With rigid legs they cancel out.
-    for (const name of ['friction', 'mass'] as const) this.input(name).disabled = rate === null;
-    element('rigid-note').hidden = rate !== null;
+  /** What would move nothing is not to be set. */
+  private enable(floor: Floor): void {
+    for (const [name, kind] of OF_KIND) element<HTMLInputElement>(name).disabled = floor.kind !== kind;
+    const springs = floor.kind !== 'rigid';
+    // Without springs friction cancels out, and without a foot that is too long weight as well.
+    this.input('friction').disabled = !springs;
+    this.input('mass').disabled = !springs && floor.twist === 0;
+    this.input('leaf').disabled = floor.twist === 0;
+    element('rigid-note').hidden = lags(floor) || floor.twist !== 0;
   }
 
   private show(input: HTMLInputElement, text: string): void {
@@ -102,14 +116,26 @@ export class World {
   }
 
   private use(): void {
-    const number = (name: Plain) => this.input(name).valueAsNumber;
+    // What a slider was not moved from stays as exactly as it was.
+    const own = this.session().floor;
+    const number = (name: Plain) => {
+      const input = this.input(name);
+      return SHOWN[name](own[name]) === SHOWN[name](input.valueAsNumber) ? own[name] : input.valueAsNumber;
+    };
     const floor: Floor = {
       friction: number('friction'),
       ratio: number('ratio'),
       mass: number('mass'),
+      kind: this.drive.value as Kind,
       stiffness: this.rate,
       preload: number('preload'),
+      force: number('force'),
+      rate: own.rate,
+      play: number('play'),
+      leaf: number('leaf'),
+      twist: number('twist'),
     };
+    this.enable(floor);
     this.session().setFloor(floor);
     this.onFloor();
   }
