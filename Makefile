@@ -49,7 +49,7 @@ web-test: ## the page in a real browser: it walks, turns, refuses, calibrates, f
 	$(call prepared,.web-test)
 lint: ## rustfmt and clippy, warnings are errors
 	$(call prepared,.lint)
-parts-test: ## the files of `lizard parts`, read by ezdxf, FreeCAD and admesh, sliced by PrusaSlicer
+parts-test: ## the files of `lizard parts`, read by ezdxf, FreeCAD, admesh, sliced by PrusaSlicer, put together by trimesh
 	$(call prepared,.parts-test)
 cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)

@@ -31,25 +31,29 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "step/plate.step",
         "stl/link-A1-A3.stl",
         "cut/link-A1-A3.dxf",
-        "cut/coupler.svg",
+        "cut/coupler-A1.svg",
         "stl/coupon.stl",
         "stl/rigid-strut.stl",
         "bill.json",
         "guide/guide.html",
         "guide/guide.md",
         "guide/robot.svg",
-        "guide/step-8-done.svg",
+        "guide/step-11-done.svg",
+        "guide/step-1-near.svg",
+        "guide/step-2-below.svg",
+        "guide/placements.json",
+        "stl/head-plate.stl",
     ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
-    assert!(guide.contains("## 4. Struts\n"), "{guide}");
+    assert!(guide.contains("## 9. Struts\n"), "{guide}");
     assert!(
         guide.contains("Instead of the struts, 4 x strut,"),
         "{guide}"
     );
     assert!(
-        !guide.contains("hook") && !guide.contains("tension"),
+        !guide.contains("hook of the spring") && !guide.contains("tension"),
         "{guide}"
     );
     for line in guide.lines().filter(|line| line.starts_with("![")) {
@@ -59,10 +63,43 @@ fn a_folder_holds_everything_to_build_the_robot() {
 }
 
 #[test]
+fn one_corner_can_be_printed_first() {
+    let folder = fresh("parts-corner");
+    let made = lizard(
+        &folder,
+        &["--robot", &robots("paper"), "--corner", "--json"],
+    );
+    assert!(made.status.success(), "{made:?}");
+    let list: serde_json::Value = serde_json::from_slice(&made.stdout).expect("JSON");
+    let list = list.as_array().expect("a list");
+    let names: Vec<_> = list
+        .iter()
+        .filter_map(|part| part["part"].as_str())
+        .collect();
+    for part in [
+        "seat A1",
+        "link A1 A3",
+        "crank LF RH",
+        "follower",
+        "leg coupler",
+        "foot LF RH",
+    ] {
+        assert!(names.contains(&part), "{names:?}");
+    }
+    assert!(
+        names.iter().any(|name| name.ends_with("strut")),
+        "{names:?}"
+    );
+    assert!(list.iter().all(|part| part["count"] == 1), "{list:?}");
+    assert!(!names.contains(&"plate") && !folder.join("bill.json").exists());
+    assert!(folder.join("stl/seat-A1.stl").is_file());
+}
+
+#[test]
 fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("light.toml");
     let text = fs::read_to_string(robots("paper")).expect("paper");
-    fs::write(&file, text.replace("mass = 307.0", "mass = 280.0")).expect("a file");
+    fs::write(&file, text.replace("mass = 396.4", "mass = 280.0")).expect("a file");
     let said = |robot: &str| {
         let made = lizard(&fresh("parts-light"), &["--robot", robot]);
         assert!(made.status.success(), "{made:?}");
@@ -70,7 +107,7 @@ fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
     };
     let light = said(&file.display().to_string());
     assert!(
-        light.contains("The parts weigh 303 g") && light.ends_with("\n[body]\nmass = 303.0\n"),
+        light.contains("The parts weigh 396 g") && light.ends_with("\n[body]\nmass = 396.0\n"),
         "{light}"
     );
     assert_eq!(said(&robots("paper")).lines().count(), 1);
@@ -96,7 +133,7 @@ fn struts_may_have_springs() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
-    assert!(guide.contains("## 4. Struts and springs"), "{guide}");
+    assert!(guide.contains("## 9. Struts and springs"), "{guide}");
     for words in [
         "Instead of the struts, 4 x rigid strut,",
         "hook",

@@ -30,7 +30,50 @@ const SCREW_MM: f64 = 0.044;
 const SCREW_HEAD: f64 = 0.25;
 const STANDOFF_MM: f64 = 0.06;
 const NUT: f64 = 0.4;
+const HORN_SCREW: f64 = 0.1;
 const SERVO_SCREW: f64 = 0.2;
+const PAD: f64 = 0.2;
+
+/// What is bought and hangs in the wires or between them: how many, what, g each. Their
+/// middle is that of the rest.
+const MORE: [(usize, &str, f64); 12] = [
+    (
+        4,
+        "resistor 10 kOhm, from each servo's signal to ground",
+        0.2,
+    ),
+    (1, "switch for 3 A, in the battery's plus wire", 4.0),
+    (
+        1,
+        "fuse holder for a wire, with a fuse of 5 A, beside the battery",
+        5.0,
+    ),
+    (
+        1,
+        "plug for the battery's own, with two wires of 0.75 mm2, 10 cm long",
+        4.0,
+    ),
+    (
+        1,
+        "round plug 5.5 x 2.1 mm with two wires, from the battery's switch to the UNO's socket",
+        4.0,
+    ),
+    (2, "wire of 0.5 mm2, one red and one black, 0.5 m long", 3.0),
+    (
+        12,
+        "jumper wire, pin to pin, 20 cm, for the servos' plugs",
+        0.4,
+    ),
+    (8, "cable tie, 2.5 mm wide, 100 mm long", 0.3),
+    (1, "double-sided foam tape, 20 mm wide, 20 cm", 1.0),
+    (1, "USB cable, A to B, that carries data", 0.0),
+    (1, "charger for the battery", 0.0),
+    (
+        1,
+        "drill of 3 mm, kitchen scale, hex key and sockets for M3",
+        0.0,
+    ),
+];
 
 /// What an SG-90 turns at a stall with 4.8 V, N mm: 1.8 kg cm.
 pub const STALL: f64 = 176.0;
@@ -80,7 +123,7 @@ pub struct Bill {
     pub instead: Vec<Item>,
     /// To buy.
     pub bought: Vec<Item>,
-    /// All of it at neutral, g, without wires.
+    /// All of it at neutral, g.
     #[serde(serialize_with = "tenths")]
     pub grams: f64,
     /// The mass centre: ahead of, left of and above the plate's middle, mm.
@@ -208,6 +251,19 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
             SCREW_HEAD + SCREW_MM * length,
         ),
         Kind::ServoScrew => (String::new(), SERVO_SCREW),
+        Kind::HornScrew(length) => (
+            format!(
+                "self-tapping screw, 1.7 to 2 mm thick, {length} mm long and no longer, for the horns"
+            ),
+            HORN_SCREW,
+        ),
+        Kind::Lead => (String::new(), 0.0),
+        Kind::Fitting(fitting) => (fitting.what(), fitting.grams()),
+        Kind::Pad => (
+            "rubber pad, self-adhesive, 8 mm wide and 1.5 mm thick, all four of one kind"
+                .to_owned(),
+            PAD,
+        ),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
         Kind::Standoff(length) => (
             format!("standoff M{diameter}, {length} mm, thread in both ends"),
@@ -283,22 +339,14 @@ impl Bill {
         let bought = list
             .into_iter()
             .map(|(what, (count, grams))| Item::bought(count, what, grams));
-        let more = [
-            (1, "converter to 5 V, 3 A, for the servos"),
-            (1, "capacitor 1000 uF, 10 V, across their supply"),
-            (4, "resistor 10 kOhm, from each servo's signal to ground"),
-            (
-                8,
-                "small self-tapping screws, 1.6 to 2 mm thick, 5 mm long, for the horns",
-            ),
-            (1, "low-voltage alarm for the battery"),
-        ];
+        let more = MORE.map(|(count, what, each)| {
+            grams += count as f64 * each;
+            Item::bought(count, what.to_owned(), each)
+        });
         Self {
             printed: printed(false),
             instead: printed(true),
-            bought: bought
-                .chain(more.map(|(count, what)| Item::bought(count, what.to_owned(), 0.0)))
-                .collect(),
+            bought: bought.chain(more).collect(),
             grams,
             centre: moment.map(|sum| sum / grams),
             hold,
@@ -374,7 +422,7 @@ impl fmt::Display for Bill {
         }
         writeln!(
             f,
-            "\nIn all about {:.0} g without wires; the mass centre is {} the middle of the plate, \
+            "\nIn all about {:.0} g; the mass centre is {} the middle of the plate, \
              {:.1} mm above its top.\n",
             self.grams,
             self.beside(),

@@ -2,6 +2,7 @@
 
 use lizard_kinematics::{End, Side};
 
+use crate::fitting::Fitting;
 use crate::shape::Shape;
 use crate::stack::Span;
 
@@ -32,12 +33,20 @@ pub enum Kind {
     HexScrew(f64),
     /// A self-tapping screw from a servo's bag.
     ServoScrew,
+    /// A small self-tapping screw that holds a horn in its link, by its length, mm.
+    HornScrew(f64),
+    /// The wires of a servo, as far as they lie in the robot.
+    Lead,
+    /// What is bought and has a place, but is not a part of the mechanism.
+    Fitting(Fitting),
     /// A lock nut.
     Nut,
     /// A standoff by its length, mm.
     Standoff(f64),
     /// A tension spring.
     Spring,
+    /// A rubber pad under a foot.
+    Pad,
     /// The Arduino UNO.
     Board,
     /// The battery.

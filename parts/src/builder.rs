@@ -61,6 +61,18 @@ impl<'a> Builder<'a> {
         self.parts.bar / 2.0
     }
 
+    /// Radius of what is around a pocket for a nut, so that its corners have a wall, mm.
+    pub fn eye(&self) -> f64 {
+        let corner = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
+        self.half().max(corner + self.parts.wall)
+    }
+
+    /// The same around a head that is sunk, mm.
+    pub fn around_head(&self) -> f64 {
+        let head = self.parts.screw.head / 2.0 + self.parts.fit;
+        self.half().max(head + self.parts.wall)
+    }
+
     /// Whether the struts have a slot and a spring.
     pub fn slotted(&self) -> bool {
         self.robot.drive().strut().is_some()
@@ -110,12 +122,10 @@ impl<'a> Builder<'a> {
 
     /// A printed ring around a screw.
     pub fn spacer(&mut self, name: String, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
+        let hole = self.hole(at);
         let ring = Prism {
-            add: vec![Shape::disc(
-                at,
-                self.parts.screw.diameter / 2.0 + self.parts.wall,
-            )],
-            cut: vec![self.hole(at)],
+            add: vec![Shape::disc(at, hole.radius + self.parts.wall)],
+            cut: vec![hole],
             z,
         };
         self.body(name, Kind::Printed, mount, vec![ring]);

@@ -6,6 +6,7 @@ use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
 use crate::names::names;
 use crate::shape::Shape;
+use crate::{fitting, leads, mark};
 
 /// Where the standoffs are, mm: to the right, forward.
 pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
@@ -13,8 +14,13 @@ pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 const STANDOFF: f64 = 3.2;
 /// Radius of a servo's spline, mm.
 pub const SPLINE: f64 = 2.4;
-/// Radius of the hole that a servo's own screw cuts its thread into, mm.
-const PILOT: f64 = 0.8;
+/// Radius of the hole that a servo's own screw cuts its thread into, mm. One of the two
+/// is beside the notch for the lead, with 0.35 mm between them: there the screw holds on
+/// its three other sides.
+const PILOT: f64 = 0.75;
+
+/// From a seat to the middle of its servo's number, and as much outward, mm.
+const NUMBER: f64 = 4.0;
 
 /// An Arduino UNO, mm: its board, what stands on it, its four holes from its middle
 /// with the USB socket behind. From 2700 x 2100 mil and holes at (550, 100), (600, 2000),
@@ -39,7 +45,9 @@ pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
         case(builder, servo);
     }
+    leads::add(builder);
     battery(builder);
+    fitting::add(builder);
     deck(builder);
     board(builder);
 }
@@ -95,6 +103,9 @@ fn plate(builder: &mut Builder) {
     for servo in 0..4 {
         seats.push(seat(builder, servo));
         openings.push(opening(builder, servo, parts.fit));
+        let outward = End::of_servo(servo).sign();
+        let middle = middle(builder, servo);
+        openings.push(leads::notch(&parts.servo, middle, parts.fit, outward));
         holes.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
     }
     let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
@@ -109,14 +120,21 @@ fn plate(builder: &mut Builder) {
         }
     }
     through.extend(standoffs().map(|at| builder.hole(at)));
-    // Lighter, and a way for the straps of the battery.
-    let window = Shape::rectangle(Vector::default(), at(plate.half.x, 44.0), 3.0);
+    through.extend(leads::holes());
+    through.extend(fitting::slots(builder));
     let cut = [&openings[..], &holes].concat();
+    let [low, high] = stack.plate;
+    let through = [&cut[..], &through].concat();
     let prisms = vec![
         Prism {
+            add: add.clone(),
+            cut: through.clone(),
+            z: [low, high - mark::DEEP],
+        },
+        Prism {
             add,
-            cut: [&cut[..], &through, &[window]].concat(),
-            z: stack.plate,
+            cut: [through, numbers(builder)].concat(),
+            z: [high - mark::DEEP, high],
         },
         Prism {
             add: seats,
@@ -125,6 +143,60 @@ fn plate(builder: &mut Builder) {
         },
     ];
     builder.body("plate".to_owned(), Kind::Printed, Mount::Chassis, prisms);
+}
+
+/// A piece of the plate for one servo and its leg: what is printed first.
+pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
+    /// What is around the seat, mm.
+    const AROUND: f64 = 2.0;
+    let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
+    let leg = &builder.layout.legs[servo];
+    let middle = middle(builder, servo);
+    let size = at(
+        parts.servo.width + 2.0 * (parts.fit + parts.wall + AROUND),
+        parts.servo.flange + 2.0 + 2.0 * AROUND,
+    );
+    let mut add = vec![Shape::rectangle(middle, size, 1.0)];
+    let [between, driven, idle] = plate.arms[servo];
+    add.push(Shape::bar(between[0], between[1], plate.arm));
+    for [from, to] in [driven, idle] {
+        add.push(Shape::bar(from, to, plate.arm - 0.01));
+        add.push(Shape::bar(to, middle, plate.arm - 0.02));
+    }
+    let outward = End::of_servo(servo).sign();
+    let mut cut = vec![
+        opening(builder, servo, parts.fit),
+        leads::notch(&parts.servo, middle, parts.fit, outward),
+    ];
+    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    let pivots = [leg.driven, leg.idle].map(|at| builder.hole(at));
+    vec![
+        Prism {
+            add,
+            cut: [&cut[..], &pivots].concat(),
+            z: [0.0, parts.plate],
+        },
+        Prism {
+            add: vec![seat(builder, servo)],
+            cut,
+            z: stack.seat.map(|z| z + parts.plate),
+        },
+    ]
+}
+
+/// The servos' numbers, engraved beside the seats: so the plate says which end is which.
+fn numbers(builder: &Builder) -> Vec<Shape> {
+    let body = &builder.parts.servo;
+    let strokes = (0..4).flat_map(|servo| {
+        let [wide, high] = mark::size("1");
+        let middle = middle(builder, servo);
+        // Before the seat, away from the hole for the leads.
+        let out = middle.x.signum() * NUMBER;
+        let before = inward(servo) * (body.flange / 2.0 + 1.0 + NUMBER);
+        let at = middle + before + at(out - wide / 2.0, -high / 2.0);
+        mark::strokes(&(servo + 1).to_string(), at)
+    });
+    strokes.collect()
 }
 
 fn case(builder: &mut Builder, servo: usize) {
@@ -188,17 +260,18 @@ fn deck(builder: &mut Builder) {
     let [x, y] = STANDOFFS;
     let bar = |a: (f64, f64), b: (f64, f64)| Shape::bar(at(a.0, a.1), at(b.0, b.1), 5.0);
     let add = vec![
-        Shape::rectangle(Vector::default(), at(2.0 * x + 10.5, 2.0 * y + 11.0), 5.0),
+        Shape::rectangle(Vector::default(), at(2.0 * x + 10.5, 2.0 * y + 14.0), 5.0),
         bar(UNO_HOLES[0], UNO_HOLES[1]),
         bar(UNO_HOLES[2], UNO_HOLES[3]),
     ];
     let screws = standoffs().map(|at| builder.hole(at));
     let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
+    // Lighter, and a way for the straps of what hangs under it.
     let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
     let prisms = vec![
         Prism {
             add,
-            cut: [&screws[..], &threads, &[window]].concat(),
+            cut: [&screws[..], &threads, &leads::holes(), &[window]].concat(),
             z: stack.deck,
         },
         Prism {
@@ -212,7 +285,7 @@ fn deck(builder: &mut Builder) {
         let length = stack.deck[0];
         let post = Prism {
             add: vec![Shape::disc(place, STANDOFF)],
-            cut: Vec::new(),
+            cut: vec![builder.thread(place)],
             z: [0.0, length],
         };
         builder.body(

@@ -1,13 +1,15 @@
-//! A fit coupon: a quarter of an hour of printing that tells what `fit` a printer needs.
+//! A fit coupon: an hour of printing that tells what `fit` a printer needs.
 //!
 //! Each column is made with another fit, 0.0 to 0.4 mm from the left, and has as many
-//! dots: an M3 hole, a horn's pocket, a slot as wide as a servo, a piece of a sleeve. The
+//! dots: an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, a piece
+//! of a sleeve. The
 //! first column in which all of them go together by hand is the one.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
 
 use crate::body::Prism;
+use crate::leads::{LEAD, notch};
 use crate::links::{POCKET, arm};
 use crate::part::Part;
 use crate::placement::Placement;
@@ -29,9 +31,10 @@ const GAUGE: f64 = 30.0;
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
     let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;
-    // From below: slot, pocket, hole and dots, sleeve.
-    let slot = 12.0;
-    let pocket = slot + 4.0 + horn.hub / 2.0;
+    // From below: opening, pocket, hole and dots, sleeve.
+    let most = STEP * f64::from(COLUMNS);
+    let opening = 3.0 + LEAD[1] + most + servo.length / 2.0;
+    let pocket = opening + servo.length / 2.0 + most + 3.0 + horn.hub / 2.0;
     let hole = pocket + horn.arm + 5.0;
     let sleeve = hole + 6.0 + SLEEVE / 2.0;
     let top = sleeve + SLEEVE / 2.0 + 2.0;
@@ -45,7 +48,12 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         let x = pitch * (f64::from(column) + 0.5);
         let through = [
             Shape::disc(at(x - 3.0, hole), (parts.screw.diameter + fit) / 2.0),
-            Shape::rectangle(at(x, 0.0), at(servo.width + 2.0 * fit, 2.0 * slot), 0.0),
+            Shape::rectangle(
+                at(x, opening),
+                at(servo.width + 2.0 * fit, servo.length + 2.0 * fit),
+                0.0,
+            ),
+            notch(servo, at(x, opening), fit, -1.0),
         ];
         floor.extend(through.iter().cloned());
         below.extend(through);
@@ -101,6 +109,7 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         prisms,
         turned: false,
         instead_of: None,
+        mark: String::new(),
     };
     [part("coupon", prisms), part("coupon rod", vec![gauge])]
 }

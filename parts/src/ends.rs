@@ -5,9 +5,10 @@ use lizard_robot::Robot;
 
 use crate::body::{Kind, Mount, Prism, at_end};
 use crate::builder::Builder;
+use crate::looks;
 use crate::names::{coupler, names};
 use crate::shape::Shape;
-use crate::stack::Span;
+use crate::stack::{PLAY, Span};
 
 pub fn add(builder: &mut Builder) {
     for end in End::ALL {
@@ -39,12 +40,16 @@ pub fn add(builder: &mut Builder) {
             &[&coupler(right)],
         );
         let apex = Vector::new(coupler_length(builder.robot, left), 0.0);
+        let looks = looks::add(builder, end);
+        let mut meets: Vec<&str> = looks.on_right.iter().map(String::as_str).collect();
+        let right = coupler(right);
+        meets.push(&right);
         builder.joint(
             end.name(),
             Mount::Coupler(left),
             apex,
-            [lower[0], upper[1]],
-            &[&coupler(right)],
+            [lower[0] - looks.below, upper[1] + looks.above],
+            &meets,
         );
     }
 }
@@ -52,21 +57,29 @@ pub fn add(builder: &mut Builder) {
 fn bar(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
-    let bar = Prism {
-        add: vec![Shape::bar(from, to, builder.half())],
-        cut: vec![builder.hole(from), builder.hole(to)],
-        z,
+    let layer = |hole: Option<Shape>, z: Span| {
+        let mut add = vec![Shape::bar(from, to, builder.half())];
+        let mut cut = vec![builder.hole(from), builder.hole(to)];
+        let around = |hole: &Shape| Shape::disc(hole.middle(), builder.around_head());
+        add.extend(hole.iter().map(around));
+        cut.extend(hole);
+        Prism { add, cut, z }
     };
-    builder.body(
-        coupler(servo),
-        Kind::Printed,
-        Mount::Coupler(servo),
-        vec![bar],
-    );
+    let prisms = match looks::fixed(builder, servo, to) {
+        Some([below, above]) => {
+            let seat = z[1] - builder.parts.screw.head_height - PLAY;
+            vec![
+                layer(Some(below), [z[0], seat]),
+                layer(Some(above), [seat, z[1]]),
+            ]
+        }
+        None => vec![layer(None, z)],
+    };
+    builder.body(coupler(servo), Kind::Printed, Mount::Coupler(servo), prisms);
 }
 
 /// Length of the coupler on a servo's crank, mm.
-fn coupler_length(robot: &Robot, servo: usize) -> f64 {
+pub fn coupler_length(robot: &Robot, servo: usize) -> f64 {
     let (end, hand) = at_end(servo);
     let bars = robot.lizard().end(end);
     [bars.coupler_left, bars.coupler_right][hand]

@@ -40,7 +40,12 @@ pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, Unfit> {
     if !solid.is_closed() {
         return Err(broken());
     }
-    let mesh = Mesh::of(&solid);
+    let (printed, _) = part.printed();
+    let printed = Solid::of(&printed);
+    if !printed.is_closed() {
+        return Err(broken());
+    }
+    let mesh = Mesh::of(&printed);
     if !mesh.is_closed() {
         return Err(broken());
     }

@@ -1,6 +1,7 @@
 //! How the parts are put together, step by step, with pictures of the model.
 //!
-//! The order is that in which a screwdriver still reaches every screw.
+//! The order is that in which a screwdriver still reaches every screw, and in which the
+//! electronics are tried before anything could jam.
 
 use std::fmt::Write;
 
@@ -8,16 +9,32 @@ use lizard_kinematics::Solution;
 
 use crate::assembly::Assembly;
 use crate::bill::Bill;
-use crate::body::{Body, Kind};
+use crate::body::{Body, Mount};
 use crate::files::File;
+use crate::html::html;
+use crate::legend;
 use crate::names::names;
-use crate::picture::{Drawn, View, picture, whole};
+use crate::part::Part;
+use crate::picture::{Drawn, Label, View, labelled, whole};
 use crate::reach::Aside;
-use crate::steps::steps;
+use crate::roof::LAYER;
+use crate::steps::{Near, Step, Where, steps};
 use crate::unfit::Unfit;
 
 /// How far new parts are lifted in the exploded pictures, mm.
 const LIFT: f64 = 45.0;
+/// Width of a picture without the names beside it, pixels.
+const WIDE: f64 = 950.0;
+/// The corner that is printed first, and seen from nearby: that of A1.
+pub const CORNER: usize = 0;
+
+/// What the guide says first.
+const BEFORE: &str = "No printed robot has walked yet. So print in this order, and stop where something is not as it should be:\n\n\
+1. the **coupon** (`lizard parts DIR --coupon`): the first column into which everything goes by hand is your printer's `fit`;\n\
+2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot, three hours. Put it together as in steps 1, 5 and 7 to 9;\n\
+3. everything.\n\n\
+Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
+roof: that is a bridge of 6.4 mm, which needs none.";
 
 /// The guide as Markdown and HTML, with its pictures at a pose, as a rule neutral.
 ///
@@ -26,65 +43,59 @@ const LIFT: f64 = 45.0;
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
     let steps = steps(assembly.robot().drive().strut().is_some());
     let asides = assembly.asides(&steps)?;
+    let parts = assembly.parts();
     let mut files = Vec::new();
-    let view = View::default();
-    let robot = picture(assembly, &whole(assembly), pose, &view);
-    files.push(File::text("guide/robot.svg".to_owned(), robot));
-    let mut text = String::from(
-        "# Building the robot\n\n![The robot](robot.svg)\n\nNothing here was tried on a real printer yet: print the coupon first, and one leg \
-         before all four.\n\n## What is needed\n\n",
+    let robot = labelled(
+        assembly,
+        &whole(assembly),
+        pose,
+        &View::default(),
+        &legend::places(assembly, pose),
     );
-    let _ = writeln!(text, "{bill}");
+    files.push(File::text("guide/robot.svg".to_owned(), robot));
+    let mut text = format!(
+        "# Building the robot\n\n![The robot](robot.svg)\n\n{BEFORE}\n\n{}\n",
+        drilled(&parts)
+    );
+    let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut before: Vec<&Body> = Vec::new();
-    for (number, step) in steps.iter().enumerate() {
-        let number = number + 1;
+    for (number, step) in (1..).zip(&steps) {
         let new: Vec<&Body> = assembly
             .bodies()
             .iter()
             .filter(|body| step.adds(body) && !before.iter().any(|old| old.name == body.name))
             .collect();
-        for (kind, lift) in [("exploded", LIFT), ("done", 0.0)] {
-            let mut drawn: Vec<Drawn> = before
-                .iter()
-                .map(|&body| Drawn {
-                    body,
-                    lift: 0.0,
-                    pale: true,
-                })
-                .collect();
-            drawn.extend(new.iter().map(|&body| Drawn {
-                body,
-                lift: lift * (step.lift)(body),
-                pale: false,
-            }));
-            let name = format!("guide/step-{number}-{kind}.svg");
-            let drawing = picture(
-                assembly,
-                &drawn,
-                pose,
-                &View {
-                    width: 700.0,
-                    ..view
-                },
-            );
-            files.push(File::text(name, drawing));
-        }
         let _ = writeln!(text, "## {number}. {}\n\n{}\n", step.title, step.words);
-        let _ = writeln!(text, "Screws: {}.\n", screws(&new));
+        if new.is_empty() {
+            continue;
+        }
+        let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
         let here = asides.iter().filter(|aside| aside.step == number);
-        let turns: Vec<_> = here.map(|aside| turned(assembly, aside)).collect();
+        let at_bench = step.stages.iter().any(|stage| stage.at == Where::Bench);
+        let turns: Vec<_> = here
+            .map(|aside| turned(assembly, aside, at_bench))
+            .collect();
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
-                "At neutral there is no way to some screws. Seen from above, turn {}.\n",
+                "As drawn there is no way to some screws. Seen from above, turn {}.\n",
                 turns.join("; ")
             );
         }
-        let _ = writeln!(
-            text,
-            "![{title}, apart](step-{number}-exploded.svg)\n![{title}, done](step-{number}-done.svg)\n",
-            title = step.title
-        );
+        let scene = Scene {
+            assembly,
+            parts: &parts,
+            pose,
+            step,
+            before: &before,
+            new: &new,
+        };
+        for (kind, words, drawing) in scene.pictures() {
+            let name = format!("step-{number}-{kind}.svg");
+            let _ = writeln!(text, "![{}, {words}]({name})", step.title);
+            files.push(File::text(format!("guide/{name}"), drawing));
+        }
+        text.push('\n');
         before.extend(new);
     }
     files.push(File::text("guide/guide.html".to_owned(), html(&text)));
@@ -92,8 +103,113 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     Ok(files)
 }
 
+/// What has to be drilled.
+fn drilled(parts: &[Part]) -> String {
+    let some = parts.iter().filter(|part| part.printed().1 > 0);
+    let list: Vec<_> = some
+        .map(|part| {
+            let (_, count) = part.printed();
+            let holes = if count == 1 { "a hole" } else { "holes" };
+            match count {
+                1 => format!("{holes} in each {}", part.name),
+                _ => format!("{count} {holes} in each {}", part.name),
+            }
+        })
+        .collect();
+    format!(
+        "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER} mm; open it with a drill of 3 mm, \
+         or a screw: {}. Parts that are alike but for left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
+        list.join(", ")
+    )
+}
+
+/// A step and what was there before.
+struct Scene<'a> {
+    assembly: &'a Assembly,
+    parts: &'a [Part],
+    pose: &'a Solution,
+    step: &'a Step,
+    before: &'a [&'a Body],
+    new: &'a [&'a Body],
+}
+
+impl Scene<'_> {
+    /// Its pictures: what they are, in a word and in words.
+    fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
+        let view = View {
+            width: WIDE,
+            ..View::default()
+        };
+        let below = View {
+            below: true,
+            azimuth: 300.0,
+            ..view
+        };
+        let corner = View {
+            near: true,
+            azimuth: 150.0,
+            elevation: 30.0,
+            ..view
+        };
+        let corner_below = View {
+            below: true,
+            azimuth: 30.0,
+            ..corner
+        };
+        let all = |_: &Body| true;
+        let mut pictures = vec![("exploded", "apart", self.picture(&view, LIFT, true, all))];
+        match self.step.near {
+            Near::None => {}
+            Near::Corner => {
+                let drawing = self.picture(&corner, 0.6 * LIFT, true, at_corner);
+                pictures.push(("near", "the front left corner", drawing));
+            }
+            Near::CornerBelow => {
+                let drawing = self.picture(&corner_below, 0.5 * LIFT, true, at_corner);
+                pictures.push(("below", "the front left corner from below", drawing));
+            }
+            Near::Below => {
+                let drawing = self.picture(&below, 0.0, true, all);
+                pictures.push(("below", "from below", drawing));
+            }
+        }
+        pictures.push(("done", "done", self.picture(&view, 0.0, false, all)));
+        pictures
+    }
+
+    fn picture(&self, view: &View, lift: f64, named: bool, which: fn(&Body) -> bool) -> String {
+        let old = self.before.iter().map(|&body| Drawn {
+            body,
+            lift: 0.0,
+            pale: true,
+        });
+        let new = self.new.iter().map(|&body| Drawn {
+            body,
+            lift: lift * (self.step.lift)(body),
+            pale: !which(body),
+        });
+        let drawn: Vec<_> = old.chain(new).collect();
+        let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
+        if named {
+            labels.extend(legend::names(self.assembly, self.parts, &drawn, self.pose));
+        }
+        labelled(self.assembly, &drawn, self.pose, view, &labels)
+    }
+}
+
+/// Whether a body belongs to the corner that is seen from nearby.
+fn at_corner(body: &Body) -> bool {
+    let (name, leg) = names(CORNER);
+    match body.mount {
+        Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => {
+            body.name.split(' ').any(|word| word == name || word == leg)
+        }
+        mount => mount.servos() == [CORNER],
+    }
+}
+
 /// What has to be turned out of the way.
-fn turned(assembly: &Assembly, aside: &Aside) -> String {
+fn turned(assembly: &Assembly, aside: &Aside, at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
     let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
     let turns: Vec<_> = turns
@@ -104,106 +220,15 @@ fn turned(assembly: &Assembly, aside: &Aside) -> String {
             } else {
                 "clockwise"
             };
-            format!(
-                "what {} drives by {:.0} deg {way}",
-                names(servo).0,
-                by.abs()
-            )
+            let (name, leg) = names(servo);
+            let what = match at_bench {
+                true => format!("crank and follower {leg}"),
+                false => format!("link {name} with its leg"),
+            };
+            format!("{what} by {:.0} deg {way}", by.abs())
         })
         .collect();
     format!("{} for {}", turns.join(" and "), aside.screws.join(", "))
-}
-
-/// The screws and nuts of a step, by length.
-fn screws(new: &[&Body]) -> String {
-    let mut counts: std::collections::BTreeMap<String, usize> = Default::default();
-    for body in new {
-        let what = match body.kind {
-            Kind::Screw(length) => format!("M3 x {length:02}"),
-            Kind::HexScrew(length) => format!("M3 x {length:02} with hexagon heads"),
-            Kind::Nut => "lock nuts".to_owned(),
-            Kind::ServoScrew => "servo screws".to_owned(),
-            _ => continue,
-        };
-        *counts.entry(what).or_default() += 1;
-    }
-    let list: Vec<_> = counts
-        .iter()
-        .map(|(what, count)| format!("{count} {what}"))
-        .collect();
-    if list.is_empty() {
-        "none".to_owned()
-    } else {
-        list.join(", ")
-    }
-}
-
-/// The guide's Markdown as a page. It has headings, pictures, tables, code and paragraphs
-/// and nothing else.
-fn html(markdown: &str) -> String {
-    let escape = |text: &str| {
-        let text = text.replace('&', "&amp;").replace('<', "&lt;");
-        // Code is between a pair of back quotes.
-        let mut parts = text.split('`');
-        let mut done = parts.next().unwrap_or_default().to_owned();
-        while let (Some(code), Some(rest)) = (parts.next(), parts.next()) {
-            let _ = write!(done, "<code>{code}</code>{rest}");
-        }
-        done
-    };
-    let mut page = String::from(
-        "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
-         <title>Building the robot</title>\n<style>body{font:16px/1.5 sans-serif;max-width:46rem;margin:2rem auto;padding:0 1rem}\
-         img{max-width:100%}td,th{padding:.1rem .7rem;border-bottom:1px solid #ddd;text-align:left}\
-         pre{background:#f4f4f4;padding:.6rem}</style>\n",
-    );
-    let (mut table, mut code) = (false, false);
-    for line in markdown.lines() {
-        if line.starts_with("```") {
-            page.push_str(if code { "</pre>\n" } else { "<pre>" });
-            code = !code;
-        } else if code {
-            let _ = writeln!(page, "{}", escape(line));
-        } else if let Some(cells) = line.strip_prefix('|') {
-            if cells.starts_with("---") {
-                continue;
-            }
-            let cell = if table { "td" } else { "th" };
-            if !table {
-                page.push_str("<table>\n");
-                table = true;
-            }
-            page.push_str("<tr>");
-            for text in cells.trim_end_matches('|').split('|') {
-                let _ = write!(page, "<{cell}>{}</{cell}>", escape(text.trim()));
-            }
-            page.push_str("</tr>\n");
-        } else {
-            if table {
-                page.push_str("</table>\n");
-                table = false;
-            }
-            if let Some(title) = line.strip_prefix("## ") {
-                let _ = writeln!(page, "<h2>{}</h2>", escape(title));
-            } else if let Some(title) = line.strip_prefix("# ") {
-                let _ = writeln!(page, "<h1>{}</h1>", escape(title));
-            } else if let Some((words, file)) = line
-                .strip_prefix("![")
-                .and_then(|rest| rest.strip_suffix(')'))
-                .and_then(|rest| rest.split_once("]("))
-            {
-                let _ = writeln!(
-                    page,
-                    "<p><img src=\"{file}\" alt=\"{}\"></p>",
-                    escape(words)
-                );
-            } else if !line.is_empty() {
-                let _ = writeln!(page, "<p>{}</p>", escape(line));
-            }
-        }
-    }
-    page.push_str("</html>\n");
-    page
 }
 
 #[cfg(test)]
@@ -222,24 +247,6 @@ mod tests {
                 let count = steps.iter().filter(|step| step.adds(body)).count();
                 assert_eq!(count, 1, "{}", body.name);
             }
-        }
-    }
-
-    #[test]
-    fn a_page_has_tables_code_and_pictures() {
-        let page = html(
-            "# A\n\n| a | b |\n|---|---|\n| 1 | x < y |\n\n![p](q.svg)\nrun `z`\n```toml\nk = 1\n```\n",
-        );
-        for part in [
-            "<h1>A</h1>",
-            "<tr><th>a</th><th>b</th></tr>",
-            "<td>x &lt; y</td>",
-            "</table>",
-            "<img src=\"q.svg\" alt=\"p\">",
-            "<p>run <code>z</code></p>",
-            "<pre>k = 1\n</pre>",
-        ] {
-            assert!(page.contains(part), "{part} in {page}");
         }
     }
 }

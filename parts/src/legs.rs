@@ -1,4 +1,9 @@
 //! The legs: crank, follower, coupler with the foot, and the screws that join them.
+//!
+//! A stiff robot on four stiff feet rocks: two feet that stand across from each other
+//! carry nearly all of it. So each foot stands on a leaf that yields, and its height can
+//! be set by a screw. A foot's pad drags, and what it drags at would bend a leaf that is
+//! high above the floor and turn the foot; so a column leads down, and the leaf is low.
 
 use lizard_kinematics::Vector;
 
@@ -6,12 +11,32 @@ use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
 use crate::names::names;
 use crate::shape::Shape;
-use crate::stack::PLAY;
+use crate::stack::{LEAF, PLAY};
 
-/// Radius of a foot's post, mm.
-const POST: f64 = 5.0;
-/// From the follower's joint to the two screws of the foot's leaf, mm.
+/// Radius of what is around a foot's nut, and of a pad, mm.
+const TIP: f64 = 5.0;
+const PAD: f64 = 4.0;
+/// From the follower's joint to the two screws of the foot's column, mm.
 const CLAMPS: [f64; 2] = [21.0, 9.0];
+/// Length of these screws, which cut their thread into the column, mm.
+const CLAMP_SCREW: f64 = 10.0;
+/// How deep its holes are, mm.
+const CLAMP_HOLE: f64 = 10.0;
+/// Half the width of the column, mm.
+const COLUMN: f64 = 3.2;
+/// Length of the screw that sets a foot's height, mm.
+const FOOT_SCREW: f64 = 10.0;
+/// Young's modulus of PLA, N/mm^2.
+const PLA: f64 = 3000.0;
+/// What a leaf gives, N/mm: with 0.4 to 0.6 a foot that is 1 mm too long costs no gait
+/// more than a twentieth.
+const YIELD: f64 = 0.5;
+
+/// The free length of a leaf: of a beam that is held at one end, the force at the other
+/// is E b t^3 / (4 L^3) for each mm.
+fn leaf_length(width: f64) -> f64 {
+    (PLA * width * LEAF.powi(3) / (4.0 * YIELD)).cbrt()
+}
 
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
@@ -38,6 +63,7 @@ fn crank(builder: &mut Builder, servo: usize) {
         Shape::disc(pivot, half + 1.0),
         Shape::bar(pivot, joint, half),
         Shape::bar(pivot, anchor, half - 0.01),
+        Shape::disc(anchor, builder.eye()),
     ];
     let holes = [builder.hole(pivot), builder.hole(joint)];
     let layer = |add: Vec<Shape>, more: Vec<Shape>, z: [f64; 2]| Prism {
@@ -101,10 +127,15 @@ fn follower(builder: &mut Builder, servo: usize) {
     );
 }
 
-/// Where the leaf is screwed to the coupler.
+/// Where the foot's column is screwed to the coupler.
 fn clamps(builder: &Builder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
     CLAMPS.map(|before| Vector::new(ground - before, 0.0))
+}
+
+/// Where the heads of these screws bear, sunk into the coupler.
+fn clamp_seat(builder: &Builder) -> f64 {
+    builder.stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY
 }
 
 fn coupler(builder: &mut Builder, servo: usize) {
@@ -114,19 +145,14 @@ fn coupler(builder: &mut Builder, servo: usize) {
         Vector::default(),
         Vector::new(builder.robot.lizard().leg.ground, 0.0),
     );
-    let half = builder.half();
     let clamps = clamps(builder);
     let through = clamps.map(|at| builder.hole(at));
     let sunk = clamps.map(|at| builder.sink(at));
     let joints = [builder.hole(from), builder.hole(to)];
-    let bar = vec![Shape::bar(from, to, half)];
-    let seat = stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY;
+    let mut bar = vec![Shape::bar(from, to, builder.half())];
+    bar.extend(clamps.map(|at| Shape::disc(at, builder.around_head())));
+    let seat = clamp_seat(builder);
     let prisms = vec![
-        Prism {
-            add: vec![Shape::bar(clamps[0], clamps[1], half - 0.1)],
-            cut: through.to_vec(),
-            z: [stack.leaf[1], stack.leg_coupler[0]],
-        },
         Prism {
             add: bar.clone(),
             cut: [joints.clone(), through].concat(),
@@ -152,39 +178,90 @@ fn foot(builder: &mut Builder, servo: usize) {
     let at = builder.layout.legs[servo].foot;
     let clamps = clamps(builder);
     let half = builder.half();
-    let post = Prism {
-        add: vec![Shape::disc(at, POST)],
-        cut: Vec::new(),
-        z: [stack.floor, stack.leaf[0]],
+    // The column begins where the leaf's free length ends.
+    let away = clamps[0] - at;
+    let toward = away * (1.0 / away.length());
+    let root = at + toward * (leaf_length(builder.parts.bar) + COLUMN);
+    let column = vec![
+        Shape::bar(clamps[0], clamps[1], COLUMN),
+        Shape::bar(clamps[0], root, COLUMN - 0.01),
+    ];
+    let tip = Shape::disc(at, TIP);
+    let leaf = vec![
+        Shape::bar(root, at, half),
+        tip.clone(),
+        Shape::bar(clamps[0], clamps[1], half - 0.01),
+        Shape::bar(clamps[0], root, half - 0.02),
+    ];
+    let (pocket, hole) = (builder.pocket(at), builder.hole(at));
+    let threads = clamps.map(|at| builder.thread(at));
+    let [_, boss] = stack.boss_of_foot;
+    let nut = stack.leaf[0] + builder.parts.screw.nut_height;
+    let holes = stack.leg_coupler[0] - CLAMP_HOLE;
+    let with_tip = |cut: &Shape, z: [f64; 2]| Prism {
+        add: [&column[..], std::slice::from_ref(&tip)].concat(),
+        cut: vec![cut.clone()],
+        z,
     };
-    let leaf = Prism {
-        add: vec![
-            Shape::bar(clamps[0], clamps[1], half),
-            Shape::bar(clamps[0], at, half - 0.01),
-            Shape::disc(at, POST + 1.0),
-        ],
-        cut: clamps.map(|at| builder.hole(at)).to_vec(),
-        z: stack.leaf,
-    };
-    builder.body(
-        format!("foot {leg}"),
-        Kind::Printed,
-        Mount::Foot(servo),
-        vec![post, leaf],
-    );
+    let prisms = vec![
+        Prism {
+            add: leaf,
+            cut: vec![pocket.clone()],
+            z: stack.leaf,
+        },
+        with_tip(&pocket, [stack.leaf[1], nut]),
+        with_tip(&hole, [nut, boss]),
+        Prism {
+            add: column.clone(),
+            cut: Vec::new(),
+            z: [boss, holes],
+        },
+        Prism {
+            add: column.clone(),
+            cut: threads.to_vec(),
+            z: [holes, stack.leg_coupler[0]],
+        },
+    ];
+    let mount = Mount::Foot(servo);
+    builder.body(format!("foot {leg}"), Kind::Printed, mount, prisms);
     for (number, at) in clamps.into_iter().enumerate() {
-        builder.bolt(&Bolt {
+        let bolt = Bolt {
             name: &format!("foot {leg} {}", number + 1),
-            mount: Mount::Foot(servo),
+            mount,
             at,
-            head: stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY,
+            head: clamp_seat(builder),
             points: Points::Down,
-            nut: stack.leaf[0],
+            nut: 0.0,
             length: None,
             meets: &[],
             hex: false,
-        });
+        };
+        builder.screw(&bolt, CLAMP_SCREW);
     }
+    let head = stack.pad[1] + builder.parts.screw.head_height;
+    let bolt = Bolt {
+        name: &format!("height {leg}"),
+        mount,
+        at,
+        head,
+        points: Points::Up,
+        nut: 0.0,
+        length: None,
+        meets: &[],
+        hex: false,
+    };
+    builder.screw(&bolt, FOOT_SCREW);
+    let layer = |shape: Shape, cut: Vec<Shape>, z: [f64; 2]| Prism {
+        add: vec![shape],
+        cut,
+        z,
+    };
+    let screw = builder.parts.screw;
+    let thread = vec![Shape::disc(at, screw.diameter / 2.0)];
+    let sunk = layer(Shape::hexagon(at, screw.nut), thread, [stack.leaf[0], nut]);
+    builder.body(format!("height nut {leg}"), Kind::Nut, mount, vec![sunk]);
+    let pad = layer(Shape::disc(at, PAD), Vec::new(), stack.pad);
+    builder.body(format!("pad {leg}"), Kind::Pad, mount, vec![pad]);
 }
 
 fn screws(builder: &mut Builder, servo: usize) {
@@ -224,9 +301,9 @@ fn screws(builder: &mut Builder, servo: usize) {
         name: &format!("leg anchor {leg}"),
         mount: Mount::Crank(servo),
         at: builder.layout.legs[servo].anchor,
-        head: stack.on_hook(parts),
+        head: stack.on_hook,
         points: Points::Down,
-        nut: nut - 0.0,
+        nut,
         length: Some(length),
         meets: &[&builder.strut(leg)],
         hex: false,

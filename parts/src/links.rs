@@ -17,6 +17,14 @@ use crate::stack::{PLAY, Span};
 const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
 /// Radius of the hole that such a screw cuts its thread into, mm.
 const PILOT: f64 = 0.7;
+/// Length of such a screw: 5 mm would reach the servo's boss under the link. And radius
+/// and height of its head, mm.
+pub const HORN_SCREW: f64 = 4.0;
+const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
+
+/// Wall of the ring between strut and link, which a spring's coil leaves no more room
+/// for, mm.
+const RING: f64 = 1.1;
 
 /// Air on each side of a horn's arm in its pocket, in fits: horns spread.
 pub const POCKET: f64 = 1.5;
@@ -25,6 +33,7 @@ pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
         horn(builder, servo);
         link(builder, servo);
+        horn_screws(builder, servo);
         anchor(builder, servo);
     }
 }
@@ -56,6 +65,8 @@ fn horn(builder: &mut Builder, servo: usize) {
     let horn = builder.parts.horn;
     let [low, _] = builder.stack.horn;
     let spline = Shape::disc(Vector::default(), SPLINE);
+    let mut through = vec![spline.clone()];
+    through.extend(horn_holes(&horn).map(|at| Shape::disc(at, PILOT)));
     let hub = Prism {
         add: vec![Shape::disc(Vector::default(), horn.hub / 2.0)],
         cut: vec![spline.clone()],
@@ -63,7 +74,7 @@ fn horn(builder: &mut Builder, servo: usize) {
     };
     let arm = Prism {
         add: arm(&horn, 0.0),
-        cut: vec![spline],
+        cut: through,
         z: [low, low + horn.thickness],
     };
     builder.body(
@@ -92,11 +103,12 @@ fn link(builder: &mut Builder, servo: usize) {
         Shape::bar(hub, side, half - 0.01),
         Shape::bar(hub, anchor, half - 0.02),
         brace,
+        Shape::disc(tip, builder.eye()),
+        Shape::disc(side, builder.eye()),
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
     let holes = [builder.hole(tip), builder.hole(side)];
-    let pilots =
-        HORN_SCREWS.map(|share| Shape::disc(Vector::new(share * parts.horn.arm, 0.0), PILOT));
+    let pilots = horn_holes(&parts.horn).map(|at| Shape::disc(at, PILOT));
     let pocket = arm(&parts.horn, POCKET * parts.fit);
     let anchor_hole = builder.hole(anchor);
     let [low, high] = stack.link;
@@ -132,20 +144,52 @@ fn link(builder: &mut Builder, servo: usize) {
     builder.meeting(&format!("servo {name}"));
 }
 
+/// Where the small screws are that hold the horn.
+fn horn_holes(horn: &Horn) -> [Vector; 2] {
+    HORN_SCREWS.map(|share| Vector::new(share * horn.arm, 0.0))
+}
+
+fn horn_screws(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let top = builder.stack.horn[0] + builder.parts.horn.thickness;
+    let [radius, high] = HORN_SCREW_HEAD;
+    for (number, at) in horn_holes(&builder.parts.horn).into_iter().enumerate() {
+        let prism = |radius: f64, z: Span| Prism {
+            add: vec![Shape::disc(at, radius)],
+            cut: Vec::new(),
+            z,
+        };
+        let prisms = vec![
+            prism(PILOT, [top - HORN_SCREW, top]),
+            prism(radius, [top, top + high]),
+        ];
+        let name = format!("horn screw {name} {}", number + 1);
+        let kind = Kind::HornScrew(HORN_SCREW);
+        builder.body(name, kind, Mount::Link(servo), prisms);
+    }
+}
+
 /// The screw that holds the strut, and the ring that fills what is between.
 fn anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let at = builder.layout.legs[servo].anchor;
     let strut = builder.strut(leg);
-    let ring = [stack.on_hook(parts) - 0.3, stack.link[0] - PLAY];
-    builder.spacer(
-        format!("strut spacer {name}"),
+    let ring = [stack.on_hook, stack.link[0] - PLAY];
+    // Beside the spring's coil.
+    let thin = Shape::disc(at, parts.screw.diameter / 2.0 + RING);
+    let prism = Prism {
+        add: vec![thin],
+        cut: vec![builder.hole(at)],
+        z: ring,
+    };
+    builder.body(
+        format!("strut ring {name}"),
+        Kind::Printed,
         Mount::Link(servo),
-        at,
-        ring,
-        &[&strut],
+        vec![prism],
     );
+    builder.meeting(&strut);
     builder.bolt(&Bolt {
         name: &format!("anchor {name}"),
         mount: Mount::Link(servo),

@@ -1,12 +1,14 @@
 //! What is made of a body: a part as it lies on the printer's bed, and how often.
 
-use lizard_kinematics::Vector;
+use lizard_kinematics::{Side, Vector};
+use lizard_robot::servo::{LEGS, NAMES};
 
 use crate::assembly::Assembly;
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::outline::Outline;
 use crate::placement::Placement;
 use crate::shape::Shape;
+use crate::{mark, roof};
 
 /// Rings are known by their length, not by where they are.
 const SPACER: &str = "spacer";
@@ -24,6 +26,9 @@ pub struct Part {
     pub turned: bool,
     /// What it may be put in instead of; `None` of a part that the robot has.
     pub instead_of: Option<String>,
+    /// The numbers of its servos, which are engraved where a part comes in several kinds:
+    /// `13` for A1 and A3. Empty of others.
+    pub mark: String,
 }
 
 impl Part {
@@ -37,6 +42,20 @@ impl Part {
     #[must_use]
     pub fn file(&self) -> String {
         self.name.replace(' ', "-")
+    }
+
+    /// Its layers as they are printed: with its mark, and with the holes closed that would
+    /// begin in the air; and how many those are.
+    #[must_use]
+    pub fn printed(&self) -> (Vec<Prism>, usize) {
+        let marked = mark::engraved(&self.prisms, &self.mark);
+        roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
+    }
+
+    /// The middles of the holes that are to be drilled, as the part is printed, mm.
+    #[must_use]
+    pub fn closed_holes(&self) -> Vec<Vector> {
+        roof::in_air(&self.prisms)
     }
 
     /// Its volume, mm^3.
@@ -69,8 +88,38 @@ impl Assembly {
             instead_of: strut.clone(),
             ..part
         }));
+        let several: Vec<_> = parts.iter().map(|part| what(&part.bodies[0])).collect();
+        for (number, part) in parts.iter_mut().enumerate() {
+            let alone = several.iter().filter(|of| **of == several[number]).count() == 1;
+            if !alone {
+                part.mark = numbers(&part.bodies);
+            }
+        }
         parts
     }
+}
+
+/// A body's name without what it is of: `link` of `link A1`.
+fn what(name: &str) -> String {
+    let (what, _) = name.rsplit_once(' ').unwrap_or((name, ""));
+    what.to_owned()
+}
+
+/// The numbers of the servos that some bodies are of.
+fn numbers(names: &[String]) -> String {
+    let mut numbers: Vec<usize> = Vec::new();
+    for name in names {
+        let of = name.rsplit_once(' ').map_or("", |(_, of)| of);
+        let servo = |list: [&str; 4]| list.iter().position(|known| *known == of);
+        let side = Side::ALL.into_iter().find(|side| side.name() == of);
+        numbers.extend(servo(NAMES).or(servo(LEGS)));
+        numbers.extend(side.into_iter().flat_map(Side::servos));
+    }
+    numbers.sort_unstable();
+    numbers
+        .iter()
+        .map(|servo| (servo + 1).to_string())
+        .collect()
 }
 
 /// The printed parts that some bodies are made as.
@@ -86,6 +135,7 @@ fn kinds(bodies: &[Body]) -> Vec<Part> {
                 prisms,
                 turned,
                 instead_of: None,
+                mark: String::new(),
             }),
         }
     }
@@ -136,7 +186,7 @@ fn lying(body: &Body) -> (Vec<Prism>, bool) {
 }
 
 /// The frame in which a part is drawn.
-fn home(body: &Body) -> Placement {
+pub fn home(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }

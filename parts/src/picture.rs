@@ -24,6 +24,20 @@ pub struct Drawn<'a> {
     pub pale: bool,
 }
 
+/// A name in a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// What it names, chassis frame, mm.
+    pub at: Vector,
+    /// Its height, mm.
+    pub z: f64,
+    /// The name.
+    pub text: String,
+    /// Whether it is written beside the picture with a line to its place, as the names of
+    /// parts are, or on the place itself.
+    pub beside: bool,
+}
+
 /// Where it is seen from.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
@@ -33,6 +47,10 @@ pub struct View {
     pub elevation: f64,
     /// Width of the picture, pixels.
     pub width: f64,
+    /// Whether the robot is turned over about its long axis, and so seen from below.
+    pub below: bool,
+    /// Whether only what is not grey, and a little around it, is in the picture.
+    pub near: bool,
 }
 
 impl Default for View {
@@ -41,6 +59,8 @@ impl Default for View {
             azimuth: 240.0,
             elevation: 38.0,
             width: 900.0,
+            below: false,
+            near: false,
         }
     }
 }
@@ -106,6 +126,8 @@ type Wall = (f64, Trail, [f64; 3]);
 /// What is drawn in a slice.
 struct Layer {
     colour: [f64; 3],
+    /// Whether it is grey.
+    pale: bool,
     /// Outer loops and holes as points.
     loops: Vec<Vec<Vector>>,
     z: [f64; 2],
@@ -116,8 +138,25 @@ struct Layer {
 /// Some bodies at a pose, as SVG.
 #[must_use]
 pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &View) -> String {
+    labelled(assembly, drawn, pose, view, &[])
+}
+
+/// The same with names.
+#[must_use]
+pub fn labelled(
+    assembly: &Assembly,
+    drawn: &[Drawn],
+    pose: &Solution,
+    view: &View,
+    labels: &[Label],
+) -> String {
     let eye = Eye::new(view);
     let mut layers = layers(assembly, drawn, pose);
+    if view.below {
+        for layer in &mut layers {
+            layer.turn_over();
+        }
+    }
     let heights = slices(&mut layers);
     let mut ink = Ink::default();
     for slice in heights.windows(2) {
@@ -148,7 +187,26 @@ pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &Vie
             }
         }
     }
-    ink.finish(view.width)
+    let place = |at: Vector, z: f64| match view.below {
+        true => eye.page(turned_over(at), -z),
+        false => eye.page(at, z),
+    };
+    // What is meant: all, or what is not grey.
+    let meant = layers.iter().filter(|layer| !view.near || !layer.pale);
+    let points = meant.flat_map(|layer| {
+        let all = layer.loops.iter().flatten();
+        all.flat_map(|at| layer.z.map(|z| eye.page(*at, z)))
+    });
+    let mut names = Vec::new();
+    for label in labels {
+        names.push((place(label.at, label.z), label));
+    }
+    ink.finish(view.width, &Frame::around(points, view.near), &names)
+}
+
+/// A point of a robot that is turned over about its long axis.
+fn turned_over(at: Vector) -> Vector {
+    Vector::new(-at.x, at.y)
 }
 
 /// The heights at which layers begin or end. What is nearer than `SLICE` is one, to
@@ -184,6 +242,7 @@ fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
                 .collect();
             layers.push(Layer {
                 colour,
+                pale: *pale,
                 tops: loops.clone(),
                 loops,
                 z: prism.z.map(|z| z + lift),
@@ -211,7 +270,46 @@ fn points(line: &Loop) -> Vec<Vector> {
     points
 }
 
+/// What of the page is shown, mm before the page's scale.
+struct Frame {
+    low: (f64, f64),
+    high: (f64, f64),
+}
+
+impl Frame {
+    fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
+        /// Around what is seen from nearby, mm.
+        const AROUND: f64 = 12.0;
+        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
+        for (x, y) in points {
+            low = (low.0.min(x), low.1.min(y));
+            high = (high.0.max(x), high.1.max(y));
+        }
+        let more = if near { AROUND } else { 0.0 };
+        Self {
+            low: (low.0 - more, low.1 - more),
+            high: (high.0 + more, high.1 + more),
+        }
+    }
+
+    fn holds(&self, (x, y): (f64, f64)) -> bool {
+        self.low.0 <= x && x <= self.high.0 && self.low.1 <= y && y <= self.high.1
+    }
+}
+
 impl Layer {
+    /// Turned over about the robot's long axis; its lines keep the material on their left.
+    fn turn_over(&mut self) {
+        for line in self.loops.iter_mut().chain(&mut self.tops) {
+            for at in line.iter_mut() {
+                *at = turned_over(*at);
+            }
+            line.reverse();
+        }
+        let [low, high] = self.z;
+        self.z = [-high, -low];
+    }
+
     /// The walls of a loop that the eye sees; neighbours of one shade are one.
     fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
         let n = line.len();
@@ -286,19 +384,23 @@ impl Ink {
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), edge));
     }
 
-    fn finish(self, width: f64) -> String {
-        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
-        for &(x, y) in self.shapes.iter().flat_map(|shape| &shape.1).flatten() {
-            low = (low.0.min(x), low.1.min(y));
-            high = (high.0.max(x), high.1.max(y));
-        }
-        let scale = (width - 2.0 * MARGIN) / (high.0 - low.0);
+    fn finish(self, width: f64, frame: &Frame, names: &[((f64, f64), &Label)]) -> String {
+        let (low, high) = (frame.low, frame.high);
+        let beside = |(_, label): &&((f64, f64), &Label)| label.beside;
+        let side = if names.iter().any(|name| beside(&name)) {
+            BESIDE
+        } else {
+            0.0
+        };
+        let room = width - 2.0 * (MARGIN + side);
+        let scale = room / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
+        let x0 = MARGIN + side;
         // Each colour is named once, and a point is tenths of a pixel from the one before:
         // a third of the text.
         let mut styles: Vec<(&str, bool)> = Vec::new();
         let mut paths = String::new();
-        let tenths = |x: f64| (10.0 * (x * scale + MARGIN)).round() as i64;
+        let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
         for (colour, loops, edge) in &self.shapes {
             let style = (colour.as_str(), *edge);
             let class = styles.iter().position(|of| *of == style);
@@ -311,7 +413,7 @@ impl Ink {
             for line in loops {
                 let mut begin = None;
                 for (x, y) in line {
-                    let to = (tenths(x - low.0), tenths(y - low.1));
+                    let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
                     let by = (to.0 - at.0, to.1 - at.1);
                     let step = if begin.is_none() { "m" } else { "l" };
                     let _ = write!(data, "{step}{} {}", tenth(by.0), tenth(by.1));
@@ -340,8 +442,66 @@ impl Ink {
             "</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
              <g fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
         );
-        text.push_str("</g>\n</svg>\n");
+        text.push_str("</g>\n");
+        let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
+        let shown: Vec<_> = names.iter().filter(|(at, _)| frame.holds(*at)).collect();
+        for (at, label) in shown.iter().filter(|(_, label)| !label.beside) {
+            let (x, y) = page(*at);
+            let _ = writeln!(
+                text,
+                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT} font-weight=\"bold\" \
+                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
+                label.text
+            );
+        }
+        for left in [true, false] {
+            let middle = width / 2.0;
+            let here = shown.iter().filter(|(_, label)| label.beside);
+            let places = here.map(|(at, label)| (page(*at), label));
+            let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
+            column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
+            write_column(&mut text, &column, left, width, height);
+        }
+        text.push_str("</svg>\n");
         text
+    }
+}
+
+/// Room for names on each side of a picture, pixels, and from one to the next.
+const BESIDE: f64 = 165.0;
+const LINE: f64 = 16.0;
+const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
+
+/// Names below each other at one side, each with a line to its place.
+fn write_column(
+    text: &mut String,
+    column: &[((f64, f64), &&Label)],
+    left: bool,
+    width: f64,
+    height: f64,
+) {
+    let count = column.len() as f64;
+    let mut least = LINE;
+    for (number, ((x, y), label)) in column.iter().enumerate() {
+        let most = height - (count - number as f64) * LINE + 8.0;
+        let at = (y + 4.0).min(most).max(least);
+        least = at + LINE;
+        let (edge, end, anchor) = match left {
+            true => (8.0, BESIDE - 4.0, "start"),
+            false => (width - 8.0, width - BESIDE + 4.0, "end"),
+        };
+        // The line begins where the words end, about.
+        let words = 6.4 * label.text.chars().count() as f64;
+        let from = if left { edge + words } else { edge - words };
+        let from = if left { from.min(end) } else { from.max(end) };
+        let _ = writeln!(
+            text,
+            "<path d=\"M{from:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
+             <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
+             <text x=\"{edge}\" y=\"{at:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+            at - 4.0,
+            label.text
+        );
     }
 }
 

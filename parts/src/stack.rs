@@ -11,10 +11,9 @@ use lizard_robot::Parts;
 /// From and to, mm above the chassis plate's top.
 pub type Span = [f64; 2];
 
-/// Lengths of screws in the shops, mm.
-const SCREWS: [f64; 12] = [
-    6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0,
-];
+/// Lengths of screws that every shop has, mm: ISO 7380 and ISO 4017 have others, but
+/// few shops have those.
+pub const SCREWS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 
 /// Lengths of standoffs in the shops, mm.
 const STANDOFFS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
@@ -28,24 +27,40 @@ const SEAT: f64 = 2.6;
 /// Height of a leg's bearing on the plate, mm. 0.2 mm of play in it lets the foot, six
 /// times as far out, give 1.2 mm.
 const BEARING: f64 = 8.5;
+/// From the underside of a leg's crank to the tip of its anchor's screw, mm.
+const TIP: f64 = 0.1;
 /// What remains above a nut that is sunk into a part, mm.
 const OVER_NUT: f64 = 1.2;
-/// The strut below the spring's hooks, and beside them, mm.
-const STRUT: [f64; 2] = [2.7, 2.0];
+/// Floor of the strut under its spring, and the air between the two, mm.
+const STRUT: f64 = 1.6;
+const OVER_FLOOR: f64 = 0.15;
+/// Air above a spring's hook, and under the head that holds a strut down, mm.
+const OVER_HOOK: f64 = 0.5;
+const OVER_STRUT: f64 = 0.3;
 /// What remains of a link under the horn's arm, mm.
 const UNDER_HORN: f64 = 1.8;
 /// Floor and roof of a sleeve, mm.
 const SLEEVE: f64 = 1.3;
-/// The leaf that carries a foot, mm.
-const LEAF: f64 = 2.0;
+/// The leaf that carries a foot: five layers of a printer, mm.
+pub const LEAF: f64 = 1.0;
+/// A rubber pad under a foot's screw, mm.
+const PAD: f64 = 1.5;
+/// How far a foot can be raised by its screw, mm. It can be lowered as far and more.
+const RAISE: f64 = 2.0;
+/// What remains above the nut of a foot's screw, mm.
+const OVER_FOOT_NUT: f64 = 1.6;
 
 /// The heights of everything, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stack {
     /// The pads' underside.
     pub floor: f64,
-    /// The leaf on which a foot yields.
+    /// The pads.
+    pub pad: Span,
+    /// The leaf on which a foot yields, and which the foot's nut is sunk into.
     pub leaf: Span,
+    /// What is around that nut and above it.
+    pub boss_of_foot: Span,
     /// Couplers of the legs.
     pub leg_coupler: Span,
     /// The chassis plate.
@@ -60,11 +75,15 @@ pub struct Stack {
     pub bearing: Span,
     /// Their anchors, which carry the strut.
     pub anchor: Span,
-    /// The strut where it bears.
+    /// The floor of the strut, along which its spring lies.
     pub strut: Span,
-    /// The recess in its top for the hooks.
+    /// Its walls, beside spring, hooks and heads.
     pub recess: Span,
-    /// A rigid strut: as high as a hook that lies on the other one.
+    /// The middle of the spring's coil, and of its hooks.
+    pub coil: f64,
+    /// Where the head of a leg anchor's screw bears: above the hook.
+    pub on_hook: f64,
+    /// A rigid strut: as high as the other one.
     pub rigid: Span,
     /// The servos' links.
     pub link: Span,
@@ -101,8 +120,12 @@ impl Stack {
         let crank = [gap, gap + t.max(screw.nut_height + 1.0)];
         let bearing = [crank[1], crank[0] + BEARING];
         let strut_low = crank[1] + 1.5;
-        let strut = [strut_low, strut_low + STRUT[0]];
-        let recess = [strut[1], strut[1] + STRUT[1]];
+        let strut = [strut_low, strut_low + STRUT];
+        let coil = strut[1] + OVER_FLOOR + parts.spring.outer / 2.0;
+        // The anchor's screw must not touch the plate under its crank.
+        let tip = crank[0] + TIP;
+        let on_hook = tip + screw_length(coil + parts.spring.wire / 2.0 + OVER_HOOK - tip);
+        let walls = on_hook - OVER_STRUT;
         // Where the horn's arm lies on the shaft.
         let hub = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
         let arm = hub + parts.horn.height - parts.horn.thickness;
@@ -118,13 +141,13 @@ impl Stack {
             .find(|length| *length >= slider + gap)
             .unwrap_or(slider + gap);
         let leg_coupler = [-t - gap, 0.0];
-        // A pivot's screw reaches through plate and nut.
-        let through = bearing[1] + PLAY;
-        let pivot = through - screw_length(through + parts.plate + PLAY + screw.nut_height);
-        let leaf = pivot.min(leg_coupler[0] - screw.head_height) - gap;
+        let pad = [-parts.height, PAD - parts.height];
+        let leaf = pad[1] + screw.head_height + RAISE;
         Self {
             floor: -parts.height,
-            leaf: [leaf - LEAF, leaf],
+            pad,
+            leaf: [leaf, leaf + LEAF],
+            boss_of_foot: [leaf + LEAF, leaf + screw.nut_height + OVER_FOOT_NUT],
             leg_coupler,
             plate,
             seat,
@@ -133,9 +156,11 @@ impl Stack {
             bearing,
             anchor: [crank[1], strut[0] - PLAY],
             strut,
-            recess,
+            recess: [strut[1], walls],
+            coil,
+            on_hook,
             held: link[0] + HEX,
-            rigid: [strut[0], recess[1].min(strut[1] + parts.spring.wire)],
+            rigid: [strut[0], walls],
             link,
             horn: [arm, link[1]],
             sunk: [link[1] - screw.head_height - PLAY, link[1]],
@@ -149,19 +174,12 @@ impl Stack {
         }
     }
 
-    /// Where the head of a leg anchor's screw bears: on the spring's hook, in the recess.
-    #[must_use]
-    pub fn on_hook(&self, parts: &Parts) -> f64 {
-        self.strut[1] + parts.spring.wire + 0.5
-    }
-
     /// How far the pocket of a leg anchor's nut reaches up into the crank, and the
     /// length of its screw, which must not touch the plate.
     #[must_use]
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
-        let bears = self.on_hook(parts);
-        let length = screw_at_most(bears - self.crank[0] - 0.1);
-        (bears - length + parts.screw.nut_height, length)
+        let tip = self.crank[0] + TIP;
+        (tip + parts.screw.nut_height, self.on_hook - tip)
     }
 
     /// Whether a leg's crank is thick enough above the nut that is sunk into it.
@@ -178,15 +196,6 @@ pub fn screw_length(least: f64) -> f64 {
         .into_iter()
         .find(|length| *length >= least - 1e-9)
         .unwrap_or(least)
-}
-
-/// The longest screw that is no longer than this, mm.
-fn screw_at_most(most: f64) -> f64 {
-    SCREWS
-        .into_iter()
-        .rev()
-        .find(|length| *length <= most)
-        .unwrap_or(SCREWS[0])
 }
 
 /// Whether the shops have a screw of this length, mm.

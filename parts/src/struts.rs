@@ -5,6 +5,11 @@
 //! so the leg follows its servo exactly until the foot is held with more than the
 //! spring's pull; then the screw runs along the slot.
 //!
+//! Hung between its screws a spring is longer than it was in the shop, and so is its
+//! coil, which reaches nearly from screw to screw, and further when the leg lags. So
+//! nothing of the strut is between its ends: it is a channel, on whose floor the coil
+//! lies along its whole length.
+//!
 //! A rigid strut is a bar with two holes in the same places, for the same screws. It
 //! lies within the space of the one with a spring, so either can be put in where the
 //! other was, and it keeps from everything at least what the other keeps.
@@ -52,36 +57,29 @@ fn at(x: f64) -> Vector {
     Vector::new(x, 0.0)
 }
 
-/// Half the width of the spring's window, and of the recess, which lets hook, ring and
-/// head turn, mm.
-fn halves(builder: &Builder) -> [f64; 2] {
+/// Half the width of the channel that spring, hooks and heads lie in, mm.
+fn channel(builder: &Builder) -> f64 {
     let parts = builder.parts;
-    let window = parts.spring.outer / 2.0 + 1.5 * parts.fit;
-    [window, (parts.screw.head / 2.0).max(window) + parts.fit]
+    let spring = parts.spring.outer / 2.0 + 1.5 * parts.fit;
+    (parts.screw.head / 2.0).max(spring) + parts.fit
 }
 
 fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
-    let (stack, wall) = (builder.stack, builder.parts.wall);
+    let (stack, channel) = (builder.stack, channel(builder));
     let length = builder.layout.legs[servo].strut_length;
-    let [window, recess] = halves(builder);
-    let outer = vec![Shape::bar(at(0.0), at(length + SLOT), recess + wall)];
+    let whole = |half: f64| Shape::bar(at(0.0), at(length + SLOT), half);
+    let outer = vec![whole(channel + builder.parts.wall)];
     let hole = builder.hole(at(0.0));
-    let around = hole.radius + wall + window;
     let slot = Shape::bar(at(length), at(length + SLOT), hole.radius);
     vec![
         Prism {
             add: outer.clone(),
-            cut: vec![
-                hole,
-                slot,
-                // Leaves enough around both screws for them to pull at.
-                Shape::bar(at(around), at(length - around), window),
-            ],
+            cut: vec![hole, slot],
             z: stack.strut,
         },
         Prism {
             add: outer,
-            cut: vec![Shape::bar(at(0.0), at(length + SLOT), recess)],
+            cut: vec![whole(channel)],
             z: stack.recess,
         },
     ]
@@ -89,9 +87,8 @@ fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
 
 fn rigid(builder: &Builder, servo: usize) -> Prism {
     let [from, to] = [at(0.0), at(builder.layout.legs[servo].strut_length)];
-    let [_, recess] = halves(builder);
     Prism {
-        add: vec![Shape::bar(from, to, recess + builder.parts.wall)],
+        add: vec![Shape::bar(from, to, channel(builder) + builder.parts.wall)],
         cut: [from, to].map(|at| builder.hole(at)).to_vec(),
         z: builder.stack.rigid,
     }
@@ -102,14 +99,13 @@ fn spring(builder: &mut Builder, servo: usize) {
     let (stack, parts) = (builder.stack, builder.parts);
     let length = builder.layout.legs[servo].strut_length;
     let radius = parts.spring.outer / 2.0;
-    // The hooks lie flat around the screws, in line with the coil's middle.
-    let middle = stack.strut[1] + parts.spring.wire / 2.0;
-    let hook = parts.screw.diameter / 2.0 + parts.spring.outer;
-    let size = Vector::new(length - 2.0 * hook, parts.spring.outer);
+    // Each hook lies around the far side of its screw; between both is the coil.
+    let hook = parts.spring.outer - 2.0 * parts.spring.wire;
+    let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
     let coil = Prism {
         add: vec![Shape::rectangle(at(length / 2.0), size, 0.0)],
         cut: Vec::new(),
-        z: [middle - radius, middle + radius],
+        z: [stack.coil - radius, stack.coil + radius],
     };
     builder.body(
         format!("spring {leg}"),
@@ -117,4 +113,8 @@ fn spring(builder: &mut Builder, servo: usize) {
         Mount::Strut(servo),
         vec![coil],
     );
+    // Heads lie over the hooks, so they reach to the coil's ends.
+    let (name, _) = names(servo);
+    builder.meeting(&format!("screw leg anchor {leg}"));
+    builder.meeting(&format!("screw anchor {name}"));
 }

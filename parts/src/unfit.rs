@@ -200,7 +200,7 @@ impl Assembly {
     fn outside_threads<'a>(&self, body: &'a Body) -> &'a [Prism] {
         let nut = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
-            (Kind::Screw(_), [low, high]) if self.body(&nut).is_none() => {
+            (Kind::Screw(_) | Kind::HornScrew(_), [low, high]) if self.body(&nut).is_none() => {
                 let head_above = high.add[0].width() > low.add[0].width();
                 &body.prisms[usize::from(head_above)..][..1]
             }

@@ -44,7 +44,7 @@ fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
     let (_, paper) = bill("paper");
     // All but the board, whose holes are not.
     assert!(paper.centre[0].abs() < 0.5 && paper.centre[1].abs() < 0.5);
-    assert!((250.0..350.0).contains(&paper.grams), "{}", paper.grams);
+    assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
     let (_, large) = bill("large");
     assert!(large.grams > paper.grams);
 }

@@ -1,5 +1,6 @@
-//! What docs/build.md says of `[parts]` is what is so where it is left out.
+//! What the pages say of parts is what is so: values, the list to buy, the order of steps.
 
+use lizard_parts::{Assembly, Bill, steps};
 use lizard_robot::{Parts, Robot};
 
 fn read(path: &str) -> String {
@@ -48,4 +49,56 @@ fn the_page_has_every_key() {
         asked += 1;
     }
     assert!(asked > 30, "{asked} keys of {printed}");
+}
+
+/// The list of docs/quickstart.md, between its two marks.
+fn list(page: &str) -> (&str, &str, &str) {
+    const BEGIN: &str = "a test holds it -->\n";
+    const END: &str = "<!-- end of the list -->";
+    let (before, rest) = page.split_once(BEGIN).expect("the list begins");
+    let (list, after) = rest.split_once(END).expect("the list ends");
+    (&page[..before.len() + BEGIN.len()], list, after)
+}
+
+#[test]
+fn the_quickstart_quotes_the_list_of_the_bill() {
+    let text = read("robots/paper.toml");
+    let robot = Robot::parse(&format!("{text}\n[leg.drive]\nkind = \"rigid\"")).expect("paper");
+    let assembly = Assembly::new(&robot);
+    let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
+    let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+    let mut expected = "| pieces | what |\n|---|---|\n".to_owned();
+    for item in &bill.bought {
+        expected += &format!("| {} | {} |\n", item.count, item.what);
+    }
+    let page = read("docs/quickstart.md");
+    let (before, list, after) = list(&page);
+    if std::env::var_os("BLESS_DOCS").is_some() {
+        let path = format!("{}/../docs/quickstart.md", env!("CARGO_MANIFEST_DIR"));
+        let page = format!("{before}{expected}<!-- end of the list -->{after}");
+        std::fs::write(path, page).expect("docs/quickstart.md");
+        return;
+    }
+    assert_eq!(list, expected, "run with BLESS_DOCS=1");
+    // The guide has it, too, and pads, straps, wires, switch and fuse are on it.
+    assert!(bill.to_string().contains(&expected));
+    for word in ["pad", "strap", "wire", "switch", "fuse", "strip", "plug"] {
+        assert!(expected.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn the_quickstart_goes_through_the_steps_of_the_guide_in_their_order() {
+    let page = read("docs/quickstart.md");
+    let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
+    let said: Vec<String> = lines
+        .flat_map(|line| line.trim_end_matches('.').split("; "))
+        .map(str::to_owned)
+        .collect();
+    let steps = steps(false);
+    let expected: Vec<String> = (1..)
+        .zip(&steps)
+        .map(|(number, step)| format!("step {number}, {}", step.title))
+        .collect();
+    assert_eq!(said, expected);
 }

@@ -25,7 +25,7 @@ fn every_robot_has_air_between_its_parts() {
         let text = format!("{}\n{STRUT}", text(name));
         let assembly = Assembly::new(&Robot::parse(&text).expect(name));
         assert!(assembly.poses(10).count() > 100, "{name}");
-        let near = assembly.nearest(assembly.poses(10), 0.5);
+        let near = assembly.nearest(assembly.poses(10), 0.2);
         assert!(near.is_empty(), "{name}: {}", near[0]);
     }
 }

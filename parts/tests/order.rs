@@ -39,11 +39,16 @@ fn every_screw_of_every_robot_can_be_reached() {
             let asides = assembly.asides(&order(&assembly));
             let asides = asides.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
             // At neutral the follower covers a screw of its foot: the leg, which lies on
-            // the bench, is swung aside.
+            // the bench, is swung aside. A shorter anchor of a strut is over its servo's
+            // seat, where no socket gets to its nut: the link is turned.
             for aside in asides {
-                assert_eq!(aside.step, 2, "{name}: {aside:?}");
-                for screw in aside.screws {
-                    assert!(screw.starts_with("screw foot"), "{name}: {screw}");
+                let screw = match aside.step {
+                    7 => "screw foot",
+                    9 if name == "unequal" => "screw anchor",
+                    _ => panic!("{name}: {aside:?}"),
+                };
+                for found in aside.screws {
+                    assert!(found.starts_with(screw), "{name}: {found}");
                 }
             }
         }
@@ -71,14 +76,14 @@ fn finds(blocked: &[(String, Act, String)], screw: &str, act: Act, by: &str) {
 #[test]
 fn a_wrong_order_is_found() {
     assert_eq!(blocked(|_| ()), []);
-    // The foot, before the leg's joints are tight: it covers a head.
-    let early_foot = blocked(|steps| steps[1].stages.swap(0, 1));
-    finds(&early_foot, "screw crank joint LF", Act::Turn, "foot LF");
-    // A link's screws from below, when the link is on its servo.
+    // A pad, before its screw is in the foot: it covers the head.
+    let early_pad = blocked(|steps| steps[6].stages.swap(1, 2));
+    finds(&early_pad, "screw height LF", Act::Push, "pad LF");
+    // A link's screws from below, when the struts are under it.
     let late_screws = blocked(|steps| {
         steps[4].stages[0].adds =
             |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
-        steps[4].stages.push(Stage {
+        steps[8].stages.push(Stage {
             at: Where::Robot,
             adds: |body: &Body| matches!(body.kind, Kind::HexScrew(_)),
         });
@@ -102,9 +107,9 @@ fn a_strut_under_a_head_is_found() {
         .expect_err("no key gets there");
     assert_eq!(
         (refused.screw.as_str(), refused.act),
-        ("screw tip A2", Act::Turn)
+        ("screw tip A4", Act::Turn)
     );
-    assert_eq!(refused.by, "strut RF");
+    assert_eq!(refused.by, "strut LH");
 }
 
 #[test]
@@ -124,7 +129,7 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
     assert_eq!(refused.by, "deck lid");
     let sentence = Unfit::from(refused).to_string();
     assert!(
-        sentence.contains("at step 8 of the guide: deck lid is in the way, at every pose"),
+        sentence.contains("at step 3 of the guide: deck lid is in the way, at every pose"),
         "{sentence}"
     );
 }
@@ -175,10 +180,13 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
                 continue;
             };
             let from_above = high.add[0].width() > low.add[0].width();
-            if !matches!(screw.kind, Kind::Screw(_)) || !from_above || here == Some(1) {
+            if !matches!(screw.kind, Kind::Screw(_)) || !from_above || here == Some(6) {
                 continue;
             }
-            assert!(!blocked.iter().any(|of| of.screw == screw.name));
+            if blocked.iter().any(|of| of.screw == screw.name) {
+                assert!(name == "unequal" && screw.name.starts_with("screw anchor"));
+                continue;
+            }
             let at = assembly.place(screw.mount, &pose).map(high.add[0].middle());
             for turn in 0..12 {
                 let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;

@@ -235,7 +235,7 @@ fn a_screw_that_is_too_long_is_found() {
         ("screw tip A1", 8.0, true, "strut LF"),
         ("screw foot LF 2", 3.0, false, "follower LF"),
         ("screw crank pivot LF", 6.5, false, "screw arm A1"),
-        ("screw crank joint LF", 5.0, true, "foot LF"),
+        ("screw height LF", 26.0, false, "crank LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {
         let long = longer(name, by, downwards);

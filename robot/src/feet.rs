@@ -75,7 +75,7 @@ impl Body {
     /// What robot.toml means where it says nothing: what the parts of the paper's robot
     /// weigh.
     pub const DEFAULT: Self = Self {
-        mass: 307.0,
+        mass: 396.4,
         centre: [0.0; 2],
     };
 

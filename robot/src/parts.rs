@@ -48,6 +48,11 @@ pub struct Parts {
     pub spring: Coil,
     /// The battery: to the right, forward, up.
     pub battery: [f64; 3],
+    /// Length of the two links behind the tail's point, which make the robot look like a
+    /// lizard; 0 leaves them out.
+    pub tail: f64,
+    /// Length of the head's plate ahead of the head's point; 0 leaves it out.
+    pub head: f64,
 }
 
 /// A servo without its horn, mm. Heights are from the bottom of its case.
@@ -144,11 +149,13 @@ impl Default for Parts {
             },
             spring: Coil::paper(0.6),
             battery: [31.0, 56.0, 16.0],
+            tail: 85.0,
+            head: 42.0,
         }
     }
 }
 
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 18] = [
     "fit",
     "wall",
     "bar",
@@ -165,6 +172,8 @@ const KEYS: [&str; 16] = [
     "screw",
     "spring",
     "battery",
+    "tail",
+    "head",
 ];
 
 /// Where the kind of strut is said now.
@@ -210,6 +219,8 @@ impl Parts {
             screw: Screw::read(&section, all.screw)?,
             spring: Coil::read(&section, all.spring)?,
             battery,
+            tail: mm("tail", all.tail, 0.0, 300.0)?,
+            head: mm("head", all.head, 0.0, 300.0)?,
         })
     }
 }

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lizard_parts::{Assembly, Bill, File, Unfit, coupon, guide, part_files};
+use lizard_parts::{Assembly, Bill, File, Unfit, coupon, guide, part_files, placements};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
@@ -16,16 +16,19 @@ use crate::{Failure, RobotFile, whole_file};
 ///
 /// Into DIR go step/ (solids for a drawing program), stl/ (lying as they are printed),
 /// cut/ (DXF and SVG, 1:1 in mm, of what can be cut from a sheet), guide/ (how to build
-/// it, as HTML and Markdown) and bill.json (what to print and to buy). Links, servos,
+/// it, as HTML and Markdown, and placements.json, where each part is) and bill.json (what to
+/// print and to buy). Links, servos,
 /// screws and fits are taken from robot.toml; a robot whose parts would meet is refused.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard parts out/parts
   lizard parts out/large --robot robots/large.toml
   lizard parts out/fit --coupon
+  lizard parts out/corner --corner
 
 Print the coupon first: the first column into which everything goes by hand is the `fit`
-of your printer, and belongs under [parts] in robot.toml.")]
+of your printer, and belongs under [parts] in robot.toml. Then print one corner: a seat
+for A1, its link, leg, strut and foot.")]
 pub struct Args {
     /// Folder for the files; made if need be
     #[arg(value_name = "DIR")]
@@ -33,6 +36,9 @@ pub struct Args {
     /// Only the fit coupon
     #[arg(long)]
     coupon: bool,
+    /// Only one corner, to be tried before everything is printed
+    #[arg(long, conflicts_with = "coupon")]
+    corner: bool,
     /// Print the list of parts as JSON
     #[arg(long)]
     json: bool,
@@ -69,11 +75,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
     let assembly = Assembly::new(&robot);
-    let mut parts = coupon(robot.parts()).to_vec();
+    let whole = !args.coupon && !args.corner;
+    let mut parts = Vec::new();
+    if !args.corner {
+        parts.extend(coupon(robot.parts()));
+    }
     if !args.coupon {
         assembly.measures_fit()?;
         fit::proof(&assembly).judge().map_err(Unfit::from)?;
-        parts.extend(assembly.parts());
+        parts.extend(match args.corner {
+            true => assembly.corner(),
+            false => assembly.parts(),
+        });
     }
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}").expect("a template");
     let bar = ProgressBar::new(parts.len() as u64).with_style(style);
@@ -95,7 +108,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     let mut weight = None;
-    if !args.coupon {
+    if whole {
         let pose = robot
             .lizard()
             .solve(&robot.neutral())
@@ -106,6 +119,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
             serde_json::to_string_pretty(&bill)? + "\n",
         ));
         files.extend(guide(&assembly, &bill, &pose)?);
+        files.push(File::text(
+            "guide/placements.json".to_owned(),
+            placements(&assembly, &pose)?,
+        ));
         weight = bill
             .differs(&robot.ground().body)
             .then(|| said(&bill, &robot));

@@ -192,13 +192,7 @@ impl<'a> Guard<'a> {
     ) -> bool {
         let broken = |(what, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.near(middle, &region.half).value;
-            // Crossed tips have no limit that could be relaxed.
-            let off = match what {
-                Check::UncrossedHead | Check::UncrossedTail => LENGTH,
-                _ => 0.0,
-            };
-            let [low, high] = [value.low, value.high]
-                .map(|value| self.limits.broken(what, value + off).map(|of| of.limit));
+            let [low, high] = [value.low, value.high].map(|value| self.broken(what, value));
             low.is_some() && low == high
         };
         let all = |of: [usize; 2]| of.iter().all(|servo| servos.contains(servo));
@@ -228,6 +222,16 @@ impl<'a> Guard<'a> {
                     let what = Check::STROKE[usize::from(side == Side::Right)];
                     broken((what, bounds.side(side).s, middle.side(side).s))
                 })
+    }
+
+    /// The limit that a value breaks though it is relaxed, if it does.
+    fn broken(&self, what: Check, value: f64) -> Option<f64> {
+        // Crossed tips have no limit that could be relaxed.
+        let off = match what {
+            Check::UncrossedHead | Check::UncrossedTail => LENGTH,
+            _ => 0.0,
+        };
+        self.limits.broken(what, value + off).map(|of| of.limit)
     }
 
     /// A pose that the guard accepts, with its own limits, where some servos have an
@@ -296,6 +300,36 @@ mod tests {
             leg: limits.leg - BAND,
             stroke_min: limits.stroke_min - STEPS,
             stroke_max: limits.stroke_max + STEPS,
+        }
+    }
+
+    /// Each limit by itself: some, as that of crossed tips, lie beyond others in every pose.
+    #[test]
+    fn every_limit_is_relaxed_by_more_than_the_firmware_may_be_off() {
+        for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
+            let robot = robot(name);
+            let (guard, limits) = (Guard::new(&robot), robot.limits());
+            let sine = |limit: f64| [limit - BAND, limit - 0.1];
+            let sines = [
+                (&Check::TYPE2[..], sine(limits.type2)),
+                (&Check::TYPE1, sine(limits.type1)),
+                (&Check::LEG, sine(limits.leg)),
+                (&Check::UNCROSSED, [-STEPS, -1.0]),
+                (
+                    &Check::STROKE,
+                    [limits.stroke_min - STEPS, limits.stroke_min - 1.0],
+                ),
+                (
+                    &Check::STROKE,
+                    [limits.stroke_max + STEPS, limits.stroke_max + 1.0],
+                ),
+            ];
+            for (checks, [within, beyond]) in sines {
+                for &what in checks {
+                    assert_eq!(guard.broken(what, within), None, "{name}: {what}");
+                    assert!(guard.broken(what, beyond).is_some(), "{name}: {what}");
+                }
+            }
         }
     }
 

@@ -151,7 +151,8 @@ impl Solid {
     }
 
     /// The air around a pin that is in the middle of a round hole at every one of some
-    /// places, mm; `None` if it is not. A linkage that closes keeps it there.
+    /// places, or beside a disc whose middle stays where it is in the other's frame, mm;
+    /// `None` if neither is so. A linkage that closes keeps it there.
     pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
         /// Beyond the rounding of a joint's place, mm.
         const SAME: f64 = 1e-6;
@@ -169,10 +170,36 @@ impl Solid {
             let holes = holes.iter().filter(around);
             holes.map(|hole| hole.radius - pin.radius).reduce(f64::max)
         };
-        air(&self.first, &self.around_first, &stays).or_else(|| {
-            let stays = |second, first| stays(first, second);
-            air(&self.second, &self.around_second, &stays)
-        })
+        let beside = |disc: &Shape, other: &Shape, holes: &[Shape]| {
+            let within = holes
+                .iter()
+                .map(|hole| disc.within(hole, Vector::default()));
+            within.fold(disc.distance(other), f64::max)
+        };
+        air(&self.first, &self.around_first, &stays)
+            .or_else(|| {
+                let stays = |second, first| stays(first, second);
+                air(&self.second, &self.around_second, &stays)
+            })
+            .or_else(|| {
+                let middle = places.first()?.unmap(centre(&self.first)?);
+                let disc = Shape::disc(middle, self.first.radius);
+                let clear = || beside(&disc, &self.second, &self.around_first);
+                stays(centre(&self.first)?, middle).then(clear)
+            })
+            .or_else(|| {
+                let middle = places.first()?.map(centre(&self.second)?);
+                let disc = Shape::disc(middle, self.second.radius);
+                let clear = || beside(&disc, &self.first, &self.around_second);
+                stays(middle, centre(&self.second)?).then(clear)
+            })
+            .map(|air| {
+                if self.gap > 0.0 {
+                    air.max(0.0).hypot(self.gap)
+                } else {
+                    air
+                }
+            })
     }
 
     /// How far the two are apart, mm, where the second's frame is at a place in the

@@ -1,0 +1,94 @@
+//! The guide as a page for a browser.
+
+use std::fmt::Write;
+
+/// The guide's Markdown as a page. It has headings, pictures, tables, code and paragraphs
+/// and nothing else.
+pub fn html(markdown: &str) -> String {
+    let escape = |text: &str| {
+        let text = text.replace('&', "&amp;").replace('<', "&lt;");
+        // Code is between a pair of back quotes.
+        let mut parts = text.split('`');
+        let mut done = parts.next().unwrap_or_default().to_owned();
+        while let (Some(code), Some(rest)) = (parts.next(), parts.next()) {
+            let _ = write!(done, "<code>{code}</code>{rest}");
+        }
+        done
+    };
+    let mut page = String::from(
+        "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>Building the robot</title>\n<style>body{font:16px/1.5 sans-serif;max-width:46rem;margin:2rem auto;padding:0 1rem}\
+         img{max-width:100%}td,th{padding:.1rem .7rem;border-bottom:1px solid #ddd;text-align:left}\
+         pre{background:#f4f4f4;padding:.6rem}</style>\n",
+    );
+    let (mut table, mut code) = (false, false);
+    for line in markdown.lines() {
+        if line.starts_with("```") {
+            page.push_str(if code { "</pre>\n" } else { "<pre>" });
+            code = !code;
+        } else if code {
+            let _ = writeln!(page, "{}", escape(line));
+        } else if let Some(cells) = line.strip_prefix('|') {
+            if cells.starts_with("---") {
+                continue;
+            }
+            let cell = if table { "td" } else { "th" };
+            if !table {
+                page.push_str("<table>\n");
+                table = true;
+            }
+            page.push_str("<tr>");
+            for text in cells.trim_end_matches('|').split('|') {
+                let _ = write!(page, "<{cell}>{}</{cell}>", escape(text.trim()));
+            }
+            page.push_str("</tr>\n");
+        } else {
+            if table {
+                page.push_str("</table>\n");
+                table = false;
+            }
+            if let Some(title) = line.strip_prefix("## ") {
+                let _ = writeln!(page, "<h2>{}</h2>", escape(title));
+            } else if let Some(title) = line.strip_prefix("# ") {
+                let _ = writeln!(page, "<h1>{}</h1>", escape(title));
+            } else if let Some((words, file)) = line
+                .strip_prefix("![")
+                .and_then(|rest| rest.strip_suffix(')'))
+                .and_then(|rest| rest.split_once("]("))
+            {
+                let _ = writeln!(
+                    page,
+                    "<p><img src=\"{file}\" alt=\"{}\"></p>",
+                    escape(words)
+                );
+            } else if !line.is_empty() {
+                let _ = writeln!(page, "<p>{}</p>", escape(line));
+            }
+        }
+    }
+    page.push_str("</html>\n");
+    page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_tables_code_and_pictures() {
+        let page = html(
+            "# A\n\n| a | b |\n|---|---|\n| 1 | x < y |\n\n![p](q.svg)\nrun `z`\n```toml\nk = 1\n```\n",
+        );
+        for part in [
+            "<h1>A</h1>",
+            "<tr><th>a</th><th>b</th></tr>",
+            "<td>x &lt; y</td>",
+            "</table>",
+            "<img src=\"q.svg\" alt=\"p\">",
+            "<p>run <code>z</code></p>",
+            "<pre>k = 1\n</pre>",
+        ] {
+            assert!(page.contains(part), "{part} in {page}");
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! What a builder meets: leads, hung springs, screws from the shop, walls, marks, roofs.
+//!
+//! The outlines of the layers are asked point by point, not by the shapes that the proof
+//! of fit takes.
+
+use lizard_kinematics::{End, Vector};
+use lizard_parts::{Assembly, Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
+use lizard_robot::Robot;
+
+const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
+
+fn with(name: &str, more: &str) -> Assembly {
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect(&path);
+    Assembly::new(&Robot::parse(&format!("{text}\n{more}")).expect(more))
+}
+
+fn sprung(name: &str) -> Assembly {
+    with(name, "[leg.drive]\nkind = \"strut\"")
+}
+
+fn at(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
+/// Points of a rectangle by its middle and its size, every 0.3 mm.
+fn points(middle: Vector, size: Vector) -> Vec<Vector> {
+    let steps = |size: f64| {
+        let count = (size / 0.3).ceil() as i32;
+        (0..=count).map(move |i| size * (f64::from(i) / f64::from(count) - 0.5))
+    };
+    let rows = steps(size.x).flat_map(|x| steps(size.y).map(move |y| at(x, y)));
+    rows.map(|by| middle + by).collect()
+}
+
+fn layers(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
+    prisms
+        .iter()
+        .map(|prism| (prism.z, Outline::of(prism)))
+        .collect()
+}
+
+#[test]
+fn a_servo_goes_into_the_plate_with_its_lead() {
+    for name in NAMES {
+        let assembly = with(name, "");
+        let servo = assembly.robot().parts().servo;
+        let plate = layers(&assembly.body("plate").expect("a plate").prisms);
+        for end in End::ALL {
+            for i in end.servos() {
+                let middle = assembly.layout().plate.cases[i];
+                let edge = middle + at(0.0, end.sign() * servo.length / 2.0);
+                // 4 x 1.2 mm at the shaft's end.
+                let lead = points(edge + at(0.0, end.sign() * 0.6), at(4.0, 1.2));
+                let case = points(middle, at(servo.width, servo.length));
+                for (z, outline) in &plate {
+                    for point in lead.iter().chain(&case) {
+                        assert!(!outline.holds(*point), "{name} A{}: {point:?} {z:?}", i + 1);
+                    }
+                }
+                // The shaft is at that end.
+                let shaft = assembly.layout().shafts[i];
+                assert!((shaft - edge).length() < servo.shaft + 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_coupon_has_the_openings_of_the_plate() {
+    let assembly = with("paper", "");
+    let parts = assembly.robot().parts();
+    let [coupon, _] = coupon(parts);
+    let floor = Outline::of(&coupon.prisms[0]);
+    // The largest holes are the openings, one of each fit.
+    let mut holes: Vec<&Loop> = floor.pieces[0][1..].iter().collect();
+    holes.sort_by(|a, b| a.area().total_cmp(&b.area()));
+    let mut areas: Vec<f64> = holes.iter().take(5).map(|hole| -hole.area()).collect();
+    areas.sort_by(f64::total_cmp);
+    for (column, area) in areas.into_iter().enumerate() {
+        let fit = 0.1 * column as f64;
+        let case = (parts.servo.length + 2.0 * fit) * (parts.servo.width + 2.0 * fit);
+        // The notch reaches 1.2 mm beyond the case and its air.
+        let expected = case + 5.0 * 1.2;
+        assert!(
+            (area - expected).abs() < 1e-6,
+            "{column}: {area} {expected}"
+        );
+    }
+}
+
+/// The coil of a leg's spring and its strut.
+fn coil<'a>(assembly: &'a Assembly, leg: &str) -> (&'a Body, &'a Body) {
+    let body = |name: String| assembly.body(&name).expect("a body");
+    (body(format!("spring {leg}")), body(format!("strut {leg}")))
+}
+
+#[test]
+fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
+    for name in NAMES {
+        let assembly = sprung(name);
+        let parts = assembly.robot().parts();
+        for (i, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
+            let (spring, strut) = coil(&assembly, leg);
+            let shape = &spring.prisms[0].add[0];
+            let x = shape.points.iter().map(|point| point.x);
+            let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
+            // Two hooks of an inner diameter each around the far sides of two M3 screws.
+            let inner = parts.spring.outer - 2.0 * parts.spring.wire;
+            let hung = assembly.layout().legs[i].strut_length + 3.0 - 2.0 * inner;
+            assert!(
+                (length - hung).abs() < 1e-9,
+                "{name} {leg}: {length} {hung}"
+            );
+            if name == "paper" {
+                assert!((length - 24.5).abs() < 0.01, "{length}");
+            }
+            let (bottom, top) = (spring.z()[0], spring.z()[1]);
+            let middle = shape.middle();
+            // Also where the leg lags as far as the slot lets it.
+            for lag in [0.0, 2.5, 5.0] {
+                let size = at(length + lag, parts.spring.outer);
+                for (z, outline) in layers(&strut.prisms) {
+                    if z[1] <= bottom || top <= z[0] {
+                        continue;
+                    }
+                    for point in points(middle + at(lag / 2.0, 0.0), size) {
+                        assert!(!outline.holds(point), "{name} {leg}: {point:?} {z:?}");
+                    }
+                }
+            }
+            let link = assembly.body(&format!("link A{}", i + 1)).expect("a link");
+            assert!(link.z()[0] - top > 0.2, "{name}: {top}");
+        }
+    }
+}
+
+#[test]
+fn a_coil_that_rides_on_its_strut_is_found() {
+    let riding = sprung("paper").altered(|bodies| {
+        for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
+            body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
+        }
+    });
+    let proof = riding.prove_some(
+        |a, b| [a, b].iter().any(|of| of.name == "spring LF"),
+        |_, _| (),
+    );
+    let clash = proof.judge().expect_err("it is too near to the link");
+    assert!(clash.to_string().contains("link A1"), "{clash}");
+}
+
+#[test]
+fn every_shop_has_the_screws() {
+    for name in NAMES {
+        for kind in ["strut", "rigid"] {
+            let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
+            let mut asked = 0;
+            for body in assembly.bodies() {
+                if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind {
+                    let sold = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
+                    assert!(sold.contains(&length), "{name}: {} {length}", body.name);
+                    asked += 1;
+                }
+            }
+            assert!(asked > 40, "{asked}");
+        }
+    }
+}
+
+#[test]
+fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
+    for name in NAMES {
+        let assembly = with(name, "");
+        let boss = assembly.stack().servo + assembly.robot().parts().servo.boss;
+        let mut asked = 0;
+        for body in assembly.bodies() {
+            if matches!(body.kind, Kind::HornScrew(_)) {
+                assert!(body.z()[0] > boss + 0.5, "{}: {}", body.name, body.z()[0]);
+                asked += 1;
+            }
+        }
+        assert_eq!(asked, 8);
+    }
+}
+
+/// Points along a loop, every 0.2 mm.
+fn along(line: &Loop) -> Vec<Vector> {
+    let mut points = Vec::new();
+    for (side, to) in line.ends() {
+        let chord = to - side.from;
+        match side.arc(to) {
+            None => {
+                let count = (chord.length() / 0.2).ceil() as u32;
+                let share = |i| f64::from(i) / f64::from(count);
+                points.extend((0..count).map(|i| side.from + chord * share(i)));
+            }
+            Some((centre, radius)) => {
+                let whole = 4.0 * side.bulge.atan();
+                let count = (whole.abs() * radius / 0.2).ceil() as u32;
+                let arm = side.from - centre;
+                points.extend((0..count).map(|i| {
+                    let (sin, cos) = (whole * f64::from(i) / f64::from(count)).sin_cos();
+                    centre + arm * cos + arm.left() * sin
+                }));
+            }
+        }
+    }
+    points
+}
+
+/// The thinnest wall between two loops of a layer of a part.
+fn thinnest(part: &Part) -> f64 {
+    let mut least = f64::INFINITY;
+    for prism in &part.prisms {
+        for piece in &Outline::of(prism).pieces {
+            let lines: Vec<_> = piece.iter().map(along).collect();
+            for (i, a) in lines.iter().enumerate() {
+                for b in &lines[i + 1..] {
+                    for point in a {
+                        let near = b.iter().map(|other| (*other - *point).length());
+                        least = near.fold(least, f64::min);
+                    }
+                }
+            }
+        }
+    }
+    least
+}
+
+#[test]
+fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
+    for name in ["paper", "unequal"] {
+        let assembly = with(name, "");
+        let wall = assembly.robot().parts().wall;
+        let mut asked = 0;
+        for part in assembly.parts() {
+            // In the plate the servos' own screws are beside their openings, and the
+            // engraved lines of a number beside each other; in a link the horn's screws
+            // are beside its hub; a ring is as thin as the coil beside it demands.
+            if ["plate", "link", "strut ring"]
+                .iter()
+                .any(|known| part.name.starts_with(known))
+            {
+                continue;
+            }
+            let thin = thinnest(&part);
+            assert!(thin > wall - 0.02, "{name}: {} {thin:.2}", part.name);
+            asked += 1;
+        }
+        assert!(asked > 10);
+    }
+}
+
+#[test]
+fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
+    let assembly = with("paper", "");
+    let link = assembly.body("link A1").expect("a link");
+    let floor = Outline::of(&link.prisms[0]);
+    let outer = along(&floor.pieces[0][0]);
+    let mut pockets = 0;
+    for hole in &floor.pieces[0][1..] {
+        if hole.sides.len() != 6 {
+            continue;
+        }
+        pockets += 1;
+        for corner in along(hole) {
+            let wall = outer.iter().map(|point| (*point - corner).length());
+            let wall = wall.fold(f64::INFINITY, f64::min);
+            assert!(wall > 1.58, "{wall}");
+        }
+    }
+    assert_eq!(pockets, 2);
+}
+
+#[test]
+fn parts_that_are_alike_but_for_left_and_right_are_marked() {
+    for name in ["paper", "large", "unequal"] {
+        let parts = with(name, "").parts();
+        let what = |part: &Part| {
+            let (what, _) = part.bodies[0]
+                .rsplit_once(' ')
+                .unwrap_or((&part.bodies[0], ""));
+            what.to_owned()
+        };
+        let mut marks = Vec::new();
+        for part in &parts {
+            let others = parts.iter().filter(|other| what(other) == what(part));
+            let spacer = part.name.starts_with("spacer");
+            assert_eq!(
+                part.mark.is_empty(),
+                others.count() == 1 || spacer,
+                "{}",
+                part.name
+            );
+            if part.mark.is_empty() {
+                continue;
+            }
+            marks.push((what(part), part.mark.clone()));
+            // There was room for it: some of the part is gone.
+            let (printed, roofs) = part.printed();
+            let solid = Solid::of(&printed);
+            let skins = 0.3 * 9.0 * roofs as f64;
+            assert!(
+                solid.volume < part.volume() + skins - 0.5,
+                "{name}: {}",
+                part.name
+            );
+            assert!(Mesh::of(&solid).is_closed(), "{name}: {}", part.name);
+        }
+        let count = marks.len();
+        marks.sort();
+        marks.dedup();
+        assert_eq!(marks.len(), count, "{name}: two kinds have one mark");
+        let has = |what: &str, mark: &str| marks.contains(&(what.to_owned(), mark.to_owned()));
+        if name == "unequal" {
+            assert!(has("link", "1") && has("crank", "3"));
+        } else {
+            assert!(
+                has("link", "13") && has("link", "24") && has("crank", "24"),
+                "{marks:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn no_hole_of_a_printed_part_begins_in_the_air() {
+    for name in ["paper", "large", "unequal"] {
+        let mut roofs = 0;
+        for part in with(name, "").parts() {
+            let (printed, count) = part.printed();
+            roofs += count * part.count();
+            let layers = layers(&printed);
+            for pair in layers.windows(2) {
+                assert!(
+                    (pair[0].0[1] - pair[1].0[0]).abs() < 1e-9,
+                    "{name}: {}",
+                    part.name
+                );
+                assert!(pair[1].0[1] > pair[1].0[0] + 0.01, "{name}: {}", part.name);
+            }
+            for pair in layers.windows(2) {
+                let [(_, below), (z, outline)] = pair else {
+                    continue;
+                };
+                for line in outline.loops().filter(|line| line.area() < 0.0) {
+                    // Just beside the hole there is something to stand on, somewhere.
+                    let Some((middle, radius)) = line.circle() else {
+                        continue;
+                    };
+                    let on = (0..24).any(|i| {
+                        let way = Vector::direction(15.0 * f64::from(i));
+                        below.holds(middle + way * (radius + 0.2))
+                    });
+                    assert!(on, "{name}: {} at {z:?}", part.name);
+                }
+            }
+        }
+        // Two in each link, one in each crank and foot.
+        assert_eq!(roofs, 16, "{name}");
+    }
+}
