@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use lizard_parts::{Assembly, Course, Motor, STALL, Scene, mjcf};
 use lizard_robot::servo::LEGS;
-use lizard_robot::{CheckedGait, Kind, Robot};
+use lizard_robot::{CheckedGait, Robot};
 use lizard_twin::{FRAME, ServoModel};
 use simulated_uno::{CYCLES_PER_US, Fidelity, State, Uno};
 
@@ -94,13 +94,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);
     assembly.measures_fit()?;
-    if matches!(robot.drive().kind, Kind::Spring(_)) {
-        return Err(Failure::Impossible(
-            "the legs of robot.toml are driven by an ideal spring, which is no part that could be put into the file; \
-             kind = \"rigid\" or \"strut\" under [leg.drive] can"
-                .to_owned(),
-        ));
-    }
     let neutral = robot
         .lizard()
         .solve(&robot.neutral())
