@@ -59,7 +59,7 @@ fit: ## proof that no two parts meet at any pose that the guard accepts
 	$(call prepared,.fit)
 prove: ## the guard against floating point at every pose there is; a minute or two
 	$(call prepared,.prove)
-physics: ## the contact model against the rigid-body engine rapier
+physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 keeps what they say
 	$(call prepared,.physics)
 mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
 	$(call prepared,.mutants)
@@ -160,10 +160,16 @@ TESTS ?= --workspace
 .fit: .cli
 	@$(LIZARD) fit $(FOR_ROBOT)
 
-# Apart from the other tests, because rapier takes minutes to compile.
-.physics:
-	@cd host && cargo clippy -p lizard-twin --features physics --all-targets --quiet -- -D warnings
-	@cd host && cargo test -p lizard-twin --features physics --test physics --quiet
+# Apart from the other tests, because rapier takes minutes to compile and MuJoCo is installed
+# here alone.
+.physics: .firmware
+	@scripts/setup-physics
+	@cd host && cargo clippy -p lizard-physics --features engines --all-targets --quiet -- -D warnings
+	@cd host && cargo test -p lizard-physics --features engines --test rapier --quiet
+	@cd host && cargo build --workspace --bin lizard --quiet
+	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk $(FOR_ROBOT)
+	@target/physics/bin/python physics/judge.py target/physics/walk.xml
+	@cd host && cargo run -p lizard-physics --features engines --quiet -- $(if $(WRITE),--write)
 
 # ONLY=serial.rs narrows it down.
 .mutants:
@@ -191,6 +197,7 @@ TESTS ?= --workspace
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
 	@$(LIZARD) charts docs/charts --svg-only
+	@cd host && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --quiet
 	@scripts/walk-through $(LIZARD)
 	@scripts/setup-book
 	@mkdocs build --strict --quiet

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use crate::Failure;
 
-const SIMULATOR: [&str; 4] = ["sim", "twin", "tune", "bench"];
+const SIMULATOR: [&str; 5] = ["sim", "twin", "mjcf", "tune", "bench"];
 /// `replay` needs the simulator's pictures, too.
 const CONSOLE: [&str; 7] = [
     "flash",
@@ -44,7 +44,11 @@ pub fn explain(words: &[OsString]) -> Failure {
     let draws = name == "replay" && cfg!(feature = "console");
     // It searches on all cores, as the commands that compute do.
     let searches = name == "tune" && cfg!(feature = "simulator");
-    let without = if searches {
+    // It has the parts' shapes and masses.
+    let shapes = name == "mjcf" && cfg!(feature = "simulator");
+    let without = if shapes {
+        "the parts to print"
+    } else if searches {
         "the commands that compute"
     } else if SIMULATOR.contains(&name) || draws {
         "the simulator"

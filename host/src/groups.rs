@@ -21,7 +21,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
             "replay",
         ],
     ),
-    ("Simulate it", &["sim", "twin", "bench"]),
+    ("Simulate it", &["sim", "twin", "mjcf", "bench"]),
     ("Build it", &["draw", "parts", "fit", "spring"]),
     ("Change its gaits and measures", &["gaits", "tune", "prove"]),
     (

@@ -21,6 +21,8 @@ pub mod flash;
 pub mod gaits;
 pub mod groups;
 mod json;
+#[cfg(all(feature = "simulator", feature = "parts"))]
+pub mod mjcf;
 #[cfg(feature = "paper")]
 pub mod paper;
 #[cfg(feature = "parts")]

@@ -19,6 +19,8 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
     feature = "parts"
 )))]
 use lizard_host::absent;
+#[cfg(all(feature = "simulator", feature = "parts"))]
+use lizard_host::mjcf;
 #[cfg(feature = "parts")]
 use lizard_host::parts;
 use lizard_host::plain::plain_lines;
@@ -84,6 +86,8 @@ enum Command {
     Parts(parts::Args),
     #[cfg(feature = "parts")]
     Fit(parts::fit::Args),
+    #[cfg(all(feature = "simulator", feature = "parts"))]
+    Mjcf(mjcf::Args),
     Spring(spring::Args),
     #[cfg(feature = "simulator")]
     Bench(bench::Args),
@@ -156,6 +160,8 @@ fn main() -> ExitCode {
         Command::Parts(args) => parts::run(args),
         #[cfg(feature = "parts")]
         Command::Fit(args) => parts::fit::run(args),
+        #[cfg(all(feature = "simulator", feature = "parts"))]
+        Command::Mjcf(args) => mjcf::run(args),
         Command::Spring(args) => spring::run(args),
         #[cfg(feature = "simulator")]
         Command::Bench(args) => bench::run(args),

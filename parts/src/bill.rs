@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 use crate::assembly::Assembly;
 use crate::body::{Body, Kind, Prism};
 use crate::outline::Outline;
-use crate::part::Part;
+use crate::part::{Part, volume};
 
 /// A printed part's mass over its volume, g/mm^3: PLA of 1.24, a third of infill within
 /// three lines of wall. PrusaSlicer's parts are within a tenth of it in sum.
@@ -294,6 +294,19 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
                 BATTERY * x * y * z,
             )
         }
+    }
+}
+
+/// What the spring of a strut weighs, g.
+pub(crate) fn spring(coil: &Coil) -> f64 {
+    STEEL * coil_volume(coil)
+}
+
+/// What a body weighs, g.
+pub(crate) fn grams(body: &Body, assembly: &Assembly) -> f64 {
+    match body.kind {
+        Kind::Printed => PRINTED * volume(&body.prisms),
+        _ => bought(body, assembly, None).1,
     }
 }
 

@@ -87,7 +87,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::load(&elf, Fidelity::DataSheet)
         .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
-    supplies::connect(&mut uno, &robot);
     let recording = record(&mut uno, &robot, &script)?;
     if recording.state != State::Alive {
         return Err(Failure::Impossible(
@@ -134,7 +133,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// Plays the script without a word.
-fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> io::Result<Recording> {
+pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> io::Result<Recording> {
+    supplies::connect(uno, robot);
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
         .expect("the template is well formed");
     let bar = ProgressBar::new(script.end_ms).with_style(style);
@@ -169,7 +169,7 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
 }
 
 /// Each of these gaits after a second at its beginning, for three cycles.
-fn every(robot: &Robot, gaits: &[&str]) -> Script {
+pub(crate) fn every(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES: f64 = 3.0;
     const STAND_MS: u64 = 1000;
     let mut ms = STAND_MS;

@@ -1,10 +1,12 @@
-//! The lizard as rigid bodies: a chassis and four ball feet on springy joints. Which
-//! way it goes is nothing that this file says; rapier computes every contact.
+//! The lizard in rapier: a chassis and four ball feet on springy joints. Which way it
+//! goes is nothing that this file says; rapier computes every contact.
 
 use std::f32::consts::TAU;
 
-use lizard_robot::{CheckedGait, Feet, GRAVITY, Travel};
+use lizard_robot::{CheckedGait, Feet, GRAVITY, Robot, Strut, Travel};
 use rapier3d::prelude::*;
+
+use crate::case::Case;
 
 /// Time of a step, s.
 const STEP: f32 = 0.001;
@@ -14,11 +16,11 @@ const SETTLE: f32 = 0.5;
 const BALL: f32 = 0.008;
 /// Mass of a foot, kg.
 const FOOT: f32 = 0.015;
-/// How the feet give under the chassis, N/m and N s/m.
-const VERTICAL: (f32, f32) = (2000.0, 10.0);
+/// Damping of a foot that gives, over the critical one of a quarter of the robot.
+const DAMPING: f32 = 0.4;
 
 /// How a leg follows its servo: N m/rad and N m s/rad.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Yaw(pub f32, pub f32);
 
 impl Yaw {
@@ -32,15 +34,42 @@ impl Yaw {
 }
 
 /// What the engine is told.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Setup {
+    /// Where the feet are.
     pub feet: Feet,
     /// All of it, g.
     pub mass: f64,
+    /// Between pads and floor.
     pub friction: f64,
+    /// How the legs follow their servos.
     pub yaw: Yaw,
     /// Over the gait's own pace.
     pub pace: f64,
+    /// How the feet give under the chassis, N/mm.
+    pub stiffness: f64,
+    /// By how much the front left foot is too long, mm.
+    pub long: f64,
+    /// The slotted struts between servos and legs; none where `yaw` alone drives the legs.
+    pub strut: Option<Strut>,
+}
+
+impl Setup {
+    /// A robot in a case, at its gaits' own pace.
+    #[must_use]
+    pub fn of(robot: &Robot, case: Case) -> Self {
+        let ground = case.ground(robot);
+        Self {
+            feet: ground.feet,
+            mass: ground.body.mass,
+            friction: ground.friction,
+            yaw: Yaw::RIGID,
+            pace: 1.0,
+            stiffness: case.feet.stiffness(robot),
+            long: case.feet.long(),
+            strut: ground.drive.strut().copied(),
+        }
+    }
 }
 
 /// Left legs turn clockwise when their foot goes forward.
@@ -49,8 +78,10 @@ const CLOCKWISE: [f32; 4] = [-1.0, 1.0, 1.0, -1.0];
 struct Engine {
     world: PhysicsWorld,
     chassis: RigidBodyHandle,
+    feet: [RigidBodyHandle; 4],
     joints: [ImpulseJointHandle; 4],
     yaw: Yaw,
+    strut: Option<Strut>,
 }
 
 impl Engine {
@@ -61,7 +92,13 @@ impl Engine {
         parameters.dt = STEP;
         parameters.num_solver_iterations = 4;
         // With one, the default, springs are many times too soft.
-        parameters.num_internal_pgs_iterations = 20;
+        parameters.num_internal_pgs_iterations = 60;
+        // By default the floor gives as much as a foot's leaf, and a foot that is too long
+        // sinks into it.
+        parameters.static_contact_softness = SpringCoefficients {
+            natural_frequency: 1000.0,
+            damping_ratio: 1.0,
+        };
 
         let friction = setup.friction as f32;
         let floor = ColliderBuilder::cuboid(2.0, 2.0, 0.1)
@@ -81,6 +118,12 @@ impl Engine {
         let chassis = world.bodies.insert(chassis);
         let metres = |[x, y]: [f64; 2]| Vector::new(x as f32 / 1000.0, y as f32 / 1000.0, 0.0);
         let (hips, pads) = (setup.feet.hips(), setup.feet.at([0.0; 4]));
+        let stiffness = 1000.0 * setup.stiffness as f32;
+        let damping = DAMPING * 2.0 * (stiffness * setup.mass as f32 / 4000.0).sqrt();
+        let long = |foot: usize| match foot {
+            0 => setup.long as f32 / 1000.0,
+            _ => 0.0,
+        };
         let joints = std::array::from_fn(|i| {
             let hip = metres(hips[i]);
             let foot = RigidBodyBuilder::dynamic()
@@ -102,35 +145,69 @@ impl Engine {
                 .local_anchor1(hip)
                 .motor_model(JointAxis::LinZ, MotorModel::ForceBased)
                 .motor_model(JointAxis::AngZ, MotorModel::ForceBased)
-                .set_motor(JointAxis::LinZ, 0.0, 0.0, VERTICAL.0, VERTICAL.1);
-            world
+                .set_motor(JointAxis::LinZ, -long(i), 0.0, stiffness, damping);
+            let joint = world
                 .impulse_joints
-                .insert(chassis, foot, joint.build(), true)
+                .insert(chassis, foot, joint.build(), true);
+            (foot, joint)
         });
         Self {
             world,
             chassis,
-            joints,
+            feet: joints.map(|(foot, _)| foot),
+            joints: joints.map(|(_, joint)| joint),
             yaw: setup.yaw,
+            strut: setup.strut,
         }
     }
 
     /// A step towards these sweeps, rad, at these rates, rad/s.
     fn step(&mut self, sweeps: [f32; 4], rates: [f32; 4]) {
         for i in 0..4 {
+            let most = self.holds(i, sweeps[i]);
             let joint = self.world.impulse_joints.get_mut(self.joints[i], true);
             let joint = &mut joint.expect("it was inserted").data;
             let (angle, rate) = (CLOCKWISE[i] * sweeps[i], CLOCKWISE[i] * rates[i]);
             joint.set_motor(JointAxis::AngZ, angle, rate, self.yaw.0, self.yaw.1);
+            joint.set_motor_max_force(JointAxis::AngZ, most);
         }
         self.world.step();
     }
 
+    /// The most that holds a leg to its servo, which is at a sweep (rad), N m: all there is,
+    /// or once the leg lags the way that its strut yields, the strut's spring.
+    fn holds(&self, leg: usize, sweep: f32) -> f32 {
+        let Some(strut) = &self.strut else {
+            return f32::MAX;
+        };
+        let turned = self.heading(self.feet[leg]) - self.heading(self.chassis);
+        let turned = (turned + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+        let lag = f64::from(sweep - CLOCKWISE[leg] * turned);
+        let servo = f64::from(sweep).to_degrees();
+        let yields = match strut.yields_forward(leg, servo) {
+            true => lag,
+            false => -lag,
+        };
+        if yields < 0.0 {
+            return f32::MAX;
+        }
+        let lever = strut.lever(leg, servo);
+        let stretch = lever * yields;
+        if stretch > strut.slot {
+            return f32::MAX;
+        }
+        ((strut.force + strut.rate * stretch) * lever / 1000.0) as f32
+    }
+
+    fn heading(&self, body: RigidBodyHandle) -> f32 {
+        let ahead = self.world.bodies[body].rotation() * Vector::X;
+        ahead.y.atan2(ahead.x)
+    }
+
     /// Forward, left, m, and heading, rad.
     fn place(&self) -> [f32; 3] {
-        let chassis = &self.world.bodies[self.chassis];
-        let (at, ahead) = (chassis.translation(), chassis.rotation() * Vector::X);
-        [at.x, at.y, ahead.y.atan2(ahead.x)]
+        let at = self.world.bodies[self.chassis].translation();
+        [at.x, at.y, self.heading(self.chassis)]
     }
 }
 

@@ -1,20 +1,17 @@
-//! The contact model against a rigid-body engine that others wrote.
+//! The contact model against rapier, on springs, at other frictions, on legs mounted outward.
 //!
 //! The model is quasi-static, the engine is not: where a gait leans on inertia, it is
 //! played slower. Gaits that are another one reversed or mirrored are played at one
 //! friction only. `look` depends on ties and is left out, as is `stand`.
 
-mod docs;
-mod engine;
-
 use std::sync::LazyLock;
 
-use engine::{Setup, Yaw, walked};
+use lizard_physics::rapier::{Setup, Yaw, walked};
 use lizard_robot::{Body, Drive, Feet, Ground, Robot, Travel};
 
 fn paper() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+        Robot::parse(include_str!("../../robots/paper.toml")).expect("paper.toml is right")
     });
     &ROBOT
 }
@@ -35,7 +32,7 @@ const KINDS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 
 /// The paper's lengths, with the gait that `lizard tune` has found for them.
 fn tuned() -> Robot {
-    Robot::parse(include_str!("../../../robots/own-gaits.toml")).expect("own-gaits.toml is right")
+    Robot::parse(include_str!("../../robots/own-gaits.toml")).expect("own-gaits.toml is right")
 }
 
 /// A cycle of a gait by the engine, at a share of its pace.
@@ -46,6 +43,9 @@ fn engine(robot: &Robot, name: &str, ground: &Ground, yaw: Yaw, pace: f64) -> Tr
         friction: ground.friction,
         yaw,
         pace,
+        stiffness: 2.0,
+        long: 0.0,
+        strut: None,
     };
     walked(robot.gait(name).expect(name), &setup)
 }
@@ -97,12 +97,9 @@ fn rigid_legs_on_a_rough_floor_go_where_the_engine_goes() {
         friction: 1.0,
         ..ground()
     };
-    let ways = paper().gaits().iter().map(|gait| gait.name());
-    let ways: Vec<_> = ways
-        .filter(|name| !["stand", "look"].contains(name))
-        .map(|name| (name, agree(name, &ground, Yaw::RIGID, 1.0, 0.5, 0.3)))
-        .collect();
-    docs::check(&ways);
+    for name in KINDS {
+        agree(name, &ground, Yaw::RIGID, 1.0, 0.5, 0.3);
+    }
 }
 
 fn springs(rate: f64) {

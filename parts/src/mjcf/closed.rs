@@ -1,0 +1,61 @@
+//! The joints at which the robot's loops are cut, to be closed again by constraints.
+
+use lizard_kinematics::{End, Side, Vector};
+
+use crate::assembly::Assembly;
+use crate::body::Mount;
+use crate::mjcf::node::Node;
+
+/// A point that two bodies share.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Closed {
+    /// Its name: what is closed there.
+    pub name: String,
+    /// Both bodies.
+    pub bodies: [Node; 2],
+    /// Where, in the first one's frame, mm.
+    pub at: Vector,
+}
+
+/// Every one of them: head and tail, the sliders, the legs' parallelograms, the struts.
+pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<Closed> {
+    let (robot, layout) = (assembly.robot(), assembly.layout());
+    let mut all = Vec::new();
+    let mut close = |name: String, bodies: [Node; 2], at: Vector| {
+        all.push(Closed { name, bodies, at });
+    };
+    for end in End::ALL {
+        let [left, right] = end.servos();
+        close(
+            format!("end {}", end.name()),
+            [left, right].map(|servo| Node::Of(Mount::Coupler(servo))),
+            Vector::new(robot.lizard().end(end).coupler_left, 0.0),
+        );
+    }
+    for side in Side::ALL {
+        let [front, _] = side.servos();
+        close(
+            format!("slider {}", side.name()),
+            [Mount::Rod(side), Mount::Link(front)].map(Node::Of),
+            Vector::default(),
+        );
+    }
+    for servo in 0..4 {
+        let leg = lizard_robot::servo::LEGS[servo];
+        close(
+            format!("follower joint {leg}"),
+            [Mount::Foot(servo), Mount::Follower(servo)].map(Node::Of),
+            Vector::new(robot.lizard().leg.coupler, 0.0),
+        );
+        let strut = match slotted {
+            true => Node::Slot(servo),
+            false => Node::Of(Mount::Strut(servo)),
+        };
+        close(
+            format!("leg anchor {leg}"),
+            [strut, Node::Of(Mount::Crank(servo))],
+            Vector::new(layout.legs[servo].strut_length, 0.0),
+        );
+    }
+    all
+}

@@ -1,0 +1,129 @@
+//! Mass, mass centre and inertia of a body, from the triangles of its surface.
+//!
+//! Each triangle makes a tetrahedron with the origin, whose signed volume and moments
+//! have closed forms; over a closed surface they add up to those of the body.
+
+use crate::mesh::Mesh;
+
+/// Moments of a mass: its sum, that times the place, that times the place's products.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Inertia {
+    /// g
+    pub mass: f64,
+    /// g mm
+    first: [f64; 3],
+    /// g mm^2
+    second: [[f64; 3]; 3],
+}
+
+impl Inertia {
+    /// What a surface encloses, with a mass of 1 g for each mm^3.
+    pub fn of(mesh: &Mesh) -> Self {
+        let mut sum = Self::default();
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
+            let volume = (a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]))
+                / 6.0;
+            sum.mass += volume;
+            let all = [0, 1, 2].map(|i| a[i] + b[i] + c[i]);
+            for i in 0..3 {
+                sum.first[i] += volume * all[i] / 4.0;
+                for j in 0..3 {
+                    let products = a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
+                    sum.second[i][j] += volume * (all[i] * all[j] + products) / 20.0;
+                }
+            }
+        }
+        sum
+    }
+
+    /// The same shape with another density: g/mm^3 over what it has.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.mass *= factor;
+        self.first = self.first.map(|part| part * factor);
+        self.second = self.second.map(|row| row.map(|part| part * factor));
+        self
+    }
+
+    /// Both together.
+    pub fn and(mut self, other: &Self) -> Self {
+        self.mass += other.mass;
+        for i in 0..3 {
+            self.first[i] += other.first[i];
+            for j in 0..3 {
+                self.second[i][j] += other.second[i][j];
+            }
+        }
+        self
+    }
+
+    /// The mass centre, mm.
+    pub fn centre(&self) -> [f64; 3] {
+        self.first.map(|part| part / self.mass)
+    }
+
+    /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz, the products
+    /// with the sign of a tensor.
+    pub fn tensor(&self) -> [f64; 6] {
+        let at = self.centre();
+        let about = |i: usize, j: usize| self.second[i][j] - self.mass * at[i] * at[j];
+        let [x, y, z] = [0, 1, 2].map(|i| about(i, i));
+        [
+            y + z,
+            x + z,
+            x + y,
+            -about(0, 1),
+            -about(0, 2),
+            -about(1, 2),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_kinematics::Vector;
+
+    use super::*;
+    use crate::body::Prism;
+    use crate::shape::Shape;
+    use crate::solid::Solid;
+
+    fn prism(add: Shape, z: [f64; 2]) -> Inertia {
+        let (add, cut) = (vec![add], Vec::new());
+        Inertia::of(&Mesh::of(&Solid::of(&[Prism { add, cut, z }])))
+    }
+
+    #[test]
+    fn a_box_has_the_inertia_of_a_box() {
+        let (middle, size) = (Vector::new(7.0, -3.0), Vector::new(20.0, 10.0));
+        let found = prism(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
+        assert!((found.mass - 800.0).abs() < 1e-9);
+        for (part, wanted) in found.centre().into_iter().zip([7.0, -3.0, 4.0]) {
+            assert!((part - wanted).abs() < 1e-9);
+        }
+        let third = 800.0 / 12.0;
+        let wanted = [third * 116.0, third * 416.0, third * 500.0, 0.0, 0.0, 0.0];
+        for (part, wanted) in found.tensor().into_iter().zip(wanted) {
+            assert!((part - wanted).abs() < 1e-6, "{part} {wanted}");
+        }
+    }
+
+    #[test]
+    fn two_halves_have_the_inertia_of_the_whole() {
+        let half = |x: f64| {
+            let size = Vector::new(10.0, 8.0);
+            prism(Shape::rectangle(Vector::new(x, 1.0), size, 0.0), [0.0, 3.0])
+        };
+        let whole = prism(
+            Shape::rectangle(Vector::new(5.0, 1.0), Vector::new(20.0, 8.0), 0.0),
+            [0.0, 3.0],
+        );
+        let both = half(0.0).and(&half(10.0)).scaled(0.5);
+        assert!((both.mass - whole.mass / 2.0).abs() < 1e-9);
+        for (part, wanted) in both.tensor().into_iter().zip(whole.tensor()) {
+            assert!((part - wanted / 2.0).abs() < 1e-6, "{part} {wanted}");
+        }
+    }
+}

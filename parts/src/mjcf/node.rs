@@ -1,0 +1,142 @@
+//! The bodies of the file: which there are, what carries each, and how it moves on that.
+//!
+//! MuJoCo wants a tree. So each closed loop of the robot is cut at one of its joints,
+//! which a constraint closes again (`closed.rs`).
+
+use lizard_kinematics::Side;
+use lizard_robot::servo::{LEGS, NAMES};
+
+use crate::body::Mount;
+
+/// A body of the file: what moves as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Node {
+    /// What is mounted on one of the robot's moving frames.
+    Of(Mount),
+    /// The horn of a servo, where there is play between it and the link.
+    Horn(usize),
+    /// The post of a foot with its pad, which the leaf lets move up and down.
+    Pad(usize),
+    /// What runs in the slot of a strut that has one, and the spring that pulls at it.
+    Slot(usize),
+}
+
+/// How a body moves on the one that carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moves {
+    /// Freely.
+    Free,
+    /// About an upright axis through its origin.
+    Turns,
+    /// Along its own x axis.
+    Along,
+    /// Up and down.
+    Upright,
+}
+
+impl Node {
+    /// Every body of the robot, each after what carries it.
+    pub fn all(slotted: bool, play: bool) -> Vec<Self> {
+        let mut all = vec![Self::Of(Mount::Chassis)];
+        for servo in 0..4 {
+            if play {
+                all.push(Self::Horn(servo));
+            }
+            all.extend(
+                [
+                    Mount::Link(servo),
+                    Mount::Coupler(servo),
+                    Mount::Crank(servo),
+                    Mount::Follower(servo),
+                    Mount::Foot(servo),
+                    Mount::Strut(servo),
+                ]
+                .map(Self::Of),
+            );
+            all.push(Self::Pad(servo));
+            if slotted {
+                all.push(Self::Slot(servo));
+            }
+        }
+        for side in Side::ALL {
+            all.extend([Mount::Sleeve(side), Mount::Rod(side)].map(Self::Of));
+        }
+        all
+    }
+
+    /// What carries it; none of the chassis.
+    pub fn carrier(self, play: bool) -> Option<Self> {
+        let chassis = Self::Of(Mount::Chassis);
+        Some(match self {
+            Self::Of(Mount::Chassis) => return None,
+            Self::Of(Mount::Link(servo)) if play => Self::Horn(servo),
+            Self::Horn(_) | Self::Of(Mount::Link(_) | Mount::Crank(_) | Mount::Follower(_)) => {
+                chassis
+            }
+            Self::Of(Mount::Foot(servo)) => Self::Of(Mount::Crank(servo)),
+            Self::Of(Mount::Strut(servo) | Mount::Coupler(servo)) => Self::Of(Mount::Link(servo)),
+            Self::Of(Mount::Sleeve(side)) => Self::Of(Mount::Link(side.servos()[1])),
+            Self::Of(Mount::Rod(side)) => Self::Of(Mount::Sleeve(side)),
+            Self::Pad(servo) => Self::Of(Mount::Foot(servo)),
+            Self::Slot(servo) => Self::Of(Mount::Strut(servo)),
+        })
+    }
+
+    /// How it moves on what carries it.
+    pub fn moves(self) -> Moves {
+        match self {
+            Self::Of(Mount::Chassis) => Moves::Free,
+            Self::Of(Mount::Rod(_)) | Self::Slot(_) => Moves::Along,
+            Self::Pad(_) => Moves::Upright,
+            _ => Moves::Turns,
+        }
+    }
+
+    /// The frame that is its own.
+    pub fn frame(self) -> Mount {
+        match self {
+            Self::Of(mount) => mount,
+            Self::Horn(servo) => Mount::Link(servo),
+            Self::Pad(servo) => Mount::Foot(servo),
+            Self::Slot(servo) => Mount::Strut(servo),
+        }
+    }
+
+    /// Its name, which its joint bears as well.
+    pub fn name(self) -> String {
+        let of = |what: &str, name: &str| format!("{what} {name}");
+        match self {
+            Self::Of(Mount::Chassis) => "chassis".to_owned(),
+            Self::Of(Mount::Link(servo)) => of("link", NAMES[servo]),
+            Self::Of(Mount::Coupler(servo)) => of("coupler", NAMES[servo]),
+            Self::Of(Mount::Crank(servo)) => of("crank", LEGS[servo]),
+            Self::Of(Mount::Follower(servo)) => of("follower", LEGS[servo]),
+            Self::Of(Mount::Foot(servo)) => of("leg coupler", LEGS[servo]),
+            Self::Of(Mount::Strut(servo)) => of("strut", LEGS[servo]),
+            Self::Of(Mount::Sleeve(side)) => of("sleeve", side.name()),
+            Self::Of(Mount::Rod(side)) => of("rod", side.name()),
+            Self::Horn(servo) => of("horn", NAMES[servo]),
+            Self::Pad(servo) => of("foot", LEGS[servo]),
+            Self::Slot(servo) => of("slot", LEGS[servo]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_body_comes_once_and_after_what_carries_it() {
+        for (slotted, play) in [(false, false), (true, false), (false, true), (true, true)] {
+            let all = Node::all(slotted, play);
+            for (place, node) in all.iter().enumerate() {
+                assert!(!all[..place].contains(node), "{node:?}");
+                match node.carrier(play) {
+                    Some(carrier) => assert!(all[..place].contains(&carrier), "{node:?}"),
+                    None => assert_eq!(*node, Node::Of(Mount::Chassis)),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! The file for MuJoCo, read by a reader of XML and placed by its own numbers alone.
+
+use std::collections::BTreeMap;
+
+use lizard_kinematics::{End, Side, Solution, Vector};
+use lizard_parts::{Assembly, Bill, Course, Motor, Pull, Scene, mjcf};
+use lizard_robot::Robot;
+use lizard_robot::servo::{LEGS, NAMES};
+use roxmltree::{Document, Node};
+
+const MOTOR: Motor = Motor {
+    rate: 500.0,
+    stall: 176.0,
+};
+const ROBOTS: [&str; 4] = ["paper", "large", "own-gaits", "unequal"];
+
+fn robot(name: &str) -> Robot {
+    let file = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Robot::load(file).expect(name)
+}
+
+fn neutral(robot: &Robot) -> Solution {
+    let solved = robot.lizard().solve(&robot.neutral());
+    solved.expect("neutral closes")
+}
+
+fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
+    let assembly = Assembly::new(robot);
+    let mut scene = Scene::of(&assembly, MOTOR);
+    change(&mut scene);
+    mjcf(&assembly, &neutral(robot), &scene).expect("it is made")
+}
+
+fn numbers(node: Node, attribute: &str) -> Vec<f64> {
+    let text = node.attribute(attribute).expect(attribute);
+    text.split(' ')
+        .map(|part| part.parse().expect("a number"))
+        .collect()
+}
+
+/// A body of the file: where it is in the world, m, and how far it is turned.
+#[derive(Clone, Copy)]
+struct Placed {
+    at: [f64; 3],
+    turn: f64,
+}
+
+impl Placed {
+    fn point(&self, point: &[f64]) -> [f64; 3] {
+        let (sin, cos) = self.turn.sin_cos();
+        [
+            self.at[0] + cos * point[0] - sin * point[1],
+            self.at[1] + sin * point[0] + cos * point[1],
+            self.at[2] + point[2],
+        ]
+    }
+}
+
+/// Every body by its name.
+fn bodies<'a>(document: &'a Document) -> BTreeMap<String, (Placed, Node<'a, 'a>)> {
+    fn walk<'a>(
+        parent: Node<'a, 'a>,
+        on: Placed,
+        all: &mut BTreeMap<String, (Placed, Node<'a, 'a>)>,
+    ) {
+        for body in parent.children().filter(|node| node.has_tag_name("body")) {
+            let quat = numbers(body, "quat");
+            assert_eq!(quat[1..3], [0.0; 2], "it stays upright");
+            let placed = Placed {
+                at: on.point(&numbers(body, "pos")),
+                turn: on.turn + 2.0 * quat[3].atan2(quat[0]),
+            };
+            let name = body.attribute("name").expect("a name").to_owned();
+            assert!(all.insert(name, (placed, body)).is_none(), "one of a name");
+            walk(body, placed, all);
+        }
+    }
+    let mut all = BTreeMap::new();
+    let world = find(document, "worldbody");
+    let at = [0.0; 3];
+    walk(world, Placed { at, turn: 0.0 }, &mut all);
+    all
+}
+
+fn find<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
+    child(document.root_element(), tag)
+}
+
+fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
+    let found = node.children().find(|node| node.has_tag_name(tag));
+    found.expect(tag)
+}
+
+#[test]
+fn its_bodies_weigh_what_the_bill_says_and_where() {
+    for name in ROBOTS {
+        let robot = robot(name);
+        let assembly = Assembly::new(&robot);
+        let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&robot));
+        let text = written(&robot, |_| {});
+        let document = Document::parse(&text).expect("well formed");
+        let (mut mass, mut moment) = (0.0, [0.0; 3]);
+        let all = bodies(&document);
+        for (placed, body) in all.values() {
+            let inertial = child(*body, "inertial");
+            let grams = 1000.0 * numbers(inertial, "mass")[0];
+            assert!(grams > 0.0, "{body:?}");
+            let at = placed.point(&numbers(inertial, "pos"));
+            mass += grams;
+            for (sum, part) in moment.iter_mut().zip(at) {
+                *sum += grams * part * 1000.0;
+            }
+        }
+        // A chord cuts off a little of each round end.
+        assert!(
+            (mass / bill.grams - 1.0).abs() < 2e-3,
+            "{name} {mass} {}",
+            bill.grams
+        );
+        let plate = 1000.0 * all["chassis"].0.at[2];
+        let [right, forward, up] = moment.map(|part| part / mass);
+        let off = [
+            forward - bill.centre[0],
+            -right - bill.centre[1],
+            up - plate - bill.centre[2],
+        ];
+        assert!(off.iter().all(|off| off.abs() < 0.05), "{name} {off:?}");
+    }
+}
+
+#[test]
+fn its_loops_are_closed_where_the_robots_joints_are() {
+    for name in ROBOTS {
+        let robot = robot(name);
+        let solved = neutral(&robot);
+        let angles: [f64; 4] = robot.neutral().into();
+        let legs: Vec<_> = (0..4)
+            .map(|servo| robot.legs()[servo].at(angles[servo], angles[servo]))
+            .collect();
+        let shafts = robot.lizard().shafts();
+        let mut joints: BTreeMap<String, Vector> = BTreeMap::new();
+        for end in End::ALL {
+            joints.insert(format!("end {}", end.name()), solved.point(end));
+        }
+        for side in Side::ALL {
+            let rear = shafts[side.servos()[1]];
+            let tip = rear + solved.side(side).front_tip;
+            joints.insert(format!("slider {}", side.name()), tip);
+        }
+        for (leg, place) in LEGS.iter().zip(&legs) {
+            joints.insert(format!("follower joint {leg}"), place.joints[1]);
+            joints.insert(format!("leg anchor {leg}"), place.strut[1]);
+        }
+        for pull in [
+            None,
+            Some(Pull {
+                force: 4.0,
+                rate: 0.4,
+            }),
+        ] {
+            let text = written(&robot, |scene| scene.pull = pull);
+            let document = Document::parse(&text).expect("well formed");
+            let all = bodies(&document);
+            let closed: Vec<_> = find(&document, "equality")
+                .children()
+                .filter(Node::is_element)
+                .collect();
+            assert_eq!(closed.len(), joints.len());
+            for connect in closed {
+                let of = |attribute: &str| connect.attribute(attribute).expect(attribute);
+                let (first, second) = (of("body1"), of("body2"));
+                assert!(all.contains_key(second), "{second}");
+                let at = all[first].0.point(&numbers(connect, "anchor"));
+                let joint = joints[of("name")] * 1e-3;
+                let off = (at[0] - joint.x).hypot(at[1] - joint.y);
+                assert!(off < 1e-8, "{name} {connect:?} {off}");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
+    for name in ROBOTS {
+        let robot = robot(name);
+        let text = written(&robot, |scene| scene.long = [0.0, 0.6, 0.0, -0.3]);
+        let document = Document::parse(&text).expect("well formed");
+        let all = bodies(&document);
+        let feet = robot.ground().feet.at([0.0; 4]);
+        for (servo, long) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
+            let (placed, foot) = all[&format!("foot {}", LEGS[servo])];
+            let pad = foot
+                .children()
+                .find(|geom| geom.attribute("type") == Some("sphere"))
+                .expect("a pad");
+            let [x, y, z] = placed.point(&numbers(pad, "pos")).map(|part| 1000.0 * part);
+            let under = z - 1000.0 * numbers(pad, "size")[0];
+            let [forward, left] = feet[servo];
+            assert!((y - forward).hypot(x + left) < 1e-5, "{name} {x} {y}");
+            // The longest foot is on the floor.
+            assert!((under - (0.6 - long)).abs() < 1e-5, "{name} {under}");
+            assert_eq!(child(foot, "joint").attribute("type"), Some("slide"));
+        }
+    }
+}
+
+#[test]
+fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
+    let (force, rate) = (4.0, 0.4);
+    let text = written(&robot("paper"), |scene| {
+        scene.pull = Some(Pull { force, rate })
+    });
+    let document = Document::parse(&text).expect("well formed");
+    let all = bodies(&document);
+    for leg in LEGS {
+        let slot = all[&format!("slot {leg}")].1;
+        // A steel wire of 0.6 mm, some 0.7 m of it.
+        let grams = 1000.0 * numbers(child(slot, "inertial"), "mass")[0];
+        assert!((0.5..2.5).contains(&grams), "{grams}");
+        let joint = child(slot, "joint");
+        let range = numbers(joint, "range");
+        assert_eq!(range, [0.0, 0.005]);
+        let (stiffness, rest) = (
+            numbers(joint, "stiffness")[0],
+            numbers(joint, "springref")[0],
+        );
+        assert!(
+            (stiffness * -rest - force).abs() < 1e-6,
+            "at the slot's end"
+        );
+        assert!(
+            (stiffness * (0.003 - rest) - (force + 3.0 * rate)).abs() < 1e-6,
+            "3 mm on"
+        );
+    }
+    let rigid = written(&robot("paper"), |scene| scene.pull = None);
+    assert!(!rigid.contains("slot"));
+}
+
+#[test]
+fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
+    for play in [0.0, 1.0] {
+        let robot = robot("unequal");
+        let text = written(&robot, |scene| scene.play = play);
+        let document = Document::parse(&text).expect("well formed");
+        let motors: Vec<_> = find(&document, "actuator")
+            .children()
+            .filter(Node::is_element)
+            .collect();
+        for (servo, motor) in motors.iter().enumerate() {
+            assert_eq!(motor.attribute("name"), Some(NAMES[servo]));
+            let of = motor.attribute("joint").expect("a joint");
+            let mut joints = document
+                .descendants()
+                .filter(|node| node.has_tag_name("joint"));
+            let joint = joints
+                .find(|joint| joint.attribute("name") == Some(of))
+                .expect(of);
+            let [least, most] = numbers(*motor, "forcerange")[..] else {
+                panic!("two torques")
+            };
+            assert_eq!((least, most), (-0.176, 0.176));
+            let rate = most / numbers(joint, "damping")[0];
+            assert!((rate.to_degrees() - 500.0).abs() < 1e-3, "{rate}");
+            let (low, high) = robot.servos()[servo].travel();
+            let range = numbers(*motor, "ctrlrange");
+            assert!((range[0].to_degrees() - low).abs() < 1e-6);
+            assert!((range[1].to_degrees() - high).abs() < 1e-6);
+        }
+        assert_eq!(text.contains("<joint name=\"horn A1\""), play > 0.0);
+    }
+}
+
+#[test]
+fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
+    let robot = robot("own-gaits");
+    let gait = robot.gait("stride").expect("stride");
+    let course = Course::of(&robot, gait, 2);
+    let (begin, period) = (course.begin, course.period);
+    let text = written(&robot, |scene| scene.course = Some(course));
+    let document = Document::parse(&text).expect("well formed");
+    let numeric = document
+        .descendants()
+        .find(|node| node.attribute("name") == Some("cycle"))
+        .expect("the cycle");
+    let [written, long] = numbers(numeric, "data")[..] else {
+        panic!("two times")
+    };
+    assert!((written - begin).abs() < 1e-9 && long == period && period == 0.91);
+    let keys: Vec<_> = find(&document, "keyframe")
+        .children()
+        .filter(Node::is_element)
+        .collect();
+    let last = numbers(*keys.last().expect("frames"), "time")[0];
+    assert!(last >= begin + period && last < begin + period + 0.02 + 1e-9);
+    for key in keys {
+        let time = numbers(key, "time")[0];
+        if time < begin {
+            continue;
+        }
+        let wanted = gait.angles(gait.phase(time - begin));
+        for (servo, target) in numbers(key, "ctrl").into_iter().enumerate() {
+            let off = wanted[servo] - robot.servos()[servo].neutral - target.to_degrees();
+            assert!(lizard_kinematics::wrap(off).abs() < 0.11, "{time} {off}");
+        }
+    }
+}
+
+#[test]
+fn a_name_may_hold_any_character() {
+    let name = "a <b> & \"c\".toml";
+    let text = written(&robot("paper"), |scene| scene.name = name.to_owned());
+    let document = Document::parse(&text).expect("well formed");
+    assert_eq!(document.root_element().attribute("model"), Some(name));
+}

@@ -1,0 +1,53 @@
+//! The contact model beside two engines that others wrote.
+//!
+//! What this project says of a way over the floor, its own contact model says. A fault of
+//! that model would be in every table, on the page and in the choice of gaits. So rapier and
+//! MuJoCo walk the same gaits: the one with a chassis and four dragging balls, the other
+//! with the robot as `lizard mjcf` writes it. Neither knows the model.
+//!
+//! `make physics` runs both ([`rapier`], [`mujoco`]), holds them against the model and
+//! against the figures that are kept in `figures.json`, and prints all of it. The tables of
+//! the documentation are made of the kept figures ([`Figures`], [`table`]), so a test
+//! without engines keeps them current.
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+#![warn(clippy::missing_errors_doc)]
+
+mod case;
+mod expected;
+mod figures;
+#[cfg(feature = "engines")]
+pub mod mujoco;
+#[cfg(feature = "engines")]
+pub mod rapier;
+mod row;
+mod table;
+
+pub use case::{Case, Feet, Legs};
+pub use expected::expected;
+pub use figures::{Figures, Said, Way};
+pub use row::{Row, rows};
+pub use table::{spread, table};
+
+use std::path::PathBuf;
+
+use lizard_robot::Robot;
+
+/// The files of robots/ by their names without an ending.
+pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
+
+/// One of them.
+///
+/// # Panics
+/// Where it is wrong; tests of the robot crate hold that none is.
+#[must_use]
+pub fn robot(name: &str) -> Robot {
+    let file = here().join(format!("../robots/{name}.toml"));
+    Robot::load(file).expect(name)
+}
+
+/// The folder of this crate.
+#[must_use]
+pub fn here() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}

@@ -1,0 +1,118 @@
+//! `make physics`: every gait of every file of robots/ by the contact model, by rapier and
+//! by MuJoCo. With `--write` the engines' answers take the place of the kept ones.
+#![forbid(unsafe_code)]
+
+use std::process::ExitCode;
+
+use lizard_physics::mujoco::{Jobs, MujocoError};
+use lizard_physics::rapier::{self, Setup};
+use lizard_physics::{Figures, ROBOTS, Row, Said, Way, here, robot, rows, table};
+use lizard_robot::Robot;
+
+/// An engine that answers otherwise than it did by more than this, mm and deg, is another
+/// engine, or the robot is another one.
+const SAME: (f64, f64) = (0.6, 0.4);
+
+fn main() -> ExitCode {
+    let write = std::env::args().any(|word| word == "--write");
+    match run(write) {
+        Ok(faults) if faults.is_empty() => {
+            println!("physics: model and engines agree");
+            ExitCode::SUCCESS
+        }
+        Ok(faults) => {
+            for fault in &faults {
+                println!("FAULT {fault}");
+            }
+            println!("physics: {} faults", faults.len());
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("physics: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A name for a file.
+fn name(robot: &str, place: usize) -> String {
+    format!("{robot}-{place}")
+}
+
+fn run(write: bool) -> Result<Vec<String>, MujocoError> {
+    let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
+    let all: Vec<Vec<Row>> = robots.iter().map(|(_, robot)| rows(robot)).collect();
+    let mut jobs = Jobs::new()?;
+    for ((of, robot), rows) in robots.iter().zip(&all) {
+        let named = rows.iter().enumerate();
+        jobs.add(robot, named.map(|(place, row)| (name(of, place), row)))?;
+    }
+    println!(
+        "physics: {} walks by each engine take some minutes",
+        jobs.count()
+    );
+    let walking = jobs.start()?;
+    let mut others = Vec::new();
+    for ((_, robot), rows) in robots.iter().zip(&all) {
+        let ways = rows.iter().map(|row| {
+            let gait = robot.gait(&row.gait).expect("it is the robot's");
+            let rapier = rapier::walked(gait, &Setup::of(robot, row.case));
+            (row.model(robot), Way::from(rapier))
+        });
+        others.push(ways.collect::<Vec<_>>());
+    }
+    let by_mujoco = walking.done()?;
+
+    let (kept, mut found, mut faults) = (Figures::kept(), Figures::default(), Vec::new());
+    for (((of, robot), rows), others) in robots.iter().zip(&all).zip(&others) {
+        for (place, (row, (model, rapier))) in rows.iter().zip(others).enumerate() {
+            let said = Said {
+                model: *model,
+                rapier: *rapier,
+                mujoco: by_mujoco[&name(of, place)],
+            };
+            let mut words = said.parted(row.case);
+            if !write {
+                words.extend(changed(kept.get(of, &row.gait, row.case), &said));
+            }
+            let what = |words| format!("{of}: {} ({}): {words}", row.gait, row.case);
+            faults.extend(words.into_iter().map(what));
+            found.put(of, &row.gait, row.case, said);
+        }
+        println!("\n{}", table(of, robot, &found));
+    }
+    if write {
+        std::fs::write(here().join("figures.json"), found.text())?;
+        println!("physics: written to physics/figures.json; `make docs` puts it into the pages");
+    } else if kept.count() != found.count() {
+        faults.push(format!(
+            "{} figures are kept, and there are {}; `make physics WRITE=1` keeps these",
+            kept.count(),
+            found.count()
+        ));
+    }
+    Ok(faults)
+}
+
+/// The words for whatever answers otherwise than it did.
+fn changed(kept: Option<&Said>, now: &Said) -> Vec<String> {
+    let Some(before) = kept else {
+        return vec!["no figures are kept; `make physics WRITE=1` keeps these".to_owned()];
+    };
+    // What depends on ties is nowhere the same.
+    let (Some(was), Some(is)) = (before.model, now.model) else {
+        return Vec::new();
+    };
+    let all = [
+        ("the model", was, is),
+        ("rapier", before.rapier, now.rapier),
+        ("MuJoCo", before.mujoco, now.mujoco),
+    ];
+    let changed = all.into_iter().filter_map(|(who, before, now)| {
+        let (mm, deg) = before.off(&now);
+        (mm > SAME.0 || deg > SAME.1).then(|| {
+            format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
+        })
+    });
+    changed.collect()
+}

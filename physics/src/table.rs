@@ -1,0 +1,158 @@
+//! The figures as tables: all of them, and what README says of the paper's robot.
+
+use std::fmt::Write as _;
+
+use lizard_robot::Robot;
+
+use crate::case::{Case, Feet, Legs};
+use crate::figures::{Figures, Way};
+
+/// Less of a way than this is none: mm and deg.
+const NONE: (f64, f64) = (1.0, 0.5);
+
+/// Which parts of a way a gait is about.
+#[derive(Clone, Copy)]
+enum Part {
+    Ahead,
+    Turn,
+}
+
+impl Part {
+    /// Those in which a way is more than none.
+    fn of(way: Way) -> Vec<Self> {
+        let [ahead, _, turn] = way.0.map(f64::abs);
+        let mut parts = Vec::new();
+        if ahead > NONE.0 || turn <= NONE.1 {
+            parts.push(Self::Ahead);
+        }
+        if turn > NONE.1 {
+            parts.push(Self::Turn);
+        }
+        parts
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Ahead => "mm",
+            Self::Turn => "deg",
+        }
+    }
+
+    fn value(self, way: Way) -> f64 {
+        match self {
+            Self::Ahead => way.0[0],
+            Self::Turn => way.0[2],
+        }
+    }
+}
+
+/// All figures of a robot: model, rapier and MuJoCo side by side, one block for each kind of
+/// legs.
+#[must_use]
+pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
+    let mut text = String::new();
+    for legs in [Legs::Rigid, Legs::Strut] {
+        let title = match legs {
+            Legs::Rigid => "rigid struts",
+            Legs::Strut => "struts with springs",
+        };
+        _ = writeln!(text, "robots/{name}.toml, {title}");
+        let cases = Feet::ALL.map(|feet| Case { legs, feet });
+        let cases: Vec<Case> = cases
+            .into_iter()
+            .filter(|case| Case::ALL.contains(case))
+            .collect();
+        let widest = gaits(robot).map(str::len).max().unwrap_or(0);
+        _ = write!(text, "{:widest$}    ", "");
+        let heads = cases.iter().map(|case| match case.feet {
+            Feet::Level => "level",
+            Feet::Stiff => "0.6 mm long, 2 N/mm",
+            Feet::Soft => "1.0 mm long",
+        });
+        for head in heads {
+            _ = write!(text, "  {head:<24}");
+        }
+        text = text.trim_end().to_owned();
+        _ = write!(text, "\n{:<widest$}    ", "gait");
+        for _ in &cases {
+            _ = write!(text, "  {:>6}  {:>6}  {:>6}  ", "model", "rapier", "MuJoCo");
+        }
+        text = text.trim_end().to_owned() + "\n";
+        for gait in gaits(robot) {
+            let Some(first) = figures.get(name, gait, cases[0]) else {
+                continue;
+            };
+            for part in Part::of(first.model.unwrap_or(first.mujoco)) {
+                _ = write!(text, "{gait:<widest$} {:>3}", part.unit());
+                for said in cases
+                    .iter()
+                    .filter_map(|case| figures.get(name, gait, *case))
+                {
+                    for way in [said.model, Some(said.rapier), Some(said.mujoco)] {
+                        _ = match way {
+                            Some(way) => write!(text, "  {:>+6.1}", part.value(way)),
+                            None => write!(text, "  {:>6}", "-"),
+                        };
+                    }
+                    text.push_str("  ");
+                }
+                text = text.trim_end().to_owned() + "\n";
+            }
+        }
+        text.push('\n');
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+/// The gaits that move, in the order of robot.toml.
+fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
+    let moving = robot.gaits().iter().filter(|gait| gait.moves());
+    moving.map(|gait| gait.name())
+}
+
+/// What a cycle of each gait comes to, as Markdown: what the model predicts for level feet,
+/// the range of both engines, and the range of all three where a foot is 1.0 mm too long.
+#[must_use]
+pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
+    let mut text = "| gait | cycle, s | predicted | rapier and MuJoCo | all three, a foot 1.0 mm too long |\n|---|---|---|---|---|\n".to_owned();
+    for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
+        let of = |feet: Feet| {
+            let legs = Legs::Rigid;
+            figures.get(name, gait.name(), Case { legs, feet })
+        };
+        let (Some(level), Some(long)) = (of(Feet::Level), of(Feet::Soft)) else {
+            continue;
+        };
+        let (Some(model), Some(rocks)) = (level.model, long.model) else {
+            continue;
+        };
+        let cell = |ways: &[Way]| {
+            let parts = Part::of(model).into_iter().map(|part| range(part, ways));
+            parts.collect::<Vec<_>>().join(", ")
+        };
+        _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} |",
+            gait.name(),
+            gait.period(),
+            cell(&[model]),
+            cell(&[level.rapier, level.mujoco]),
+            cell(&[rocks, long.rapier, long.mujoco])
+        );
+    }
+    text
+}
+
+fn range(part: Part, ways: &[Way]) -> String {
+    let values = ways.iter().map(|way| part.value(*way));
+    let least = values.clone().fold(f64::INFINITY, f64::min);
+    let most = values.fold(f64::NEG_INFINITY, f64::max);
+    let ([least, most], unit) = (
+        [least, most].map(|value| format!("{value:+.1}")),
+        part.unit(),
+    );
+    match least == most {
+        true => format!("{least} {unit}"),
+        false => format!("{least} to {most} {unit}"),
+    }
+}
