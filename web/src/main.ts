@@ -21,9 +21,10 @@ import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
 import { ScopeView } from './view/scope';
+import { Steer, gaitFor } from './view/steer';
 import { Troubles } from './view/troubles';
 import { World } from './view/world';
-import { unknownWords } from './words';
+import { WORDS, unknownWords } from './words';
 
 /** Texts that follow the robot are written so many times a second. */
 const TEXTS = 10;
@@ -55,16 +56,31 @@ async function start(): Promise<void> {
     floor.clear();
   });
   const drive = new Drive((line) => session.ask(line));
+  const steer = new Steer(
+    () => drive.ways(),
+    (line) => void drive.ask(line),
+  );
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, outlook) => {
     drive.predicted(gait, outlook);
     texts();
+    begin();
   });
   const predict = () => {
     const { toml, floor, servos, description } = session;
     const first = description.gaits.findIndex(({ command }) => command === session.gait);
     predictor.ask({ toml, floor, servos, gaits: description.gaits.length, first: Math.max(0, first) });
   };
+  // Whoever opens the page sees it walk, slowly, unless they have asked their system for less motion.
+  let begun = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  const begin = () => {
+    const gait = gaitFor({ ahead: 1, left: 0 }, drive.ways());
+    if (begun || !gait || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+    begun = true;
+    void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
+  };
+  // A person who has done something knows what they want.
+  for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (begun = true), { once: true });
   const world = new World(now, predict);
   const health = new Health(now);
   const lengths = new Lengths(now);
@@ -213,6 +229,7 @@ async function start(): Promise<void> {
       session.advance(ms);
     },
     () => {
+      steer.look();
       // Where no robot could be read, there is nothing to draw.
       if (!session.description) return;
       floor.draw(session.description.plate, session.last);

@@ -74,13 +74,13 @@ export async function close() {
 /** Where the page is. */
 export const address = () => `http://127.0.0.1:${server.address().port}${FOLDER}`;
 
-/** A page of the browser with nothing in it yet. */
+/** A page of the browser with nothing in it yet. It is to move only when a test says so. */
 export async function blank(options = {}) {
-  const opened = await within('a new page', browser.newPage(options));
+  const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', ...options }));
   pages.push(opened);
   limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
   limit(opened.clock, 'clock', ['install', 'runFor']);
-  limit(opened.keyboard, 'keyboard', ['press']);
+  limit(opened.keyboard, 'keyboard', ['press', 'down', 'up']);
   limit(opened.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
   opened.setDefaultTimeout(PATIENCE);
   return opened;

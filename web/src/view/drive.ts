@@ -77,6 +77,14 @@ export class Drive {
     return this.outlooks.get(command) ?? null;
   }
 
+  /** The gaits whose ways are predicted. */
+  ways(): { command: string; way: Outlook }[] {
+    return this.buttons.flatMap(({ command }) => {
+      const way = this.outlooks.get(command);
+      return way ? [{ command, way }] : [];
+    });
+  }
+
   doing(command: string): void {
     for (const { button, command: own } of this.buttons) {
       button.setAttribute('aria-pressed', String(own === command));

@@ -1,0 +1,117 @@
+// Driving by hand: keys and the stick walk for as long as they are held.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { close, complaints, open, page, tidy } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+/** The page, once the ways of all gaits are predicted. */
+async function ready(options = {}) {
+  const opened = await page(options);
+  await opened.waitForFunction(() => {
+    const notes = [...document.querySelectorAll('#gaits button[data-command]')];
+    const still = ['stand', 'look'];
+    return notes.length > 5 && notes.every((button) => still.includes(button.dataset.command) || button.querySelector('small').textContent);
+  });
+  return opened;
+}
+
+const doing = (opened, gait) => opened.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
+
+test('arrow keys walk, bend and turn for as long as they are held, and then it stops', async () => {
+  const opened = await ready();
+  const { keyboard } = opened;
+  await keyboard.down('ArrowUp');
+  await doing(opened, 'walk');
+  await keyboard.down('ArrowLeft');
+  await doing(opened, 'arc left');
+  await keyboard.up('ArrowUp');
+  await doing(opened, 'left');
+  await keyboard.up('ArrowLeft');
+  await doing(opened, 'stop');
+  await keyboard.down('ArrowDown');
+  await doing(opened, 'back');
+  await keyboard.up('ArrowDown');
+  await doing(opened, 'stop');
+});
+
+test('letters drive as arrows do, but not where somebody types', async () => {
+  const opened = await ready();
+  await opened.keyboard.down('d');
+  await doing(opened, 'right');
+  await opened.keyboard.up('d');
+  await doing(opened, 'stop');
+  const typed = opened.locator('#typed');
+  await typed.focus();
+  await opened.keyboard.press('w');
+  await opened.keyboard.press('a');
+  assert.equal(await typed.inputValue(), 'wa');
+  assert.equal(await opened.locator('#doing').textContent(), 'stop');
+});
+
+test('the stick on the screen walks where it is held', async () => {
+  const opened = await ready();
+  const stick = opened.locator('#stick');
+  await stick.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await stick.boundingBox();
+  const [middle, centre] = [x + width / 2, y + height / 2];
+  await opened.mouse.move(middle, centre);
+  await opened.mouse.down();
+  await opened.mouse.move(middle, y + 2);
+  await doing(opened, 'walk');
+  await opened.mouse.move(x + width - 2, centre);
+  await doing(opened, 'right');
+  await opened.mouse.up();
+  await doing(opened, 'stop');
+});
+
+test('a page that is left does not walk on', async () => {
+  const opened = await ready();
+  await opened.keyboard.down('w');
+  await doing(opened, 'walk');
+  await opened.evaluate(() => void window.dispatchEvent(new Event('blur')));
+  await doing(opened, 'stop');
+});
+
+test('a gamepad drives', async () => {
+  const opened = await ready();
+  await opened.evaluate(() => {
+    window.pad = { axes: [0, -1], buttons: [] };
+    navigator.getGamepads = () => [null, window.pad];
+  });
+  await doing(opened, 'walk');
+  await opened.evaluate(() => {
+    window.pad = { axes: [-0.8, -0.8], buttons: [] };
+  });
+  await doing(opened, 'arc left');
+  await opened.evaluate(() => {
+    window.pad = { axes: [0.1, 0], buttons: [] };
+  });
+  await doing(opened, 'stop');
+});
+
+test('the page opens with the robot walking slowly, but for those who want less motion', async () => {
+  const moving = await page({ reducedMotion: 'no-preference' });
+  await doing(moving, 'walk');
+  await moving.waitForFunction(() => document.querySelector('#speed').value === '50');
+  const still = await ready();
+  assert.equal(await still.locator('#doing').textContent(), 'stand');
+});
+
+test('a robot of other gaits is driven by its own', async () => {
+  const opened = await ready();
+  await opened.locator('#robot').selectOption('own-gaits');
+  await opened.waitForFunction(() => {
+    const notes = [...document.querySelectorAll('#gaits button[data-command]')];
+    return notes.length > 12 && notes.filter((button) => button.querySelector('small').textContent.includes('mm')).length > 5;
+  });
+  await opened.keyboard.down('ArrowUp');
+  await opened.waitForFunction(() => !['stand', 'stop', '–'].includes(document.querySelector('#doing').textContent));
+  await opened.keyboard.up('ArrowUp');
+  await doing(opened, 'stop');
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
