@@ -20,7 +20,7 @@ const REACH: u64 = 2 * 60;
 pub fn edit(
     code: &Code,
     targets: &[u64],
-    place: impl Fn(&Reference) -> Option<u64>,
+    place: &dyn Fn(&Reference) -> Option<u64>,
 ) -> Option<Edit> {
     code.instructions
         .windows(2)

@@ -102,6 +102,43 @@ pub const fn writes_flags(code: u16) -> bool {
         0x01..=0x03 | 0x05..=0x0a => return true,
         _ => {}
     }
-    // cpi, sbci, subi, ori, andi; adiw and sbiw
-    matches!(code >> 12, 3..=7) || code & 0xfe00 == 0x9600
+    // cpi, sbci, subi, ori, andi; adiw and sbiw; com, neg, asr, lsr
+    matches!(code >> 12, 3..=7)
+        || code & 0xfe00 == 0x9600
+        || code & 0xfe00 == 0x9400 && matches!(code & 0x0f, 0 | 1 | 5 | 6)
+}
+
+/// The register whose value an instruction computes, where Z then says whether it is zero:
+/// `add`, `and`, `eor`, `or`, `sub`, `subi`, `andi`, `ori`, `com`, `neg`, `inc`, `dec`,
+/// `lsr`. Not `adc` and `sbc`: the latter keeps Z of the byte before.
+pub const fn result(code: u16) -> Option<u8> {
+    let register = (code >> 4 & 0x1f) as u8;
+    let immediate = (code >> 4 & 0x0f) as u8 + 16;
+    match code {
+        _ if matches!(code >> 10, 0x03 | 0x06 | 0x08 | 0x09 | 0x0a) => Some(register),
+        _ if matches!(code >> 12, 5..=7) => Some(immediate),
+        _ if code & 0xfe00 == 0x9400 && matches!(code & 0x0f, 0 | 1 | 3 | 6 | 10) => Some(register),
+        _ => None,
+    }
+}
+
+/// Whether it depends on a flag: a branch on any, `adc`, `sbc`, `sbci`, `cpc`, `ror`, `bld`,
+/// and `in` and `lds`, which could read them all.
+pub const fn reads_flags(code: u16) -> bool {
+    is_branch(code)
+        || matches!(code >> 10, 0x01 | 0x02 | 0x07)
+        || code >> 12 == 4
+        || code & 0xfe0f == 0x9407
+        || code & 0xfe08 == 0xf800
+        || code & 0xf800 == 0xb000
+        || code & 0xfe0f == 0x9000
+}
+
+/// Whether what follows is not always next: a jump, a call, a return, a skip.
+pub const fn ends_block(code: u16) -> bool {
+    is_relative(code)
+        || code & 0xfe0c == JMP
+        || code & 0xff0f == 0x9508
+        || code & 0xfe0f == 0x9409
+        || skips(code)
 }

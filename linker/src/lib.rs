@@ -10,13 +10,14 @@
 //! (`--relax`), no distance in them is final, each jump and address is a relocation. So
 //! this program reads the object, replaces beginnings and ends with calls of the routines
 //! of `frames.S` ([`frame`]), and jumps over jumps with the opposite branch
-//! ([`branch`]), and hands the result to avr-gcc. A function that differs in anything
+//! ([`branch`]), leaves out comparisons whose answer is known ([`compare`]), and hands the result to avr-gcc. A function that differs in anything
 //! from what is known to be safe stays as it is.
 
 #![deny(unsafe_code, missing_docs)]
 
 pub mod branch;
 mod code;
+pub mod compare;
 mod edit;
 pub mod frame;
 mod instruction;

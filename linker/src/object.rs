@@ -5,11 +5,11 @@ use std::fmt;
 use object::build::elf::{Builder, Section, SectionData, SectionId, SymbolId};
 use object::elf;
 
-use crate::branch;
 use crate::code::Code;
 use crate::edit::{Edit, Edits, Reference};
 use crate::frame::{FIRST, Frame, Routines};
 use crate::instruction::{is_call, writes_flags, writes_r26};
+use crate::{branch, compare};
 
 /// Why an object cannot be read or written.
 #[derive(Debug)]
@@ -36,6 +36,8 @@ pub struct Savings {
     pub frames: i64,
     /// By opposite branches.
     pub branches: i64,
+    /// By comparisons left out.
+    pub comparisons: i64,
 }
 
 /// The object file with shorter functions, and how much was saved; none for what is no ELF file. The
@@ -56,8 +58,12 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
         object.apply(section, &edits);
     }
     for section in object.functions() {
-        while let Some(edits) = object.branch(section) {
+        while let Some(edits) = object.next(section, branch::edit) {
             savings.branches += edits.gain();
+            object.apply(section, &edits);
+        }
+        while let Some(edits) = object.next(section, compare::edit) {
+            savings.comparisons += edits.gain();
             object.apply(section, &edits);
         }
     }
@@ -222,13 +228,15 @@ impl Object<'_> {
         codes.iter().filter_map(edits).collect()
     }
 
-    /// The next branch of a section that can be turned round.
-    fn branch(&self, section: SectionId) -> Option<Edits> {
+    /// The next of some edits of a section.
+    fn next<F>(&self, section: SectionId, edit: F) -> Option<Edits>
+    where
+        F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
+    {
         let code = self.code(section)?;
         let targets = self.targets(section);
         let place = |reference: &Reference| self.place(section, reference.symbol, reference.addend);
-        let edit: Edit = branch::edit(&code, &targets, place)?;
-        Edits::new(vec![edit], &targets)
+        Edits::new(vec![edit(&code, &targets, &place)?], &targets)
     }
 
     /// Changes a section, and everything that says something of its offsets.
