@@ -278,5 +278,5 @@ fn a_foot_that_is_too_long_is_predicted() {
         way.forward().expect("decided")
     };
     let level = ahead(2.0, 0.0);
-    assert!(ahead(2.0, 0.6) < 0.75 * level && ahead(own.leaf, 1.0) > 0.9 * level);
+    assert!(ahead(3.3, 1.0) < 0.3 * level && ahead(own.leaf, 1.0) > 0.9 * level);
 }
