@@ -39,6 +39,14 @@ impl Inertia {
         sum
     }
 
+    /// A mass in the origin, g.
+    pub fn point(mass: f64) -> Self {
+        Self {
+            mass,
+            ..Self::default()
+        }
+    }
+
     /// The same shape with another density: g/mm^3 over what it has.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;

@@ -26,7 +26,7 @@ use lizard_robot::{FRAMES_PER_SECOND, GRAVITY, SLOT};
 use xmlwriter::{Indent, Options, XmlWriter};
 
 use crate::assembly::Assembly;
-use crate::bill;
+use crate::bill::{self, Bill};
 use crate::body::{Body, Kind, Mount, Prism};
 use crate::mesh::Mesh;
 use crate::outline::Outline;
@@ -440,7 +440,7 @@ impl<'a> Writer<'a> {
             .pieces
             .iter()
             .filter(|piece| piece.node == node)
-            .fold(Inertia::default(), |sum, piece| sum.and(&piece.inertia));
+            .fold(self.loose(node), |sum, piece| sum.and(&piece.inertia));
         let tensor = mass
             .tensor()
             .map(|part| format!("{:.6e}", part * MILLI_CUBED));
@@ -498,6 +498,18 @@ impl<'a> Writer<'a> {
             }
         }
         self.xml.end_element();
+    }
+
+    /// What the bill weighs and no body is drawn of, such as wires: it is taken to be in the
+    /// plate's middle.
+    fn loose(&self, node: Node) -> Inertia {
+        if node != Node::Of(Mount::Chassis) {
+            return Inertia::default();
+        }
+        let all = Bill::of(self.assembly, &[], self.neutral).grams;
+        let bodies = self.assembly.bodies().iter();
+        let drawn: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
+        Inertia::point((all - drawn).max(0.0))
     }
 
     /// The joint of a body with what carries it, which has its name.
