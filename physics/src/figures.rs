@@ -48,7 +48,7 @@ pub struct Said {
 /// Engines may differ from the model by so many mm, or by this share of the way, or by so
 /// many deg: with level feet; with one that is too long on leaves that give; and on stiff
 /// ones, where a few hundredths of a mm decide which feet hold.
-const LEVEL: (f64, f64, f64) = (1.5, 0.07, 1.0);
+const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
 const SOFT: (f64, f64, f64) = (2.5, 0.08, 1.5);
 const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// A gait that leads nowhere by the model, mm and deg, may creep so far, mm: what it does to
