@@ -2,6 +2,8 @@
 
 use lizard_kinematics::{End, Side};
 
+use lizard_robot::Robot;
+
 use crate::fitting::Fitting;
 use crate::shape::Shape;
 use crate::stack::Span;
@@ -132,4 +134,11 @@ impl Body {
 pub(crate) fn at_end(servo: usize) -> (End, usize) {
     let end = End::of_servo(servo);
     (end, usize::from(end.servos()[1] == servo))
+}
+
+/// Length of the coupler on a servo's crank, mm.
+pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
+    let (end, hand) = at_end(servo);
+    let bars = robot.lizard().end(end);
+    [bars.coupler_left, bars.coupler_right][hand]
 }

@@ -4,12 +4,11 @@ use lizard_kinematics::{End, Vector};
 
 use crate::body::{Kind, Mount, Prism};
 use crate::builder::{Bolt, Builder, Points};
+use crate::layout::STANDOFFS;
 use crate::names::names;
 use crate::shape::Shape;
-use crate::{fitting, leads, mark};
+use crate::{fittings, leads, mark};
 
-/// Where the standoffs are, mm: to the right, forward.
-pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 /// Radius of a standoff, mm: 5.5 mm over flats.
 const STANDOFF: f64 = 3.2;
 /// Radius of a servo's spline, mm.
@@ -47,7 +46,7 @@ pub fn add(builder: &mut Builder) {
     }
     leads::add(builder);
     battery(builder);
-    fitting::add(builder);
+    fittings::add(builder);
     deck(builder);
     board(builder);
 }
@@ -121,7 +120,7 @@ fn plate(builder: &mut Builder) {
     }
     through.extend(standoffs().map(|at| builder.hole(at)));
     through.extend(leads::holes());
-    through.extend(fitting::slots(builder));
+    through.extend(fittings::slots(builder));
     let cut = [&openings[..], &holes].concat();
     let [low, high] = stack.plate;
     let through = [&cut[..], &through].concat();

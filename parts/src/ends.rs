@@ -1,9 +1,8 @@
 //! Head and tail: two couplers each, the left one below the right one.
 
 use lizard_kinematics::{End, Vector};
-use lizard_robot::Robot;
 
-use crate::body::{Kind, Mount, Prism, at_end};
+use crate::body::{Kind, Mount, Prism, coupler_length};
 use crate::builder::Builder;
 use crate::looks;
 use crate::names::{coupler, names};
@@ -76,11 +75,4 @@ fn bar(builder: &mut Builder, servo: usize, z: Span) {
         None => vec![layer(None, z)],
     };
     builder.body(coupler(servo), Kind::Printed, Mount::Coupler(servo), prisms);
-}
-
-/// Length of the coupler on a servo's crank, mm.
-pub fn coupler_length(robot: &Robot, servo: usize) -> f64 {
-    let (end, hand) = at_end(servo);
-    let bars = robot.lizard().end(end);
-    [bars.coupler_left, bars.coupler_right][hand]
 }

@@ -5,6 +5,9 @@ use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::servo::HAND;
 use lizard_robot::{LegPlan, Plate, Robot};
 
+/// Where the standoffs under the board are, mm: to the right, forward.
+pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
+
 /// All that a pose does not move, and how it moves the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {

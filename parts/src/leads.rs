@@ -10,7 +10,7 @@ use lizard_robot::ServoBody;
 
 use crate::body::{Kind, Mount, Prism};
 use crate::builder::Builder;
-use crate::chassis::STANDOFFS;
+use crate::layout::STANDOFFS;
 use crate::names::names;
 use crate::shape::Shape;
 

@@ -54,6 +54,7 @@ mod dxf;
 mod ends;
 mod files;
 mod fitting;
+mod fittings;
 mod guide;
 mod html;
 mod joints;

@@ -8,9 +8,8 @@
 
 use lizard_kinematics::{End, Solution, Vector};
 
-use crate::body::{Kind, Mount, Prism, at_end};
+use crate::body::{Kind, Mount, Prism, at_end, coupler_length};
 use crate::builder::{Bolt, Builder, Points};
-use crate::ends::coupler_length;
 use crate::names::names;
 use crate::shape::Shape;
 use crate::stack::PLAY;
