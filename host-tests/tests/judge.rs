@@ -38,10 +38,10 @@ enum Apart {
     Any,
 }
 
-/// Cycles of a turn of main that writes a piece of a line, or computes the frame of a robot that
-/// does not move: where the one comes just before the other in one simulator, it comes just
-/// behind it in the other.
-const TURN: u64 = 2_000;
+/// Cycles of the longest turn of main: it computes a frame, 12 000 at the worst, and writes a
+/// piece of a line. Where the EEPROM is ready just before the turn begins in one simulator, it
+/// is just behind in the other, and waits for the next one.
+const TURN: u64 = 20_000;
 
 /// Gives avr8js the bytes that the bench has received, and holds its account against
 /// the bench's: pulses, console and EEPROM.
