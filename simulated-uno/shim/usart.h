@@ -1,4 +1,4 @@
-/* USART0 of the ATmega328P by its data sheet, chapter 19.
+/* USART0 of the ATmega328P by its data sheet, chapter 20.
  *
  * simavr 1.6 keeps 64 received bytes and counts 11 bits a frame, which hides
  * every overrun. Here: 10-bit frames at the rate the registers say now, two

@@ -1,4 +1,4 @@
-//! A firmware image: what an ELF file puts into flash and SRAM.
+//! A firmware image: what an ELF file, or one of Intel HEX, puts into flash and SRAM.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -50,8 +50,19 @@ pub enum LoadError {
         size: u64,
     },
     /// No code at all.
-    #[error("the ELF file holds no code")]
+    #[error("the file holds no code")]
     Empty,
+    /// A line is not Intel HEX.
+    #[error("line {line} is not Intel HEX: {reason}")]
+    HexLine {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The HEX file ends without its end record: lines may be missing.
+    #[error("the HEX file has no end record: only a part of it is there")]
+    HexCut,
 }
 
 /// A named address in flash or SRAM.
@@ -109,7 +120,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// Reads an ELF file.
+    /// Reads an ELF file or, with the feature `hex`, one of Intel HEX, which begins with
+    /// a colon.
     ///
     /// # Errors
     /// See [`LoadError`].
@@ -124,6 +136,10 @@ impl Image {
         let limited = file.take(LONGEST_FILE + 1).read_to_end(&mut bytes);
         if limited.map_err(failure)? as u64 > LONGEST_FILE {
             return Err(LoadError::TooLong);
+        }
+        #[cfg(feature = "hex")]
+        if bytes.trim_ascii_start().starts_with(b":") {
+            return Self::parse_hex(&String::from_utf8_lossy(&bytes));
         }
         Self::parse(&bytes)
     }
@@ -193,6 +209,18 @@ impl Image {
             flash,
             data_end,
         })
+    }
+
+    /// An image that is nothing but these bytes of flash, which are inside it.
+    #[cfg(feature = "hex")]
+    pub(crate) fn of_segments(segments: Vec<(u32, Vec<u8>)>) -> Self {
+        let flash = segments.iter().map(|(_, data)| data.len() as u32).sum();
+        Self {
+            segments,
+            symbols: Vec::new(),
+            flash,
+            data_end: SRAM_START,
+        }
     }
 
     /// Bytes of flash used: code, tables and initial values.

@@ -8,26 +8,36 @@
 //! same edges to the cycle. Only [`Port`] keeps real time, for programs that
 //! expect a board on USB.
 //!
-//! ```no_run
-//! use simulated_uno::{Fidelity, Pin, Uno};
-//! let mut uno = Uno::load("firmware.elf", Fidelity::DataSheet)?;
-//! uno.run_ms(500);
-//! uno.send(b"walk\n");
-//! uno.run_ms(2000);
-//! for pulse in uno.pulses(Pin::d(9)) {
-//!     println!("{} {}", pulse.start, pulse.width);
-//! }
-//! # Ok::<(), simulated_uno::LoadError>(())
 //! ```
+//! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};
+//! let blink = avr_gcc::c("
+//!     #include <avr/io.h>
+//!     int main(void) {
+//!         DDRB = 1 << 5;
+//!         for (;;) { PINB = 1 << 5; __builtin_avr_delay_cycles(15998); }
+//!     }");
+//! let mut uno = Uno::with_image(blink, Fidelity::DataSheet);
+//! uno.run_ms(100);
+//! for pulse in uno.pulses(Pin::d(13)) {
+//!     assert!(pulse.width.abs_diff(16_000) <= 2, "{}", pulse.width);
+//! }
+//! ```
+//!
+//! README.md has more examples, and every correction of simavr with its section of the
+//! data sheet. [`Uno::load`] takes the file that a compiler has left.
 //!
 //! Several [`Uno`]s may run at once on as many threads: libsimavr keeps no
 //! state outside an instance but the logger, which is set once.
 
 mod adc;
+#[cfg(feature = "avr-gcc")]
+pub mod avr_gcc;
 mod boot;
 mod disturb;
 mod eeprom;
 mod ffi;
+#[cfg(feature = "hex")]
+mod hex;
 mod image;
 mod pin;
 #[cfg(target_os = "linux")]
@@ -47,6 +57,11 @@ pub use port::{Background, Port};
 pub use reset::{Reset, ResetCause};
 pub use traces::{Call, Mark, SerialByte, VectorUse, vector_name};
 pub use uno::{Fidelity, State, Uno};
+
+/// The examples of README.md, as tests.
+#[cfg(all(doctest, feature = "avr-gcc"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 /// CPU cycles in a second.
 pub const FREQUENCY: u64 = 16_000_000;

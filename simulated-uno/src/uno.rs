@@ -199,7 +199,28 @@ impl Uno {
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
-    /// The same, but the line is low where each byte's stop bit should be, as after
+    /// Sends a line with its end, `\n`, and returns the next whole line that comes back,
+    /// without its end. `None` if none comes within a second of the chip's time, or if
+    /// the firmware is dead.
+    ///
+    /// Takes what the UNO has transmitted, before and meanwhile, as
+    /// [`Uno::take_transmitted`] does. A line that the UNO has begun before counts as the
+    /// answer: a firmware that talks unasked needs [`Uno::send`] and
+    /// [`Uno::run_until_line`].
+    pub fn say(&mut self, line: &str) -> Option<String> {
+        self.take_transmitted();
+        self.send(line.as_bytes());
+        self.send(b"\n");
+        if !self.run_until_line(FREQUENCY) {
+            return None;
+        }
+        let bytes = self.take_transmitted();
+        let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
+        let text = String::from_utf8_lossy(&bytes);
+        Some(text.trim_end_matches(['\r', '\n']).to_owned())
+    }
+
+    /// [`Uno::send`], but the line is low where each byte's stop bit should be, as after
     /// noise or a start bit missed: the byte arrives with a framing error, FE0 in
     /// UCSR0A. The next byte begins where it would without.
     pub fn send_with_framing_error(&mut self, bytes: &[u8]) {

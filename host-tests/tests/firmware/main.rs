@@ -16,6 +16,7 @@ use lizard_host_tests::{FirmwareBench, Frame, robot};
 use simulated_uno::Fidelity;
 
 mod bad_input;
+mod bench;
 mod calibration;
 mod console;
 mod core_run;
@@ -39,6 +40,7 @@ mod serial;
 mod slow_main;
 mod stopping;
 mod supply;
+mod ten_minutes;
 mod walk;
 mod watchdog;
 

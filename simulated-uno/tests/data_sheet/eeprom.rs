@@ -1,6 +1,6 @@
 //! The simulated EEPROM against the data sheet, chapter 8.4 and 8.6.
 
-use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Pin, Uno};
 
 use super::marks;

@@ -1,7 +1,7 @@
 //! The simulated UNO against programs whose timing follows from the data sheet
 //! by counting cycles.
 
-use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
 use super::{BOTH, LED};

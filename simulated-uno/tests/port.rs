@@ -11,8 +11,8 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use lizard_host_tests::avr_gcc;
 use lizard_time_limit::LIMIT;
+use simulated_uno::avr_gcc;
 use simulated_uno::{Background, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
 
 /// Says `<r` at reset, then sends every byte back, plus one. D9 is high from

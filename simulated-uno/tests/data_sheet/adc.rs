@@ -1,6 +1,6 @@
 //! The simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
-use lizard_host_tests::avr_gcc::c;
+use simulated_uno::avr_gcc::c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
 use super::{causes, marks};

@@ -1,6 +1,6 @@
 //! The simulated serial line: pace, loss and flood, by the data sheet.
 
-use lizard_host_tests::avr_gcc::c;
+use simulated_uno::avr_gcc::c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
 /// Cycles of a 10-bit frame at 115 200 baud, as the sender counts them.
@@ -168,6 +168,15 @@ fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
             .windows(2)
             .all(|pair| pair[1].cycle - pair[0].cycle == UNO_FRAME)
     );
+}
+
+#[test]
+fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
+    // One in the shift register, one waiting; there is no place for a third.
+    let body = "UDR0 = 'a'; UDR0 = 'b'; UDR0 = 'c'; _delay_ms(1); put('d'); for (;;) {}";
+    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+    uno.run_ms(3);
+    assert_eq!(text(&uno), b"abd");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Resets of the simulated UNO against the data sheet, chapter 11.
 
-use lizard_host_tests::avr_gcc::{assembler, assembler_at, c};
+use simulated_uno::avr_gcc::{assembler, assembler_at, c};
 use simulated_uno::{
     CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, Pulse, ResetCause, SRAM_END, SRAM_START, State,
     Uno,

@@ -1,6 +1,6 @@
 //! The simulated watchdog against the data sheet, chapter 11.8 and 11.9.2.
 
-use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
 use super::marks;

@@ -1,7 +1,7 @@
 //! The simulated UNO disturbed: interrupts out of nowhere, a main program that
 //! stands still, registers as something before the firmware may have left them.
 
-use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{Fidelity, Uno};
 
 use super::{BOTH, LED};

@@ -1,6 +1,6 @@
 //! Interrupts and Timer1 of the simulated UNO, against counted cycles.
 
-use lizard_host_tests::avr_gcc::{assembler, c};
+use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{Fidelity, Uno};
 
 use super::{BOTH, LED};

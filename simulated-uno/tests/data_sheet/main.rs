@@ -1,15 +1,16 @@
-//! The simulated UNO against the data sheet, part by part, and against the core.
+//! The simulated UNO against the data sheet, part by part: programs whose result follows
+//! by counting cycles.
 
 mod adc;
-mod bench;
 mod brown_out;
-mod core_run;
 mod disturbed;
 mod eeprom;
+mod hex;
 mod instructions;
 mod interrupts;
 mod power_cut;
 mod resets;
+mod say;
 mod serial;
 mod watchdog;
 

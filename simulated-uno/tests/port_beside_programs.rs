@@ -5,8 +5,8 @@ use std::process::Command;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
-use lizard_host_tests::avr_gcc;
 use lizard_time_limit::LIMIT;
+use simulated_uno::avr_gcc;
 use simulated_uno::{Fidelity, Port, Uno};
 
 /// Says `<r` at reset.

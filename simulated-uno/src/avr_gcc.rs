@@ -1,0 +1,77 @@
+//! Little AVR programs, compiled when a test runs.
+//!
+//! A test of a driver, or of the simulator itself, needs a program of ten lines whose
+//! timing follows from the data sheet by counting. It is read best beside what is
+//! expected of it. Needs Debian's `gcc-avr` and `avr-libc`.
+//!
+//! All functions here panic with avr-gcc's own words if it refuses the program: in a test
+//! there is nothing else to do.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::Command;
+
+use lizard_time_limit::LIMIT;
+
+use crate::Image;
+
+/// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
+///
+/// # Panics
+/// If avr-gcc is missing or refuses the program, with its words.
+#[must_use]
+pub fn c(source: &str) -> Image {
+    build(source, "c", &["-O2", "-std=gnu11"])
+}
+
+/// Assembles a whole program; nothing else is linked, so flash address 0 is its
+/// first instruction. `.include "avr/io.h"` does not exist: use `#include`.
+///
+/// # Panics
+/// See [`c`].
+#[must_use]
+pub fn assembler(source: &str) -> Image {
+    let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}");
+    build(&source, "S", &["-nostartfiles", "-nostdlib"])
+}
+
+/// [`assembler`] with its first instruction at a byte address in flash.
+///
+/// # Panics
+/// See [`c`].
+#[must_use]
+pub fn assembler_at(address: u16, source: &str) -> Image {
+    let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}\n");
+    let place = format!("-Wl,--section-start=.text={address:#x}");
+    build(&source, "S", &["-nostartfiles", "-nostdlib", &place])
+}
+
+/// Runs avr-gcc for the UNO's chip at 16 MHz, with these flags and input files, so that it
+/// writes `output`.
+///
+/// # Panics
+/// See [`c`].
+pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) {
+    let mut gcc = Command::new("avr-gcc");
+    gcc.args(["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Wall"])
+        .args(flags)
+        .arg("-o")
+        .arg(output)
+        .args(inputs);
+    let result = LIMIT.output(&mut gcc, b"");
+    let result = result.expect("avr-gcc runs (Debian package gcc-avr)");
+    let errors = String::from_utf8_lossy(&result.stderr);
+    assert!(
+        result.status.success(),
+        "avr-gcc refuses the program:\n{errors}"
+    );
+}
+
+fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let input = folder.path().join(format!("program.{extension}"));
+    let output = folder.path().join("program.elf");
+    std::fs::write(&input, source).expect("the source is written");
+    run(flags, &[input.as_ref()], &output);
+    Image::read(output).expect("avr-gcc's ELF loads")
+}

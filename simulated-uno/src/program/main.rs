@@ -1,0 +1,124 @@
+//! `simulated-uno program.hex`: what a program does, without a board.
+//!
+//! It prints the lines of the serial port as they come, with their time, and then what
+//! an oscilloscope would have shown on each pin.
+
+mod report;
+
+use std::io::{self, ErrorKind, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, LoadError, State, Uno};
+
+/// Run a program for the Arduino UNO on a simulated one: print its serial text and its
+/// pulses.
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "Ends with 1 if the program cannot be loaded or crashes."
+)]
+struct Arguments {
+    /// The program, as Intel HEX (.hex) or ELF (.elf).
+    program: PathBuf,
+    /// How long it runs, in milliseconds of the chip's time.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=3_600_000))]
+    ms: u64,
+    /// Send a line after so many milliseconds: --say 500:walk. May be given repeatedly.
+    #[arg(long, value_name = "MS:LINE", value_parser = line)]
+    say: Vec<Line>,
+    /// The rate at which lines are sent, in baud; that of answers is the program's.
+    #[arg(long, default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
+    baud: u32,
+    /// Print every pulse and not only a summary of each pin.
+    #[arg(long)]
+    pulses: bool,
+    /// Use simavr as it is, without the corrections by the data sheet.
+    #[arg(long)]
+    stock: bool,
+}
+
+/// A line for the serial port.
+#[derive(Clone)]
+struct Line {
+    ms: u64,
+    text: String,
+}
+
+fn line(argument: &str) -> Result<Line, String> {
+    let sentence = "a line has its time in ms before it, as in 500:walk";
+    let (ms, text) = argument.split_once(':').ok_or(sentence)?;
+    let ms = ms.parse().map_err(|_| sentence)?;
+    let text = text.to_owned();
+    Ok(Line { ms, text })
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let image = match Image::read(&arguments.program) {
+        Ok(image) => image,
+        Err(error) => {
+            match error {
+                LoadError::Read { .. } => eprintln!("simulated-uno: {error}"),
+                _ => eprintln!("simulated-uno: {}: {error}", arguments.program.display()),
+            }
+            return ExitCode::FAILURE;
+        }
+    };
+    match run(&arguments, image, &mut io::stdout().lock()) {
+        Ok(code) => code,
+        // Who reads has enough, as in `simulated-uno blink.hex | head`.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("simulated-uno: cannot print: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<ExitCode> {
+    let fidelity = match arguments.stock {
+        true => Fidelity::Stock,
+        false => Fidelity::DataSheet,
+    };
+    let flash = image.flash_used();
+    let mut uno = Uno::with_image(image, fidelity);
+    uno.set_baud(f64::from(arguments.baud));
+    let mut lines = arguments.say.clone();
+    lines.sort_by_key(|line| line.ms);
+    lines.retain(|line| line.ms < arguments.ms);
+    if lines.len() < arguments.say.len() {
+        eprintln!(
+            "simulated-uno: a line later than --ms {} is not sent",
+            arguments.ms
+        );
+    }
+    let mut edges = Vec::new();
+    let mut text = report::Text::default();
+    let mut lines = lines.into_iter().peekable();
+    let end = arguments.ms * CYCLES_PER_MS;
+    while *uno.state() == State::Alive && uno.cycle() < end {
+        if let Some(line) = lines.next_if(|line| line.ms * CYCLES_PER_MS <= uno.cycle()) {
+            writeln!(
+                out,
+                "{:>10.2} ms  > {}",
+                uno.ms(),
+                report::shown(&line.text)
+            )?;
+            uno.send(line.text.as_bytes());
+            uno.send(b"\n");
+        }
+        uno.run_until_cycle(end.min(uno.cycle() + CYCLES_PER_MS));
+        edges.append(&mut uno.take_edges());
+        text.print(&uno.take_transmitted(), out)?;
+    }
+    text.finish(out)?;
+    report::pins(&edges, arguments.pulses, out)?;
+    report::end(&uno, flash, out)?;
+    out.flush()?;
+    Ok(match uno.state() {
+        State::Crashed { .. } => ExitCode::FAILURE,
+        _ => ExitCode::SUCCESS,
+    })
+}

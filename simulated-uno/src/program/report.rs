@@ -1,0 +1,128 @@
+//! What a run has shown, in words and numbers.
+
+use std::io::{self, Write};
+
+use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
+
+/// The longest line that waits for its end; longer ones are cut into pieces.
+const LONGEST: usize = 200;
+
+/// The serial text, line by line.
+#[derive(Default)]
+pub struct Text {
+    /// The line that has no end yet, and the cycle of its last byte.
+    begun: Vec<u8>,
+    cycle: u64,
+}
+
+impl Text {
+    /// Takes bytes, and prints the lines that they end.
+    pub fn print(&mut self, bytes: &[SerialByte], out: &mut impl Write) -> io::Result<()> {
+        for byte in bytes {
+            self.cycle = byte.cycle;
+            if byte.byte != b'\n' {
+                self.begun.push(byte.byte);
+            }
+            if byte.byte == b'\n' || self.begun.len() == LONGEST {
+                self.line(out)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints what has no end.
+    pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
+        match self.begun.is_empty() {
+            true => Ok(()),
+            false => self.line(out),
+        }
+    }
+
+    fn line(&mut self, out: &mut impl Write) -> io::Result<()> {
+        let ms = self.cycle as f64 / CYCLES_PER_MS as f64;
+        let text = String::from_utf8_lossy(&self.begun);
+        writeln!(out, "{ms:>10.2} ms  {}", shown(text.trim_end_matches('\r')))?;
+        self.begun.clear();
+        Ok(())
+    }
+}
+
+/// A text that cannot command the terminal: control characters are written out.
+pub fn shown(text: &str) -> String {
+    let mut shown = String::new();
+    for letter in text.chars() {
+        match letter.is_control() {
+            true => shown.extend(letter.escape_default()),
+            false => shown.push(letter),
+        }
+    }
+    shown
+}
+
+/// The pulses of all pins that had any: a line for each pin, or for each pulse.
+pub fn pins(edges: &[Edge], every: bool, out: &mut impl Write) -> io::Result<()> {
+    let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
+    writeln!(out)?;
+    if edges.is_empty() {
+        return writeln!(out, "No pin from D2 to A5 has moved.");
+    }
+    match every {
+        true => writeln!(out, "pin      start ms      width us")?,
+        false => writeln!(out, "pin    pulses  shortest us   longest us    period us")?,
+    }
+    for pin in (0..=19).map(Pin::arduino) {
+        let pulses = pulses(edges, pin);
+        let widths = pulses.iter().map(|pulse| pulse.width);
+        let (Some(shortest), Some(longest)) = (widths.clone().min(), widths.max()) else {
+            if edges.iter().any(|edge| edge.pin == pin) {
+                writeln!(out, "{pin:<4} no pulse has begun and ended")?;
+            }
+            continue;
+        };
+        let (first, last) = (pulses[0].start, pulses[pulses.len() - 1].start);
+        if every {
+            for pulse in &pulses {
+                let start = pulse.start as f64 / CYCLES_PER_MS as f64;
+                writeln!(out, "{pin:<4} {start:>12.4} {:>13.4}", us(pulse.width))?;
+            }
+            continue;
+        }
+        let period = match pulses.len() {
+            1 => "-".to_owned(),
+            several => format!("{:.4}", us(last - first) / (several - 1) as f64),
+        };
+        writeln!(
+            out,
+            "{pin:<4} {:>8} {:>12.4} {:>12.4} {period:>12}",
+            pulses.len(),
+            us(shortest),
+            us(longest)
+        )?;
+    }
+    Ok(())
+}
+
+/// How the run has ended, and what it took.
+pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
+    let state = match uno.state() {
+        State::Alive => "It runs on.".to_owned(),
+        State::Halted => "It sleeps with interrupts off: nothing but a reset ends this.".to_owned(),
+        State::Crashed { pc, message } => format!("It has crashed at {pc:#06x}: {message}."),
+        State::Off => "The power is off.".to_owned(),
+    };
+    let awake = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
+    // Intel HEX does not say where the data end and the stack may begin.
+    let memory = match uno.image().symbols() {
+        [] => String::new(),
+        _ => format!(
+            " data {} bytes, stack {} bytes at most,",
+            uno.image().static_ram(),
+            uno.stack_used()
+        ),
+    };
+    writeln!(
+        out,
+        "\n{:.2} ms, flash {flash} bytes,{memory} awake {awake:.1} % of the time. {state}",
+        uno.ms(),
+    )
+}

@@ -1,0 +1,51 @@
+//! A line to the UNO and the line that it answers.
+
+use simulated_uno::avr_gcc::c;
+use simulated_uno::{Fidelity, State, Uno};
+
+use super::BOTH;
+
+/// 115 200 baud; answers each line with its capitals. `x` says nothing, `!` halts.
+const CAPITALS: &str = r"
+    #include <avr/io.h>
+    #include <avr/sleep.h>
+    static void put(char byte) { while (!(UCSR0A & 1 << UDRE0)) {} UDR0 = byte; }
+    int main(void) {
+        UCSR0A = 1 << U2X0; UBRR0 = 16; UCSR0B = 1 << RXEN0 | 1 << TXEN0;
+        put('h'); put('i'); put('\n');
+        for (;;) {
+            while (!(UCSR0A & 1 << RXC0)) {}
+            char byte = UDR0;
+            if (byte == '!') sleep_mode();
+            if (byte == 'x') continue;
+            if (byte == '\n') put('\r');
+            put(byte >= 'a' && byte <= 'z' ? byte - 32 : byte);
+        }
+    }";
+
+#[test]
+fn an_answer_is_the_line_that_comes_back_without_its_end() {
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(c(CAPITALS), fidelity);
+        uno.run_ms(2);
+        assert_eq!(uno.say("walk").as_deref(), Some("WALK"), "{fidelity:?}");
+        assert_eq!(uno.say("stop 2").as_deref(), Some("STOP 2"));
+        assert!(uno.transmitted().is_empty(), "it is taken");
+    }
+}
+
+#[test]
+fn silence_for_a_second_of_the_chips_time_is_no_answer() {
+    // Stays deaf: nothing is echoed and nothing ends a line.
+    let mut uno = Uno::with_image(c("int main(void) { for (;;) {} }"), Fidelity::DataSheet);
+    assert_eq!(uno.say("anybody"), None);
+    assert!((1000.0..1001.0).contains(&uno.ms()), "{}", uno.ms());
+}
+
+#[test]
+fn a_firmware_that_halts_does_not_answer() {
+    let mut uno = Uno::with_image(c(CAPITALS), Fidelity::DataSheet);
+    uno.run_ms(2);
+    assert_eq!(uno.say("!"), None);
+    assert_eq!(*uno.state(), State::Halted);
+}

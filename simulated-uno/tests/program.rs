@@ -1,0 +1,171 @@
+//! The program `simulated-uno`, as its user sees it.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use lizard_time_limit::LIMIT;
+use simulated_uno::avr_gcc;
+
+/// Answers every line by `got` and its first letter.
+const ECHO: &str = r#"
+    #include <avr/io.h>
+    static void put(const char *text) {
+        for (; *text; text++) { while (!(UCSR0A & 1 << UDRE0)) {} UDR0 = *text; }
+    }
+    static char get(void) { while (!(UCSR0A & 1 << RXC0)) {} return UDR0; }
+    int main(void) {
+        UCSR0A = 1 << U2X0; UBRR0 = 16; UCSR0B = 1 << RXEN0 | 1 << TXEN0;
+        put("ready\r\n");
+        for (;;) {
+            char first[] = "?\n", next = get();
+            first[0] = next;
+            while (next != '\n') next = get();
+            put("got "); put(first);
+        }
+    }"#;
+
+/// D9 up for exactly 16 000 cycles, 1 ms, then down for 47 999 and more.
+const PULSES: &str = "
+    #include <avr/io.h>
+    int main(void) {
+        DDRB = 2;
+        for (;;) {
+            PORTB = 2; __builtin_avr_delay_cycles(15999); PORTB = 0;
+            __builtin_avr_delay_cycles(48000);
+        }
+    }";
+
+fn run(file: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_simulated-uno"));
+    command.arg(file).args(arguments);
+    LIMIT.output(&mut command, b"").expect("it runs")
+}
+
+/// The source as an ELF file and as one of Intel HEX.
+fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
+    let [c, elf, hex] = ["program.c", "program.elf", "program.hex"].map(|name| folder.join(name));
+    fs::write(&c, source).expect("it is written");
+    avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf);
+    let mut objcopy = Command::new("avr-objcopy");
+    objcopy
+        .args(["-O", "ihex", "-R", ".eeprom"])
+        .arg(&elf)
+        .arg(&hex);
+    let done = LIMIT.output(&mut objcopy, b"").expect("avr-objcopy runs");
+    assert!(done.status.success(), "{done:?}");
+    [elf, hex]
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("it is UTF-8")
+}
+
+#[test]
+fn a_hex_file_and_its_elf_give_the_same_pulses() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [elf, hex] = program(folder.path(), PULSES);
+    // Intel HEX does not say where the stack begins.
+    for (file, memory) in [(elf, true), (hex, false)] {
+        let output = run(&file, &["--ms", "100"]);
+        assert!(output.status.success(), "{output:?}");
+        let said = text(&output.stdout);
+        let row: Vec<&str> = said
+            .lines()
+            .find(|line| line.starts_with("D9"))
+            .unwrap_or_else(|| panic!("no D9 in {said}"))
+            .split_whitespace()
+            .collect();
+        assert_eq!(row[..4], ["D9", "25", "1000.0000", "1000.0000"], "{said}");
+        assert_eq!(said.contains("data 0 bytes, stack "), memory, "{said}");
+        let period: f64 = row[4].parse().expect("a number");
+        assert!((4000.0..4001.0).contains(&period), "{said}");
+        assert!(
+            said.contains("awake 100.0 %") && said.contains("It runs on."),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn every_pulse_is_listed_if_asked_for() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [_, hex] = program(folder.path(), PULSES);
+    let output = run(&hex, &["--ms", "10", "--pulses"]);
+    let said = text(&output.stdout);
+    let rows = said.lines().filter(|line| line.starts_with("D9"));
+    let widths: Vec<&str> = rows
+        .filter_map(|row| row.split_whitespace().nth(2))
+        .collect();
+    assert_eq!(widths, ["1000.0000"; 3], "{said}");
+}
+
+#[test]
+fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [_, hex] = program(folder.path(), ECHO);
+    for more in [&["--stock"][..], &[]] {
+        let mut arguments = vec!["--ms", "60", "--say", "40:stop", "--say", "20:walk"];
+        arguments.extend(more);
+        let output = run(&hex, &arguments);
+        let said = text(&output.stdout);
+        let lines: Vec<(f64, &str)> = said
+            .lines()
+            .filter_map(|line| line.split_once(" ms  "))
+            .map(|(ms, text)| (ms.trim().parse().expect("a time"), text))
+            .collect();
+        let texts: Vec<&str> = lines.iter().map(|line| line.1).collect();
+        assert_eq!(
+            texts,
+            ["ready", "> walk", "got w", "> stop", "got s"],
+            "{said}"
+        );
+        for (line, ms) in lines.iter().zip([0.0, 20.0, 20.0, 40.0, 40.0]) {
+            assert!((ms..ms + 2.0).contains(&line.0), "{said}");
+        }
+        assert!(said.contains("No pin from D2 to A5 has moved."), "{said}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_said_in_a_sentence() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("half.hex");
+    fs::write(&file, ":02000000FFCF30\n").expect("it is written");
+    let cut = run(&file, &[]);
+    assert_eq!(cut.status.code(), Some(1));
+    let error = text(&cut.stderr);
+    assert!(
+        error.ends_with("no end record: only a part of it is there\n"),
+        "{error}"
+    );
+    let missing = run(&folder.path().join("none.hex"), &[]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(text(&missing.stderr).contains("none.hex"));
+    let wrong = run(&file, &["--say", "walk"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(text(&wrong.stderr).contains("as in 500:walk"));
+}
+
+#[test]
+fn a_crash_is_told_and_ends_with_1() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [_, hex] = program(
+        folder.path(),
+        "int main(void) { *(volatile char *)0x0fff = 1; }",
+    );
+    let output = run(&hex, &[]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let said = text(&output.stdout);
+    assert!(said.contains("It has crashed at 0x"), "{said}");
+}
+
+#[test]
+fn what_a_program_says_cannot_command_the_terminal() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let source = ECHO.replace("ready\\r\\n", "\\033[2Jblank\\n");
+    let [_, hex] = program(folder.path(), &source);
+    let said = text(&run(&hex, &["--ms", "5"]).stdout);
+    assert!(said.contains("\\u{1b}[2Jblank"), "{said}");
+    assert!(!said.contains('\u{1b}'), "{said}");
+}
