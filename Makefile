@@ -47,7 +47,7 @@ web: ## the robot in the browser: a folder for any web server, web/dist
 	$(call prepared,.web)
 web-test: ## the page in a real browser: it walks, turns, refuses, calibrates, flashes
 	$(call prepared,.web-test)
-lint: ## rustfmt and clippy, warnings are errors
+lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
 parts-test: ## the files of `lizard parts`, read by ezdxf, FreeCAD, admesh, sliced by PrusaSlicer, put together by trimesh
 	$(call prepared,.parts-test)
@@ -211,4 +211,5 @@ TESTS ?= --workspace
 	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
+	@cd host && RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 	@echo "lint: clean"

@@ -2,7 +2,6 @@
 
 #![no_std]
 #![no_main]
-#![deny(unsafe_op_in_unsafe_fn)]
 #![feature(abi_avr_interrupt, asm_experimental_arch)]
 
 use lizard_core::step::{Main, Step};

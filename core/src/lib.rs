@@ -19,6 +19,32 @@
 //! knows none of that, owns motion, settings and safety, and says why it refuses. What
 //! it does in which state at which event is one table, [`supervisor`].
 //!
+//! Two pieces of it, which need no robot: bytes become a line, and an angle becomes the
+//! pulse that turns a servo there. All of it, on a board without a chip, is in
+//! `virtual_board` (feature `host`).
+//!
+//! ```
+//! use lizard_core::calibration::Calibration;
+//! use lizard_core::line::{Ended, Line};
+//! use lizard_core::units::{Angle, CYCLES_PER_US, Sweep, Width};
+//!
+//! let mut line = Line::new();
+//! let ended = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
+//! assert_eq!((ended, line.text()), (Some(Ended::Line), &b"pose 120"[..]));
+//!
+//! // A servo that holds 90 degrees at 1500 us and turns 90 degrees either way, 10 us for
+//! // each degree: 57 600 cycles for a turn of 65 536 steps, and so 0.879 for a step.
+//! let servo = Calibration {
+//!     neutral: Width(1500 * CYCLES_PER_US),
+//!     gain: (57_600 << 14 >> 16) as i16,
+//!     min: Sweep(-0x4000),
+//!     max: Sweep(0x3fff),
+//! };
+//! let sweep = Angle::from_centideg(9_000).sweep_to(Angle::from_centideg(12_000));
+//! assert!(servo.reaches(sweep));
+//! assert_eq!(servo.width(sweep), Width(1800 * CYCLES_PER_US), "300 us longer");
+//! ```
+//!
 //! What counts, in this order, where two of these meet:
 //!
 //! 1. **Safe.** No frame leaves without the guard, no servo is woken beside another, a
@@ -36,9 +62,6 @@
 //! register nor a file.
 
 #![no_std]
-#![deny(unsafe_code)]
-#![deny(missing_docs)]
-#![warn(clippy::missing_errors_doc)]
 
 #[cfg(any(test, feature = "host"))]
 extern crate std;

@@ -4,7 +4,7 @@
 //! The core derives `Debug` for everything it holds, so nothing is forgotten here that
 //! is added there; and the core needs nothing for this. A field that cannot matter
 //! is left out, and one that is only compared with a few values, as a countdown, is
-//! taken as coarse as [`RULES`] says. Coarse means that of states which differ in no
+//! taken as coarse as `RULES` says. Coarse means that of states which differ in no
 //! more than that the one that is reached first stands for all.
 
 use std::fmt::{self, Write};

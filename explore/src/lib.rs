@@ -4,12 +4,11 @@
 //! No model of the firmware is explored but the firmware's own core, [`Main`], on
 //! its board without a chip, [`VirtualBoard`]. A [`World`] is both and what a
 //! bystander remembers ([`Seen`]); an [`Action`] is what may happen to it; and
-//! [`search`] goes from all beginnings through all actions, breadth first, so that the
+//! [`search()`] goes from all beginnings through all actions, breadth first, so that the
 //! first sequence found that breaks a rule is a shortest one.
 //!
 //! [`Main`]: lizard_core::step::Main
 //! [`VirtualBoard`]: lizard_core::virtual_board::VirtualBoard
-#![deny(unsafe_code)]
 
 pub mod action;
 pub mod beginnings;

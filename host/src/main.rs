@@ -1,5 +1,4 @@
 //! `lizard`: the robot's mathematics and its simulation on the command line.
-#![forbid(unsafe_code)]
 
 #[cfg(not(all(
     feature = "simulator",

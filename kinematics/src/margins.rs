@@ -38,7 +38,7 @@ pub enum Check {
 }
 
 impl Check {
-    /// Of both ends, in the order of [`End::ALL`].
+    /// Of both ends, in the order of [`End::ALL`](crate::End::ALL).
     pub const TYPE2: [Self; 2] = [Self::Type2Head, Self::Type2Tail];
     /// Of the four arms, in servo order.
     pub const TYPE1: [Self; 4] = [Self::Type1A1, Self::Type1A2, Self::Type1A3, Self::Type1A4];
@@ -46,7 +46,7 @@ impl Check {
     pub const LEG: [Self; 4] = [Self::LegLf, Self::LegRf, Self::LegRh, Self::LegLh];
     /// Of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
     pub const STROKE: [Self; 2] = [Self::StrokeLeft, Self::StrokeRight];
-    /// Of both ends, in the order of [`End::ALL`].
+    /// Of both ends, in the order of [`End::ALL`](crate::End::ALL).
     pub const UNCROSSED: [Self; 2] = [Self::UncrossedHead, Self::UncrossedTail];
 
     /// The name in JSON and in answers, such as `type2_head`.

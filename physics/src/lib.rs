@@ -5,13 +5,10 @@
 //! MuJoCo walk the same gaits: the one with a chassis and four dragging balls, the other
 //! with the robot as `lizard mjcf` writes it. Neither knows the model.
 //!
-//! `make physics` runs both ([`rapier`], [`mujoco`]), holds them against the model and
+//! `make physics` runs both (`rapier`, `mujoco`), holds them against the model and
 //! against the figures that are kept in `figures.json`, and prints all of it. The tables of
 //! the documentation are made of the kept figures ([`Figures`], [`table`]), so a test
 //! without engines keeps them current.
-#![forbid(unsafe_code)]
-#![deny(missing_docs)]
-#![warn(clippy::missing_errors_doc)]
 
 mod case;
 mod expected;

@@ -29,6 +29,8 @@
 //! Several [`Uno`]s may run at once on as many threads: libsimavr keeps no
 //! state outside an instance but the logger, which is set once.
 
+#![allow(unsafe_code)] // It calls C; what all of it rests on is said at `Uno`.
+
 mod adc;
 #[cfg(feature = "avr-gcc")]
 pub mod avr_gcc;

@@ -12,9 +12,6 @@
 //! Servo order A1, A2, A3, A4 in every array, which is legs LF, RF, RH, LH. Points on
 //! the floor are (forward, left) as the robot stood at first; points of a [`Shape`] are
 //! in the chassis frame of `lizard_kinematics`: x to the robot's right, y forward.
-#![forbid(unsafe_code)]
-#![deny(missing_docs)]
-#![warn(clippy::missing_errors_doc)]
 
 mod servo;
 mod shape;

@@ -28,7 +28,7 @@ pub struct Row {
     /// Its budget.
     pub budget: Bound,
     /// The same figure of Arduino Servo 1.3.0 with four servos at a constant
-    /// 1500 us, where there is one; see [`SERVO_LIBRARY`].
+    /// 1500 us, where there is one; see `SERVO_LIBRARY`.
     pub servo_library: Option<&'static str>,
     /// True for a figure that depends on the machine that it is measured on.
     pub wall_clock: bool,

@@ -37,7 +37,7 @@ impl std::fmt::Display for NoSuchLength {
 }
 
 /// The text with another number at a key of dotted names, such as `links.l1`. One of
-/// [`LEFT_OUT`] that is not there is written below the last line of its table, and a table
+/// `LEFT_OUT` that is not there is written below the last line of its table, and a table
 /// that is not there below all.
 ///
 /// # Errors

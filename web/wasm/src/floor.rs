@@ -16,7 +16,7 @@ pub struct Floor {
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,
-    /// One of [`KINDS`].
+    /// One of `KINDS`.
     pub kind: &'static str,
     /// Of an ideal spring, N mm/deg, above 0.
     pub stiffness: f64,

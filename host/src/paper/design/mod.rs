@@ -22,7 +22,7 @@ pub use search::{Demands, Design, design, search};
 
 /// Rings across the inscribed circle for one design, and for each of many.
 const FINE: usize = 128;
-/// See [`FINE`].
+/// See `FINE`.
 pub const COARSE: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
