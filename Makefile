@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz docs clean trouble .fit .parts-test .firmware .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .docs .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz docs clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .docs .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -37,6 +37,8 @@ sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
 test: ## every test, on the host and on the simulated UNO
 	$(call prepared,.test)
+sweep: ## the example of pulses/, eight servos beside serial traffic, as an .elf for the UNO
+	$(call prepared,.sweep)
 firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and every gait's margins
 	$(call prepared,.gaits)
 flash: ## build, write to a UNO on USB, open its console (ravedude)
@@ -81,6 +83,10 @@ clean: ## remove everything that was built
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release
 	@avr-objcopy -O ihex -R .eeprom $(ELF) $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
+
+# The example of pulses/: servos and serial line without a lizard.
+.sweep:
+	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release --example sweep --quiet
 
 .gaits: .firmware
 	@echo
@@ -140,6 +146,7 @@ TESTS ?= --workspace
 .test:
 	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
+	@$(MAKE) .sweep
 	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test $(TESTS) --no-fail-fast --quiet
 
 # FreeCAD and PrusaSlicer are large, so they are set up here alone.

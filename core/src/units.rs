@@ -64,6 +64,12 @@ pub struct Sine(pub i16);
 #[repr(transparent)]
 pub struct Width(pub u16);
 
+impl From<Width> for u16 {
+    fn from(width: Width) -> Self {
+        width.0
+    }
+}
+
 /// The step of a mechanism's lengths: `2^bits` of them are a millimetre.
 ///
 /// Sixteen bits hold the bars of any robot if the step follows its size.

@@ -7,7 +7,7 @@ use avr_device::atmega328p::CPU;
 use lizard_core::kept::{self, CELLS, Cells, Flags};
 use lizard_core::restart::{Restart, Stance};
 
-use super::shared::Byte;
+use servo_pulses::cells::Byte;
 
 // The start-up code does not clear the section, and the image holds nothing for it;
 // the compiler's own statics would be written into the image.

@@ -25,7 +25,6 @@ mod kept;
 pub mod led;
 pub mod pulses;
 pub mod serial;
-mod shared;
 pub mod sleep;
 mod stack;
 pub mod supply;
@@ -61,7 +60,8 @@ impl Uno {
         led::start();
         sleep::start(board.CPU);
         serial::start(board.USART0);
-        pulses::start(board.TC1);
+        // SAFETY: interrupts are off, and nothing else here uses Timer1 or the servos' pins.
+        unsafe { pulses::start() };
         watchdog::start();
         // SAFETY: every interrupt that is enabled above has its handler, and there
         // is no critical section around this call to be broken.
@@ -80,7 +80,7 @@ impl Board for Uno {
     type Memory = eeprom::Eeprom;
 
     const ROOM: u8 = serial::ROOM;
-    const CYCLES_PER_US: u16 = pulses::CYCLES_PER_US;
+    const CYCLES_PER_US: u16 = servo_pulses::CYCLES_PER_US;
 
     #[inline(always)]
     fn ticks(&self) -> u8 {
@@ -89,7 +89,7 @@ impl Board for Uno {
 
     #[inline(always)]
     fn submit(&mut self, pulses: Pulses) -> bool {
-        pulses::submit(pulses)
+        pulses::submit(pulses.0)
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ use core::convert::Infallible;
 use avr_device::atmega328p::USART0;
 use lizard_core::line::GARBLED;
 
-use super::shared::{Byte, Counter};
+use servo_pulses::cells::{Byte, Counter};
 
 /// A whole line: main may look away for 64 bytes, 89 000 cycles, seven times what
 /// a frame may take.

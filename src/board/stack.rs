@@ -6,7 +6,7 @@
 
 use core::arch::global_asm;
 
-use super::shared::Byte;
+use servo_pulses::cells::Byte;
 
 /// What is hardly ever pushed by accident.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];

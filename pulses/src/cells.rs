@@ -8,7 +8,7 @@
 
 use core::cell::UnsafeCell;
 
-use avr_device::interrupt;
+use crate::pin::Pin;
 
 /// A byte that may be read and written anywhere.
 ///
@@ -21,16 +21,20 @@ pub struct Byte(UnsafeCell<u8>);
 unsafe impl Sync for Byte {}
 
 impl Byte {
+    /// A byte with this value.
+    #[must_use]
     pub const fn new(value: u8) -> Self {
         Self(UnsafeCell::new(value))
     }
 
+    /// Its value.
     #[inline(always)]
     pub fn get(&self) -> u8 {
         // SAFETY: the pointer is the cell's own; for other accesses see `Sync`.
         unsafe { self.0.get().read_volatile() }
     }
 
+    /// Changes it.
     #[inline(always)]
     pub fn set(&self, value: u8) {
         // SAFETY: as in `get`.
@@ -46,6 +50,8 @@ pub struct Word {
 }
 
 impl Word {
+    /// Two bytes with this value.
+    #[must_use]
     pub const fn new(value: u16) -> Self {
         let [low, high] = value.to_le_bytes();
         Self {
@@ -60,11 +66,13 @@ impl Word {
         [self.low.get(), self.high.get()]
     }
 
+    /// Its value, the low byte first.
     #[inline(always)]
     pub fn get(&self) -> u16 {
         u16::from_le_bytes(self.bytes())
     }
 
+    /// Changes it, the low byte first.
     #[inline(always)]
     pub fn set(&self, value: u16) {
         let [low, high] = value.to_le_bytes();
@@ -76,7 +84,15 @@ impl Word {
 /// Counts faults in interrupts for main to read. Stays at 65535.
 pub struct Counter(Word);
 
+impl Default for Counter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Counter {
+    /// Zero.
+    #[must_use]
     pub const fn new() -> Self {
         Self(Word::new(0))
     }
@@ -98,7 +114,28 @@ impl Counter {
     }
 
     /// The count so far. Switches interrupts off for about 10 cycles.
+    #[cfg(target_arch = "avr")]
     pub fn read(&self) -> u16 {
-        interrupt::free(|_| self.0.get())
+        let sreg: u8;
+        // SAFETY: reads and then clears the interrupt flag.
+        unsafe { core::arch::asm!("in {}, 0x3f", "cli", out(reg) sreg, options(nostack)) };
+        let count = self.0.get();
+        // SAFETY: gives the flag back as it was.
+        unsafe { core::arch::asm!("out 0x3f, {}", in(reg) sreg, options(nostack)) };
+        count
     }
+}
+
+/// Ports and masks of these pins, and no pin after them.
+#[must_use]
+pub const fn pins<const SERVOS: usize, const SIZE: usize>(
+    pins: [Pin; SERVOS],
+) -> [[Byte; 2]; SIZE] {
+    let mut bytes = [const { [const { Byte::new(0) }; 2] }; SIZE];
+    let mut slot = 0;
+    while slot < SERVOS {
+        bytes[slot] = [Byte::new(pins[slot].port), Byte::new(pins[slot].mask)];
+        slot += 1;
+    }
+    bytes
 }

@@ -1,0 +1,141 @@
+//! `servo-pulses` apart from the lizard: its example, eight servos beside a flood of serial
+//! bytes, measured in the simulated UNO.
+
+use lizard_host_tests::root;
+use servo_pulses::{LEAST_WIDTH, frame_cycles, most_width};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
+
+/// The example's pins, in its order.
+const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
+
+/// Cycles that the example's servo has in its frame, by its description: up from 1000 us
+/// by a step of its own in every frame, to 2000 us and down again.
+fn width(servo: u64, frame: u64) -> u64 {
+    // It counts its way in 16 bits.
+    let way = frame * (16 * servo + 5) % 65_536 % 32_000;
+    32_000 - 16_000u64.abs_diff(way)
+}
+
+fn sweep(fidelity: Fidelity) -> Uno {
+    let elf = root().join("target/avr-atmega328p/release/examples/sweep.elf");
+    Uno::load(&elf, fidelity).unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"))
+}
+
+#[test]
+fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
+    for fidelity in [Fidelity::DataSheet, Fidelity::Stock] {
+        let mut uno = sweep(fidelity);
+        uno.run_ms(50);
+        uno.take_edges();
+        let text = b"The quick brown fox jumps over the lazy dog. ";
+        uno.flood(text);
+        uno.run_ms(10_000);
+        uno.flood(b"");
+        uno.run_ms(10_000);
+        assert_eq!(*uno.state(), State::Alive);
+        let edges = uno.edges();
+        let frame = u64::from(frame_cycles(8));
+        let servos = edges.iter().filter(|edge| edge.pin != Pin::d(13));
+        let servos: Vec<_> = servos.copied().collect();
+        assert_eq!(most_pins_high(&servos), 1, "one servo at a time");
+        // The first two or three frames are over.
+        let first = uno.pulses(Pin::arduino(PINS[0]))[0].width;
+        let skipped = (0..10)
+            .find(|n| width(0, *n) == first)
+            .expect("it is one of the first");
+        for (servo, pin) in PINS.into_iter().enumerate() {
+            let pulses = uno.pulses(Pin::arduino(pin));
+            assert!(pulses.len() > 880, "{} of {pin}", pulses.len());
+            for (n, pulse) in pulses.iter().enumerate() {
+                let expected = width(servo as u64, skipped + n as u64);
+                assert_eq!(pulse.width, expected, "{fidelity:?}, pin {pin}, frame {n}");
+            }
+            for pair in pulses.windows(2) {
+                // Also the first edges are a frame apart, to the cycle of the wait.
+                assert_eq!(
+                    pair[1].start - pair[0].start,
+                    frame,
+                    "{fidelity:?}, pin {pin}"
+                );
+            }
+        }
+        let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
+        // The line was full in both directions. Stock simavr sends more slowly than it
+        // receives, so that only here nothing is lost.
+        if fidelity == Fidelity::DataSheet {
+            assert!(echo.len() > 115_000, "{} bytes", echo.len());
+            let sent: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
+            let wrong = (0..echo.len()).find(|n| echo[*n] != sent[*n]);
+            assert_eq!(wrong, None, "the first byte that is not what was sent");
+            assert_eq!((uno.overruns(), uno.bytes_sent()), (0, echo.len() as u64));
+        } else {
+            assert!(echo.len() > 100_000, "{} bytes", echo.len());
+        }
+    }
+}
+
+#[test]
+fn the_led_blinks_every_sixteen_frames() {
+    let mut uno = sweep(Fidelity::DataSheet);
+    uno.run_ms(3_000);
+    let blinks = uno.pulses(Pin::d(13));
+    assert_eq!(blinks.len(), 4);
+    for blink in blinks {
+        let off = blink.width.abs_diff(16 * u64::from(frame_cycles(8)));
+        assert!(off < CYCLES_PER_MS / 10, "{off} cycles");
+    }
+}
+
+#[test]
+fn what_the_readme_says_of_cost_is_what_the_example_costs() {
+    let mut uno = sweep(Fidelity::DataSheet);
+    uno.run_ms(100);
+    let cost = |uno: &Uno| {
+        let used = uno.interrupts();
+        let of = |vector| {
+            used.iter()
+                .find(|one| one.vector == vector)
+                .map_or(0, |one| one.cycles)
+        };
+        of(11) + of(12)
+    };
+    let before = (cost(&uno), uno.cycle());
+    uno.run_cycles(100 * u64::from(frame_cycles(8)));
+    let per_frame = (cost(&uno) - before.0) as f64 / 100.0;
+    let readme = std::fs::read_to_string(root().join("pulses/README.md")).expect("it is there");
+    let row = |name: &str| -> Vec<String> {
+        let row = readme
+            .lines()
+            .find(|line| line.starts_with(&format!("| {name}")));
+        let row = row.unwrap_or_else(|| panic!("no row {name}"));
+        row.split('|')
+            .map(|cell| cell.trim().replace(' ', ""))
+            .collect()
+    };
+    let number = |cell: &str| {
+        cell.parse::<f64>()
+            .unwrap_or_else(|_| panic!("{cell} is a number"))
+    };
+    // Another compiler may save a byte or two.
+    let same = |name: &str, measured: f64| {
+        let told = number(&row(name)[2]);
+        let off = (measured - told).abs();
+        assert!(off <= told / 50.0, "{name}: {measured}, not {told}");
+    };
+    same("cycles of its interrupts in a frame", per_frame);
+    let image = uno.image();
+    same(
+        "flash of the whole example, bytes",
+        image.flash_used().into(),
+    );
+    same(
+        "static RAM of the whole example, bytes",
+        image.static_ram().into(),
+    );
+}
+
+#[test]
+fn the_limits_of_a_width_are_far_beyond_a_servos_travel() {
+    assert!(u32::from(LEAST_WIDTH) <= 16 * 400);
+    assert!((1..=8).all(|servos| u32::from(most_width(servos)) >= 16 * 2_400));
+}

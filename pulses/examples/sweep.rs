@@ -1,0 +1,103 @@
+//! Eight servos sweep, each with a pace of its own, while the LED blinks and every byte of
+//! the serial line, 115 200 baud, is echoed. The whole program of an Arduino UNO.
+//!
+//! Built by `make sweep`, run by the tests in the simulated UNO, which measures every
+//! pulse.
+
+#![no_std]
+#![no_main]
+#![feature(abi_avr_interrupt)]
+#![allow(unsafe_code)] // Registers, and interrupts let in.
+
+use avr_device::atmega328p::Peripherals;
+use panic_halt as _;
+use servo_pulses::cells::Byte;
+use servo_pulses::{CYCLES_PER_US, Pin};
+
+/// Eight servos of three ports. The LED is D13, the serial line D0 and D1.
+const PINS: [Pin; 8] = [
+    pin(2),
+    pin(3),
+    pin(7),
+    pin(8),
+    pin(9),
+    pin(12),
+    pin(14), // A0
+    pin(19), // A5
+];
+
+const fn pin(number: u8) -> Pin {
+    match Pin::arduino(number) {
+        Some(pin) => pin,
+        None => panic!("an UNO has no such pin"),
+    }
+}
+
+mod servos {
+    servo_pulses::engine!(super::PINS);
+}
+
+/// The bytes that have come last, and how many have, modulo 256: the handler moves the
+/// count, main follows it.
+static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
+static CAME: Byte = Byte::new(0);
+
+/// The width of a servo in a frame: 1000 to 2000 us and back, by steps of so many cycles
+/// that no two servos move alike.
+fn width(servo: u8, frame: u16) -> u16 {
+    let step = 16 * u16::from(servo) + 5;
+    let way = frame.wrapping_mul(step) % 32_000;
+    let up = if way < 16_000 { way } else { 32_000 - way };
+    1000 * CYCLES_PER_US + up
+}
+
+#[avr_device::entry]
+fn main() -> ! {
+    // SAFETY: nothing has run before this but the boot loader.
+    let chip = unsafe { Peripherals::steal() };
+    // 16 MHz / 8 / (16 + 1) = 117 647 baud, as the boot loader has it; 8N1.
+    chip.USART0.ucsr0a().write(|w| w.u2x0().set_bit());
+    chip.USART0.ubrr0().write(|w| w.set(16));
+    chip.USART0
+        .ucsr0b()
+        .write(|w| w.rxen0().set_bit().txen0().set_bit().rxcie0().set_bit());
+    chip.PORTB.ddrb().modify(|_, w| w.pb5().set_bit());
+    // SAFETY: interrupts are off, and nothing else uses Timer1.
+    unsafe { servos::start() };
+    // SAFETY: every interrupt that is enabled above has its handler.
+    unsafe { avr_device::interrupt::enable() };
+    let (mut tick, mut frame, mut echoed) = (servos::ticks(), 0u16, 0u8);
+    loop {
+        if servos::ticks() != tick {
+            tick = servos::ticks();
+            let mut widths = [0; PINS.len()];
+            for (servo, slot) in widths.iter_mut().enumerate() {
+                *slot = width(servo as u8, frame);
+            }
+            servos::submit(widths);
+            frame = frame.wrapping_add(1);
+            // A toggle by one instruction: PORTB has servo pins, too.
+            if tick & 15 == 0 {
+                // SAFETY: a one in this register toggles a pin of PORTB.
+                unsafe { chip.PORTB.pinb().write(|w| w.bits(1 << 5)) };
+            }
+        }
+        if CAME.get() != echoed && chip.USART0.ucsr0a().read().udre0().bit_is_set() {
+            let byte = RING[usize::from(echoed & 15)].get();
+            echoed = echoed.wrapping_add(1);
+            chip.USART0.udr0().write(|w| w.set(byte));
+        }
+    }
+}
+
+#[avr_device::interrupt(atmega328p)]
+fn USART_RX() {
+    // SAFETY: only this handler reads UDR0.
+    let byte = unsafe { avr_device::atmega328p::USART0::steal() }
+        .udr0()
+        .read()
+        .bits();
+    let came = CAME.get();
+    RING[usize::from(came & 15)].set(byte);
+    CAME.set(came.wrapping_add(1));
+}

@@ -1,0 +1,445 @@
+//! What happens in a slot.
+
+use crate::cells::{Byte, Counter, Word};
+#[cfg(any(test, target_arch = "avr"))]
+use crate::timing::LEAST_WIDTH;
+use crate::timing::{LEAD, most_width};
+
+/// The pulses of `SERVOS` servos, made of the variables that [`engine!`](crate::engine)
+/// defines. `SIZE` is `SERVOS` or the power of two above it.
+#[derive(Clone, Copy)]
+pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
+    #[doc(hidden)]
+    /// Ports and masks of the pins, by slot. Zero, which is no pin, until
+    /// [`Engine::connect`].
+    pub pins: &'a [[Byte; 2]; SIZE],
+    #[doc(hidden)]
+    /// Two sets of widths: the one that plays and the one that main fills.
+    pub frames: &'a [[Word; SIZE]; 2],
+    #[doc(hidden)]
+    /// Which of `frames` plays. Changed only by the handler, and only while `fresh` is
+    /// set.
+    pub playing: &'a Byte,
+    #[doc(hidden)]
+    /// 1 when the other frame is complete and waits to be taken over. Main sets it; the
+    /// handler clears it when it takes the frame, main when it takes it back.
+    pub fresh: &'a Byte,
+    #[doc(hidden)]
+    /// The plan: number of the slot under way or, between slots, of the next. It starts
+    /// with the tick, so that main gets going at once. TIMER1_COMPB writes the plan;
+    /// TIMER1_COMPA takes a pulse out that it was late for.
+    pub slot: &'a Byte,
+    #[doc(hidden)]
+    /// The plan: where the pin is.
+    pub port: &'a Byte,
+    #[doc(hidden)]
+    /// The plan: which bit, 0 for no pulse.
+    pub mask: &'a Byte,
+    #[doc(hidden)]
+    /// The plan: the count for which the falling edge is due.
+    pub fall: &'a Word,
+    #[doc(hidden)]
+    /// The pins that may go high: all, or none after [`Engine::hush`].
+    pub allowed: &'a Byte,
+    #[doc(hidden)]
+    /// Written only by TIMER1_COMPA.
+    pub ticks: &'a Byte,
+    #[doc(hidden)]
+    /// Counted in both handlers.
+    pub late: &'a Counter,
+}
+
+impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
+    /// The slot without a pin.
+    #[cfg(any(test, target_arch = "avr"))]
+    const TICK_SLOT: u8 = SERVOS as u8;
+    /// When a slot without a pulse is closed. Late, because the slot with the tick then
+    /// waits the longest for main.
+    const CLOSE: u16 = most_width(SERVOS);
+    /// The falling edge of a slot without one.
+    #[doc(hidden)]
+    pub const NO_PULSE: u16 = Self::CLOSE + LEAD as u16;
+
+    /// Hands over the widths of the next frame, in CPU cycles of 62.5 ns, in the order of
+    /// the pins; as `u16` or as a type of the program that becomes one.
+    ///
+    /// They are taken over together before the first slot opens; a second call before that
+    /// replaces the first. If none comes, the last ones repeat. A width of 0, and
+    /// any that a slot has no room for, gives no pulse: see
+    /// [`LEAST_WIDTH`](crate::LEAST_WIDTH) and [`most_width`](crate::most_width).
+    ///
+    /// Returns whether the frame of the call before has been taken over, true on the
+    /// first call. Who calls this once for every tick sees by it that both handlers
+    /// live: one gives the tick, the other takes the frame. It is false, too, for a
+    /// frame that main was so late with that the next tick came first.
+    #[inline(always)]
+    pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) -> bool {
+        let taken = self.fresh.get() == 0;
+        // Take back what has not been played. From here to the end the handler
+        // leaves `playing` alone, so the frame that is filled cannot start to play.
+        self.fresh.set(0);
+        let frame = &self.frames[usize::from(self.playing.get() & 1 ^ 1)];
+        for (slot, width) in frame.iter().zip(widths) {
+            slot.set(width.into());
+        }
+        self.fresh.set(1);
+        taken
+    }
+
+    /// From now on no pulse begins; one that is under way ends as planned, within a
+    /// slot. For whoever is about to reset the board, which would cut it short and so
+    /// send the servo to its end stop. The tick goes on. One store, right in an
+    /// interrupt and anywhere else; only a reset ends it.
+    #[inline(always)]
+    pub fn hush(&self) {
+        self.allowed.set(0);
+    }
+
+    /// Frames since the start, modulo 256. Steps once a frame, one slot before the next
+    /// frame's first pulse.
+    #[inline(always)]
+    pub fn ticks(&self) -> u8 {
+        self.ticks.get()
+    }
+
+    /// The width that a slot plays, or `None` where it plays none.
+    #[cfg(any(test, target_arch = "avr"))]
+    #[inline(always)]
+    fn planned(&self, slot: u8) -> Option<(usize, u16)> {
+        let servo = usize::from(slot) & (SIZE - 1);
+        let width = self.frames[usize::from(self.playing.get() & 1)][servo].get();
+        // Checked here, last thing before it is used.
+        let fits = LEAST_WIDTH <= width && width <= Self::CLOSE;
+        (slot != Self::TICK_SLOT && fits).then_some((servo, width))
+    }
+
+    /// A slot closes: the next one is planned.
+    #[cfg(any(test, target_arch = "avr"))]
+    #[inline(always)]
+    fn plan(&self) {
+        let slot = match self.slot.get() {
+            slot if slot == Self::TICK_SLOT => {
+                if self.fresh.get() != 0 {
+                    self.playing.set(self.playing.get() ^ 1);
+                    self.fresh.set(0);
+                }
+                0
+            }
+            slot => slot + 1,
+        };
+        self.slot.set(slot);
+        match self.planned(slot) {
+            None => {
+                self.mask.set(0);
+                self.fall.set(Self::NO_PULSE);
+            }
+            Some((servo, width)) => {
+                let [port, mask] = &self.pins[servo];
+                self.port.set(port.get());
+                self.mask.set(mask.get());
+                self.fall.set(width + u16::from(LEAD));
+            }
+        }
+    }
+}
+
+/// What touches registers.
+#[cfg(target_arch = "avr")]
+mod registers {
+    use core::ptr::with_exposed_provenance_mut;
+
+    use super::{Engine, LEAD};
+    use crate::pin::Pin;
+    use crate::store::store_at;
+    use crate::timing::slot_cycles;
+
+    // Timer1 of an ATmega328P (data sheet, 30).
+    const TIFR1: usize = 0x36;
+    const TIMSK1: usize = 0x6f;
+    const TCCR1A: usize = 0x80;
+    const TCCR1B: usize = 0x81;
+    const TCNT1: usize = 0x84;
+    const OCR1A: usize = 0x88;
+    const OCR1B: usize = 0x8a;
+    /// OCF1B in TIFR1, OCIE1B in TIMSK1.
+    const B: u8 = 1 << 2;
+    /// OCF1A in TIFR1, OCIE1A in TIMSK1.
+    const A: u8 = 1 << 1;
+    /// WGM12 and CS10 in TCCR1B: CTC up to OCR1A, every cycle is counted.
+    const RUN: u8 = 1 << 3 | 1;
+
+    /// A compare value that the timer never reaches.
+    const NEVER: u16 = u16::MAX;
+
+    #[inline(always)]
+    fn port(address: u8) -> *mut u8 {
+        with_exposed_provenance_mut(usize::from(address))
+    }
+
+    /// Stores to a register.
+    ///
+    /// # Safety
+    /// It is one of Timer1's.
+    #[inline(always)]
+    unsafe fn set<T>(register: usize, value: T) {
+        // SAFETY: as the caller says.
+        unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
+    }
+
+    impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
+        /// Puts the pins low and makes them outputs, in the order of the widths. Once,
+        /// before the first [`Engine::submit`].
+        #[inline(always)]
+        pub fn connect(&self, pins: [Pin; SERVOS]) {
+            for (slot, pin) in self.pins.iter().zip(&pins) {
+                slot[0].set(pin.port);
+                slot[1].set(pin.mask);
+            }
+            self.lower();
+        }
+
+        /// [`Engine::start`], with the pins of a constant, which are put low first.
+        ///
+        /// # Safety
+        /// See [`Engine::start`].
+        #[doc(hidden)]
+        #[inline(always)]
+        pub unsafe fn start_all(&self) {
+            self.lower();
+            // SAFETY: as the caller says.
+            unsafe { self.start() }
+        }
+
+        /// Puts the pins low and makes them outputs.
+        #[inline(always)]
+        fn lower(&self) {
+            for [address, mask] in &self.pins[..SERVOS] {
+                let port = port(address.get());
+                let mask = mask.get();
+                // SAFETY: PORT is an I/O register, and DDR the one just below it, for a
+                // `Pin` knows no other addresses. No handler writes one of them before a
+                // width has been submitted.
+                unsafe {
+                    let ddr = port.sub(1);
+                    port.write_volatile(port.read_volatile() & !mask);
+                    ddr.write_volatile(ddr.read_volatile() | mask);
+                }
+            }
+        }
+
+        /// Sets the timer going; the first tick comes a slot later. Once.
+        ///
+        /// # Safety
+        /// Interrupts are off, and nothing else uses Timer1 from now on.
+        #[inline(always)]
+        pub unsafe fn start(&self) {
+            // SAFETY: these registers are Timer1's, which is ours.
+            unsafe {
+                // A boot loader leaves the timer running for its LED: stop it first.
+                set(TCCR1B, 0u8);
+                set(TCCR1A, 0u8);
+                set(TCNT1, 0u16);
+                set(OCR1A, const { slot_cycles(SERVOS) - 1 });
+                set(OCR1B, NEVER);
+                set(TIFR1, A | B);
+                set(TIMSK1, A | B);
+                set(TCCR1B, RUN);
+            }
+        }
+
+        /// Edges that came late because an interrupt was held up for longer than the
+        /// lead allows. Stays at 65535.
+        #[inline(always)]
+        pub fn late(&self) -> u16 {
+            self.late.read()
+        }
+
+        /// A slot opens: its pin goes up, or the tick is given.
+        ///
+        /// # Safety
+        /// Only in the handler of Timer1's compare match A.
+        #[doc(hidden)]
+        #[inline(always)]
+        pub unsafe fn open(&self) {
+            let mask = self.mask.get() & self.allowed.get();
+            if mask != 0 {
+                let port = port(self.port.get());
+                // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
+                unsafe {
+                    let before = port.read_volatile();
+                    // A pin that is still high has missed its falling edge: it only goes
+                    // down.
+                    let change = mask & !before;
+                    let on_time = store_at([LEAD, 0], port, before & !mask, change);
+                    if on_time & change == 0 {
+                        self.late.count();
+                        self.mask.set(0);
+                        self.fall.set(Self::NO_PULSE);
+                    }
+                }
+            } else if self.slot.get() == Self::TICK_SLOT {
+                self.ticks.set(self.ticks.get().wrapping_add(1));
+            }
+            // SAFETY: after `start` only the two handlers use Timer1, and they cannot
+            // interrupt each other.
+            unsafe {
+                set(OCR1B, self.fall.get() - u16::from(LEAD));
+                // Had interrupts been off for very long, the match of the slot before, or
+                // of this one with the old count, would wait here and close this slot at
+                // once.
+                set(TIFR1, B);
+            }
+        }
+
+        /// A slot closes: its pin goes down, and the next slot is planned.
+        ///
+        /// # Safety
+        /// Only in the handler of Timer1's compare match B.
+        #[doc(hidden)]
+        #[inline(always)]
+        pub unsafe fn close(&self) {
+            let mask = self.mask.get();
+            if mask != 0 {
+                let port = port(self.port.get());
+                // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
+                let on_time =
+                    unsafe { store_at(self.fall.bytes(), port, port.read_volatile() & !mask, 0) };
+                if on_time == 0 {
+                    self.late.count();
+                }
+            }
+            self.plan();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::timing::slot_cycles;
+
+    /// The engine's variables, as `engine!` has them.
+    struct Variables<const SIZE: usize> {
+        pins: [[Byte; 2]; SIZE],
+        frames: [[Word; SIZE]; 2],
+        bytes: [Byte; 7],
+        fall: Word,
+        late: Counter,
+    }
+
+    impl<const SIZE: usize> Variables<SIZE> {
+        fn of<const SERVOS: usize>() -> Self {
+            let bytes = [const { Byte::new(0) }; 7];
+            bytes[0].set(SERVOS as u8); // the slot of the tick
+            let mut pins = [const { [const { Byte::new(0) }; 2] }; SIZE];
+            for (servo, pin) in pins.iter_mut().enumerate().take(SERVOS) {
+                *pin = [Byte::new(0x25), Byte::new(servo as u8 + 1)];
+            }
+            Self {
+                pins,
+                frames: [const { [const { Word::new(0) }; SIZE] }; 2],
+                bytes,
+                fall: Word::new(0),
+                late: Counter::new(),
+            }
+        }
+
+        fn engine<const SERVOS: usize>(&self) -> Engine<'_, SERVOS, SIZE> {
+            let [slot, playing, fresh, port, mask, allowed, ticks] = &self.bytes;
+            Engine {
+                pins: &self.pins,
+                frames: &self.frames,
+                playing,
+                fresh,
+                slot,
+                port,
+                mask,
+                fall: &self.fall,
+                allowed,
+                ticks,
+                late: &self.late,
+            }
+        }
+    }
+
+    /// What the slots of a frame play, in turn: slot, mask and when it closes.
+    fn frame<const SERVOS: usize, const SIZE: usize>(
+        engine: &Engine<'_, SERVOS, SIZE>,
+    ) -> [(u8, u8, u16); 9] {
+        let mut slots = [(0, 0, 0); 9];
+        for slot in &mut slots[..=SERVOS] {
+            engine.plan();
+            *slot = (engine.slot.get(), engine.mask.get(), engine.fall.get());
+        }
+        slots
+    }
+
+    fn every_servo_has_its_slot<const SERVOS: usize, const SIZE: usize>() {
+        let variables = Variables::<SIZE>::of::<SERVOS>();
+        let engine = variables.engine::<SERVOS>();
+        let mut widths = [0; SERVOS];
+        for (servo, width) in widths.iter_mut().enumerate() {
+            *width = 24_000 + servo as u16;
+        }
+        assert!(engine.submit(widths), "nothing waits before the first");
+        assert!(!engine.submit(widths), "and the first has not been taken");
+        for frames in 0..3 {
+            let played = frame(&engine);
+            for (servo, slot) in played.into_iter().enumerate().take(SERVOS) {
+                let fall = 24_000 + servo as u16 + u16::from(LEAD);
+                let expected = (servo as u8, servo as u8 + 1, fall);
+                assert_eq!(slot, expected, "{SERVOS} servos, frame {frames}");
+            }
+            let close = slot_cycles(SERVOS) - 1_000 + u16::from(LEAD);
+            assert_eq!(
+                played[SERVOS],
+                (SERVOS as u8, 0, close),
+                "the tick has no pin"
+            );
+        }
+        assert!(engine.submit(widths), "it has been taken");
+    }
+
+    #[test]
+    fn one_to_eight_servos_have_their_slots_and_then_the_tick() {
+        every_servo_has_its_slot::<1, 1>();
+        every_servo_has_its_slot::<2, 2>();
+        every_servo_has_its_slot::<3, 4>();
+        every_servo_has_its_slot::<4, 4>();
+        every_servo_has_its_slot::<5, 8>();
+        every_servo_has_its_slot::<6, 8>();
+        every_servo_has_its_slot::<7, 8>();
+        every_servo_has_its_slot::<8, 8>();
+    }
+
+    #[test]
+    fn a_width_that_a_slot_has_no_room_for_is_no_pulse() {
+        let variables = Variables::<8>::of::<6>();
+        let engine = variables.engine::<6>();
+        let most = most_width(6);
+        engine.submit([0, 999, 1_000, most, most + 1, u16::MAX]);
+        let masks = frame(&engine).map(|(_, mask, _)| mask);
+        assert_eq!(masks[..7], [0, 0, 3, 4, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_frame_is_taken_over_whole_and_only_at_its_begin() {
+        let variables = Variables::<4>::of::<4>();
+        let engine = variables.engine::<4>();
+        engine.submit([20_000u16; 4]);
+        engine.plan();
+        engine.plan();
+        engine.submit([30_000u16; 4]);
+        engine.plan();
+        assert_eq!(engine.fall.get(), 20_220, "the frame that plays stays");
+        engine.plan();
+        engine.plan();
+        assert_eq!(engine.mask.get(), 0, "the tick");
+        engine.plan();
+        assert_eq!(
+            engine.fall.get(),
+            30_220,
+            "the new one, from its first slot on"
+        );
+    }
+}

@@ -1,0 +1,208 @@
+//! Servo pulses, exact to the CPU cycle, and a steady clock: for any program on an
+//! ATmega328P (Arduino UNO, Nano, Pro Mini).
+//!
+//! A servo turns the width of a pulse into an angle, so every cycle by which an edge
+//! wanders is a tremor of the horn. Interrupt latency wanders: by the instruction under
+//! way, by whichever other interrupt runs. The remedy is to be early and then wait.
+//! Timer1 counts CPU cycles through slots; each compare interrupt reads how late it
+//! already is, waits out the rest of [`LEAD`] and only then stores the port. Both edges
+//! wait by the same code, so everything constant cancels and the width is the one that
+//! was asked for.
+//!
+//! ```text
+//! slot    0         1         2         3         4         0
+//!         |---------|---------|---------|---------|---------|---------
+//! first   /~~\______________________________________________/~~\______
+//! second  __________/~~~\_____________________________________________
+//! third   ____________________/~\_____________________________________
+//! fourth  ______________________________/~~\__________________________
+//!                                                 ^ tick   ^ next frame
+//! ```
+//!
+//! One pin is high at a time. The last slot has no pin: it opens with the tick, and just
+//! before it closes the frame that main has submitted meanwhile is taken over. How long a
+//! slot is follows from the number of servos, [`slot_cycles`]: with four it is 4 ms, and a
+//! frame 20 ms to the cycle.
+//!
+//! What a slot does is planned at the end of the slot before, so that the opening
+//! interrupt has next to nothing to do before its edge.
+//!
+//! # Use
+//!
+//! [`engine!`] makes a module of the program the owner of Timer1 and of the servos' pins:
+//!
+//! ```ignore
+//! const PINS: [Pin; 4] = [pin(9), pin(10), pin(11), pin(3)];
+//! mod servos {
+//!     servo_pulses::engine!(super::PINS);
+//! }
+//!
+//! // SAFETY: interrupts are off, and nothing else uses Timer1.
+//! unsafe { servos::start() };
+//! unsafe { avr_device::interrupt::enable() };
+//! servos::submit([1500 * CYCLES_PER_US; 4]);
+//! ```
+//!
+//! The program needs `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a whole one.
+//!
+//! # An edge that cannot be on time
+//!
+//! It must not become a wrong angle:
+//!
+//! - A rising edge that is late is not made. The servo misses one pulse of 50 in
+//!   a second, and holds.
+//! - A falling edge cannot be dropped, and nothing can shorten a pulse that is
+//!   already too long. It is made at once, so the pulse is longer by as much as the
+//!   edge is late: 10 us, or 160 cycles, turn an SG-90 by one degree for 20 ms. If
+//!   interrupts stay off to the end of the slot, the next slot's start ends the
+//!   pulse.
+//! - Both are counted, in `late`.
+//!
+//! # Rules this rests on
+//!
+//! - The longest of the program's other handlers and the longest stretch with interrupts
+//!   off take less than [`LEAD`] together, less the 60 cycles that a handler here
+//!   needs itself before it reads the timer. Where that fails the edge is late.
+//! - Handlers do not let other interrupts in. Timer1's compare interrupts come before
+//!   Timer0's, the USART's and all later ones, but not before INT0, INT1, PCINT, the
+//!   watchdog and Timer2: those count as other handlers twice if they come in turn.
+//! - Interrupts are never off for 62 us, 1000 cycles. A slot whose end is missed so
+//!   is played again without a pulse, and everything comes a slot later from then on.
+//! - Only the two handlers touch Timer1, because all its 16-bit registers share
+//!   one TEMP byte.
+//! - Everyone else changes pins of the servos' ports by single `sbi` and `cbi`
+//!   instructions, which no interrupt can split.
+
+#![cfg_attr(not(test), no_std)]
+#![allow(unsafe_code)] // It stores to ports and timer; each block says what it rests on.
+#![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
+
+pub mod cells;
+mod engine;
+mod pin;
+#[cfg(target_arch = "avr")]
+mod store;
+mod timing;
+
+pub use engine::Engine;
+pub use pin::Pin;
+pub use timing::{CYCLES_PER_US, LEAD, LEAST_WIDTH, frame_cycles, most_width, slot_cycles};
+
+/// Makes the module in which it stands the owner of Timer1 and of the pins of one to eight
+/// servos. It then has the functions `start`, `submit`, `hush`, `ticks` and `late` of
+/// [`Engine`], and the handlers of both compare interrupts.
+///
+/// - `engine!(PINS)` with a constant `PINS: [Pin; N]` for pins that are known when the
+///   program is compiled.
+/// - `engine!(later: N)` for pins that are known when it runs: `connect`, too.
+///
+/// Once in a program: a second one defines the same handlers, and the linker refuses it.
+#[macro_export]
+macro_rules! engine {
+    (later: $servos:expr) => {
+        $crate::engine!(@ $servos, [const { [const { $crate::cells::Byte::new(0) }; 2] }; SIZE]);
+
+        /// See `servo_pulses::Engine::connect`.
+        #[inline(always)]
+        pub fn connect(pins: [$crate::Pin; SERVOS]) {
+            ENGINE.connect(pins);
+        }
+
+        /// See `servo_pulses::Engine::start`.
+        ///
+        /// # Safety
+        /// Interrupts are off, and nothing else uses Timer1 from now on.
+        #[inline(always)]
+        pub unsafe fn start() {
+            // SAFETY: as the caller says.
+            unsafe { ENGINE.start() }
+        }
+    };
+    (@ $servos:expr, $pins:expr) => {
+        const SERVOS: usize = $servos;
+        /// Tables are as long as a mask needs them.
+        const SIZE: usize = SERVOS.next_power_of_two();
+
+        // Each a variable of its own, so that its address is part of the instruction.
+        static PINS: [[$crate::cells::Byte; 2]; SIZE] = $pins;
+        static FRAMES: [[$crate::cells::Word; SIZE]; 2] =
+            [const { [const { $crate::cells::Word::new(0) }; SIZE] }; 2];
+        static PLAYING: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static FRESH: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static SLOT: $crate::cells::Byte = $crate::cells::Byte::new(SERVOS as u8);
+        static PORT: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static MASK: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static FALL: $crate::cells::Word =
+            $crate::cells::Word::new($crate::Engine::<SERVOS, SIZE>::NO_PULSE);
+        static ALLOWED: $crate::cells::Byte = $crate::cells::Byte::new(u8::MAX);
+        static TICKS: $crate::cells::Byte = $crate::cells::Byte::new(0);
+        static LATE: $crate::cells::Counter = $crate::cells::Counter::new();
+
+        const ENGINE: $crate::Engine<'static, SERVOS, SIZE> = $crate::Engine {
+            pins: &PINS,
+            frames: &FRAMES,
+            playing: &PLAYING,
+            fresh: &FRESH,
+            slot: &SLOT,
+            port: &PORT,
+            mask: &MASK,
+            fall: &FALL,
+            allowed: &ALLOWED,
+            ticks: &TICKS,
+            late: &LATE,
+        };
+
+        /// See `servo_pulses::Engine::submit`.
+        #[inline(always)]
+        pub fn submit<W: ::core::convert::Into<u16>>(widths: [W; SERVOS]) -> bool {
+            ENGINE.submit(widths)
+        }
+
+        /// See `servo_pulses::Engine::hush`.
+        #[inline(always)]
+        #[allow(dead_code)]
+        pub fn hush() {
+            ENGINE.hush();
+        }
+
+        /// See `servo_pulses::Engine::ticks`.
+        #[inline(always)]
+        #[allow(dead_code)]
+        pub fn ticks() -> u8 {
+            ENGINE.ticks()
+        }
+
+        /// See `servo_pulses::Engine::late`.
+        #[allow(dead_code)]
+        pub fn late() -> u16 {
+            ENGINE.late()
+        }
+
+        /// TIMER1_COMPA of an ATmega328P: a slot opens.
+        #[unsafe(export_name = "__vector_11")]
+        extern "avr-interrupt" fn slot_opens() {
+            // SAFETY: this is the handler of the compare match A.
+            unsafe { ENGINE.open() }
+        }
+
+        /// TIMER1_COMPB of an ATmega328P: a slot closes.
+        #[unsafe(export_name = "__vector_12")]
+        extern "avr-interrupt" fn slot_closes() {
+            // SAFETY: this is the handler of the compare match B.
+            unsafe { ENGINE.close() }
+        }
+    };
+    ($pins:expr) => {
+        $crate::engine!(@ $pins.len(), $crate::cells::pins($pins));
+
+        /// See `servo_pulses::Engine::start`.
+        ///
+        /// # Safety
+        /// Interrupts are off, and nothing else uses Timer1 from now on.
+        #[inline(always)]
+        pub unsafe fn start() {
+            // SAFETY: as the caller says.
+            unsafe { ENGINE.start_all() }
+        }
+    };
+}

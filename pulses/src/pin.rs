@@ -1,0 +1,98 @@
+//! Which register and bit a pin of the Arduino is.
+//!
+//! The numbers printed on the board say nothing about the chip: its pins sit in
+//! three ports in an order of their own.
+
+/// A pin of an Arduino UNO or Nano.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pin {
+    /// Data address of its PORT register; DDR is one below (data sheet, 14.4 and 30).
+    pub(crate) port: u8,
+    /// Its bit in that register.
+    pub(crate) mask: u8,
+}
+
+impl Pin {
+    /// The pin that is printed on the board as D0 to D13, or as A0 to A5 for 14 to 19;
+    /// `None` for any other number. D0 and D1 are the serial line, D13 has the LED.
+    #[must_use]
+    pub const fn arduino(number: u8) -> Option<Self> {
+        let (port, bit) = match number {
+            0..=7 => (0x2b, number),
+            8..=13 => (0x25, number - 8),
+            14..=19 => (0x28, number - 14),
+            _ => return None,
+        };
+        Some(Self {
+            port,
+            mask: 1 << bit,
+        })
+    }
+
+    /// Data address of its PORT register.
+    #[must_use]
+    pub const fn port(self) -> u8 {
+        self.port
+    }
+
+    /// Its bit in that register.
+    #[must_use]
+    pub const fn mask(self) -> u8 {
+        self.mask
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the data sheet calls the pins of the UNO's sockets D0 to D13 and A0 to A5,
+    /// from the UNO's circuit diagram.
+    const SOCKETS: [(u8, char, u8); 20] = [
+        (0, 'D', 0),
+        (1, 'D', 1),
+        (2, 'D', 2),
+        (3, 'D', 3),
+        (4, 'D', 4),
+        (5, 'D', 5),
+        (6, 'D', 6),
+        (7, 'D', 7),
+        (8, 'B', 0),
+        (9, 'B', 1),
+        (10, 'B', 2),
+        (11, 'B', 3),
+        (12, 'B', 4),
+        (13, 'B', 5),
+        (14, 'C', 0),
+        (15, 'C', 1),
+        (16, 'C', 2),
+        (17, 'C', 3),
+        (18, 'C', 4),
+        (19, 'C', 5),
+    ];
+
+    #[test]
+    fn every_pin_has_the_port_and_the_bit_of_the_circuit_diagram() {
+        for (number, port, bit) in SOCKETS {
+            let pin = Pin::arduino(number).expect("the UNO has it");
+            // Data sheet, 30 Register Summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
+            let address = match port {
+                'B' => 0x25,
+                'C' => 0x28,
+                _ => 0x2b,
+            };
+            assert_eq!(
+                (pin.port(), pin.mask()),
+                (address, 1 << bit),
+                "pin {number}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_uno_has_no_other_pins() {
+        for number in 20..=255 {
+            assert_eq!(Pin::arduino(number), None);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! A store to a port at a cycle that was chosen before.
+
+use core::arch::asm;
+
+/// Stores `low`, with the bits of `change` set if it is on time for that, in `port`
+/// a fixed number of cycles after Timer1 counts `count`, given low byte first; at
+/// once if it is too late. Returns 0xff if it was on time, else 0.
+///
+/// A falling edge goes through this with a `change` of nothing: the same
+/// instructions, so that all that they cost falls out of the width.
+///
+/// # Safety
+/// `port` is the PORT register of a servo pin and `low` is right for its other
+/// pins until the store, so interrupts are off; `count` is at most 255 ahead.
+#[inline(always)]
+pub unsafe fn store_at(count: [u8; 2], port: *mut u8, low: u8, change: u8) -> u8 {
+    let [left, high] = count;
+    let on_time: u8;
+    // SAFETY: reads TCNT1 (low byte first, which latches the high one), and
+    // writes `port`, which the caller answers for.
+    unsafe {
+        asm!(
+            // left = count - now
+            "lds {now}, {tcnt1l}",
+            "sub {left}, {now}",
+            "lds {now}, {tcnt1h}",
+            "sbc {on_time}, {now}",
+            // The borrow says late: on_time = 0, else 0xff; and if late left = 0 and
+            // nothing is set.
+            "sbc {on_time}, {on_time}",
+            "com {on_time}",
+            "and {left}, {on_time}",
+            "and {change}, {on_time}",
+            "or {value}, {change}",
+            // Three cycles a turn; left ends as 253, 254 or 255, and the rest, 0
+            // to 2 cycles, is made of branches to the next instruction, which
+            // take two cycles when taken and one when not.
+            "2: subi {left}, 3",
+            "brcc 2b",
+            "cpi {left}, 254",
+            "brcc 3f",
+            "3: cpi {left}, 255",
+            "breq 4f",
+            "4: st {port}, {value}",
+            tcnt1l = const 0x84,
+            tcnt1h = const 0x85,
+            now = out(reg) _,
+            left = inout(reg_upper) left => _,
+            on_time = inout(reg) high => on_time,
+            port = in(reg_ptr) port,
+            value = inout(reg) low => _,
+            change = inout(reg) change => _,
+            options(nostack),
+        );
+    }
+    on_time
+}

@@ -1,0 +1,99 @@
+//! How long slots, frames and pulses are.
+
+/// Cycles from a compare match to the moment from which its edge follows at a
+/// fixed distance. At most 255, because the wait is counted in a byte.
+pub const LEAD: u8 = 220;
+
+/// Timer1 counts every cycle of a CPU of 16 MHz.
+pub const CYCLES_PER_US: u16 = 16;
+
+/// The shortest pulse that can be made, cycles: 62.5 us at either end of a slot are for
+/// the two handlers and whatever they have to wait for.
+pub const LEAST_WIDTH: u16 = MARGIN;
+
+const MARGIN: u16 = 1_000;
+
+/// The 20 ms that a servo expects from one pulse to the next.
+const FRAME_CYCLES: u32 = 320_000;
+
+/// 2.5 ms. The longest pulse of a slot is then 2.4375 ms, beyond any servo's travel.
+const SHORTEST_SLOT: u32 = 40_000;
+
+/// 4 ms: what a slot has with four servos.
+const LONGEST_SLOT: u32 = 64_000;
+
+/// Cycles of a slot with so many servos: 20 ms shared by them and the slot of the tick.
+/// But 2.5 ms at least, so that with eight servos a frame takes 22.5 ms, and 4 ms at most,
+/// so that it takes 16 ms with three.
+///
+/// # Panics
+/// With no servo, or more than eight; while the program is compiled.
+#[must_use]
+pub const fn slot_cycles(servos: usize) -> u16 {
+    assert!(
+        1 <= servos && servos <= 8,
+        "an engine has one to eight servos"
+    );
+    let even = FRAME_CYCLES / (servos as u32 + 1);
+    // With less than four servos a slot would not fit 16 bits.
+    if even > LONGEST_SLOT {
+        return LONGEST_SLOT as u16;
+    }
+    if even < SHORTEST_SLOT {
+        return SHORTEST_SLOT as u16;
+    }
+    even as u16
+}
+
+/// Cycles from one pulse of a servo to its next.
+///
+/// # Panics
+/// As [`slot_cycles`].
+#[must_use]
+pub const fn frame_cycles(servos: usize) -> u32 {
+    (servos as u32 + 1) * slot_cycles(servos) as u32
+}
+
+/// The longest pulse that can be made, cycles.
+///
+/// # Panics
+/// As [`slot_cycles`].
+#[must_use]
+pub const fn most_width(servos: usize) -> u16 {
+    slot_cycles(servos) - MARGIN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_four_to_seven_servos_a_frame_is_20_ms_to_half_a_microsecond() {
+        assert_eq!(frame_cycles(4), 320_000);
+        for servos in 4..=7 {
+            assert!(
+                frame_cycles(servos).abs_diff(320_000) < 8,
+                "{servos} servos"
+            );
+        }
+    }
+
+    #[test]
+    fn a_slot_has_room_for_2_4_ms_whatever_the_number_of_servos() {
+        for servos in 1..=8 {
+            assert!(
+                most_width(servos) >= 2_400 * CYCLES_PER_US,
+                "{servos} servos"
+            );
+            // Every 25 ms at least, every 8 ms at most: analogue servos take both.
+            let ms = f64::from(frame_cycles(servos)) / 16_000.0;
+            assert!((8.0..=22.5).contains(&ms), "{servos} servos: {ms} ms");
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "one to eight servos")]
+    fn nine_servos_are_refused() {
+        let _ = slot_cycles(9);
+    }
+}
