@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz docs clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .docs .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -73,6 +73,8 @@ explore: ## everything that may happen to the robot, in every order; STATES=1000
 	$(call prepared,.explore)
 fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
+package: ## the crates that stand alone, as a registry would get them, each built from its package
+	$(call prepared,.package)
 docs: ## write anew the pages and pictures that programs make; the book of docs/ in out/book
 	$(call prepared,.docs)
 clean: ## remove everything that was built
@@ -209,6 +211,11 @@ TESTS ?= --workspace
 	@scripts/setup-book
 	@mkdocs build --strict --quiet
 	@echo "the book: out/book/index.html"
+
+# Also what is not committed, so that it can be tried before.
+.package:
+	@cd host && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics
+	@cd host && for package in target/package/*.crate; do echo "$$package"; done
 
 .lint:
 	@cargo fmt --check
