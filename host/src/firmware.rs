@@ -77,7 +77,7 @@ pub(crate) fn of_robot(
     }
 }
 
-/// The number of a robot in a firmware's first line, `# lizard 0.1.0 tables 5265f050, ...`.
+/// The number of a robot in a firmware's first line, `# lizard 0.2.0 tables 5265f050, ...`.
 fn tables(banner: &str) -> Option<&str> {
     let (_, after) = banner.strip_prefix("# lizard ")?.split_once(" tables ")?;
     let end = after.find(|c: char| !c.is_ascii_hexdigit());
@@ -106,10 +106,10 @@ mod tests {
 
     #[test]
     fn the_number_of_the_robot_is_read_from_the_first_line() {
-        let banner = "# lizard 0.1.0 tables 5265f050, send help for the commands";
+        let banner = "# lizard 0.2.0 tables 5265f050, send help for the commands";
         assert_eq!(tables(banner), Some("5265f050"));
-        assert_eq!(tables("# lizard 0.1.0 tables 00ff"), Some("00ff"));
-        assert_eq!(tables("# lizard 0.1.0"), None);
+        assert_eq!(tables("# lizard 0.2.0 tables 00ff"), Some("00ff"));
+        assert_eq!(tables("# lizard 0.2.0"), None);
         assert_eq!(tables("hello tables 5265f050"), None);
         assert_eq!(tables(""), None);
     }

@@ -283,7 +283,7 @@ fn sweep<W: uWrite + ?Sized>(out: &mut W, sweep: Sweep) -> Result<(), W::Error> 
     digits::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
-/// `# lizard 0.1.0 tables 1a2b3c4d, send help for the commands`.
+/// `# lizard 0.2.0 tables 1a2b3c4d, send help for the commands`.
 pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, hash: u32) -> Result<(), W::Error> {
     Text::Banner.print(out)?;
     Text::Version.print(out)?;

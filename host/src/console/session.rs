@@ -200,7 +200,7 @@ mod tests {
         session.receive("ok watch 1");
         session.say("walk");
         session.due(now);
-        session.receive("# lizard 0.1.0");
+        session.receive("# lizard 0.2.0");
         assert_eq!(
             session.due(now).as_deref(),
             Some("watch 1"),

@@ -115,7 +115,7 @@ mod tests {
             )
         };
         let text = [
-            "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":\"# lizard 0.1.0\"}}".to_owned(),
+            "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":\"# lizard 0.2.0\"}}".to_owned(),
             "{\"ms\":10,\"sent\":\"fly\"}".to_owned(),
             "{\"ms\":20,\"answer\":\"err 1 no\"}".to_owned(),
             status(500, 0.5),
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(
             String::from_utf8(out).expect("it is text"),
             "board       p\n\
-             firmware    lizard 0.1.0\n\
+             firmware    lizard 0.2.0\n\
              time        2.0 s, the pose of 0 of 101 frames\n\
              commands    1, of these refused: 1\n\
              margin      smallest 0.250, at 0.6 s, of 3 looks\n\
