@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs install clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .install .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -77,6 +77,8 @@ package: ## the crates that stand alone, as a registry would get them, each buil
 	$(call prepared,.package)
 docs: ## write anew the pages and pictures that programs make; the book of docs/ in out/book
 	$(call prepared,.docs)
+install: ## the program, its manual pages and completions, into PREFIX=~/.local
+	$(call prepared,.install)
 clean: ## remove everything that was built
 	rm -rf target host/target out judge/node_modules web/node_modules web/node/node_modules web/dist web/public
 
@@ -216,6 +218,10 @@ TESTS ?= --workspace
 .package:
 	@cd host && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics
 	@cd host && for package in target/package/*.crate; do echo "$$package"; done
+
+PREFIX ?= $(HOME)/.local
+.install: .cli
+	@scripts/install '$(PREFIX)'
 
 .lint:
 	@cargo fmt --check
