@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs install clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .install .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs install release release-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .install .release .release-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -79,8 +79,12 @@ docs: ## write anew the pages and pictures that programs make; the book of docs/
 	$(call prepared,.docs)
 install: ## the program, its manual pages and completions, into PREFIX=~/.local
 	$(call prepared,.install)
+release: ## what users take, from the commit that is checked out, in dist/; takes a while
+	$(call prepared,.release)
+release-test: ## a release twice, in different folders: the same bytes, and each file does
+	$(call prepared,.release-test)
 clean: ## remove everything that was built
-	rm -rf target host/target out judge/node_modules web/node_modules web/node/node_modules web/dist web/public
+	rm -rf target host/target out dist judge/node_modules web/node_modules web/node/node_modules web/dist web/public
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:
@@ -222,6 +226,12 @@ TESTS ?= --workspace
 PREFIX ?= $(HOME)/.local
 .install: .cli
 	@scripts/install '$(PREFIX)'
+
+.release:
+	@scripts/release
+
+.release-test:
+	@scripts/release-test
 
 .lint:
 	@cargo fmt --check

@@ -1,0 +1,152 @@
+// Prints what a release is made of, as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
+//     node scripts/spdx.mjs VERSION COMMIT
+// Run from the root of what was built. The program, the images and the page are the packages
+// that it describes; crates come from `cargo metadata`, Node's packages from the lock files,
+// libraries from Debian. SOURCE_DATE_EPOCH is its time.
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+
+const [version, commit] = process.argv.slice(2);
+const epoch = Number(process.env.SOURCE_DATE_EPOCH);
+if (!version || !commit || !Number.isInteger(epoch)) {
+  console.error('usage: SOURCE_DATE_EPOCH=seconds node scripts/spdx.mjs VERSION COMMIT');
+  process.exit(2);
+}
+const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1 << 28 });
+
+/** Packages by SPDXID, and relationships as lines of three words, so that none is there twice. */
+const packages = new Map();
+const relationships = new Set();
+const relate = (from, kind, to) => relationships.add(`${from} ${kind} ${to}`);
+
+/** Adds a package and gives its SPDXID. */
+function add(source, name, versionInfo, license, more = {}) {
+  const SPDXID = `SPDXRef-${source}-${name}-${versionInfo}`.replace(/[^A-Za-z0-9.-]+/g, '-');
+  packages.set(SPDXID, {
+    SPDXID, name, versionInfo,
+    downloadLocation: 'NOASSERTION', filesAnalyzed: false,
+    licenseConcluded: 'NOASSERTION', licenseDeclared: license, copyrightText: 'NOASSERTION',
+    ...more,
+  });
+  return SPDXID;
+}
+const purl = (locator) => ({ externalRefs: [{ referenceCategory: 'PACKAGE-MANAGER', referenceType: 'purl', referenceLocator: locator }] });
+
+// --- What is given away ----------------------------------------------------
+const GPL = 'GPL-3.0-or-later';
+const product = (name, license, purpose) => {
+  const id = add('release', name, version, license, { primaryPackagePurpose: purpose });
+  relate('SPDXRef-DOCUMENT', 'DESCRIBES', id);
+  return id;
+};
+const program = product('lizard-program', GPL, 'APPLICATION');
+const image = product('lizard-image', 'MIT OR Apache-2.0', 'FIRMWARE');
+const page = product('lizard-page', '(MIT OR Apache-2.0) AND MIT AND GPL-2.0-or-later', 'APPLICATION');
+
+// --- Crates ----------------------------------------------------------------
+
+/** The checksums of a Cargo.lock, by "name version". */
+function checksums(folder) {
+  const found = new Map();
+  for (const block of readFileSync(`${folder}/Cargo.lock`, 'utf8').split('[[package]]')) {
+    const value = (key) => block.match(new RegExp(`^${key} = "(.*)"$`, 'm'))?.[1];
+    if (value('checksum')) found.set(`${value('name')} ${value('version')}`, value('checksum'));
+  }
+  return found;
+}
+
+/** Adds the crates that a crate of a workspace is built from, all the way down. */
+function crates(folder, top, of, ...filter) {
+  const text = execFileSync('cargo', ['metadata', '--locked', '--format-version', '1', ...filter], { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28 });
+  const metadata = JSON.parse(text);
+  const sums = checksums(folder);
+  const crate = new Map(metadata.packages.map((entry) => [entry.id, entry]));
+  const node = new Map(metadata.resolve.nodes.map((entry) => [entry.id, entry]));
+  const ids = new Map();
+  const visit = (id) => {
+    if (ids.has(id)) return ids.get(id);
+    const { name, version: number, license, source } = crate.get(id);
+    const sum = sums.get(`${name} ${number}`);
+    // Old crates write "MIT/Apache-2.0", which SPDX does not know.
+    const more = source
+      ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${number}.crate`, ...purl(`pkg:cargo/${name}@${number}`) }
+      : {};
+    if (sum) more.checksums = [{ algorithm: 'SHA256', checksumValue: sum }];
+    const mine = add('cargo', name, number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
+    ids.set(id, mine);
+    for (const { pkg, dep_kinds } of node.get(id).deps) {
+      for (const { kind } of dep_kinds) {
+        if (kind === null) relate(mine, 'DEPENDS_ON', visit(pkg));
+        if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', mine);
+      }
+    }
+    return mine;
+  };
+  const first = metadata.packages.find(({ name, source }) => name === top && !source);
+  relate(of, 'CONTAINS', visit(first.id));
+}
+const machine = run('rustc', '--print', 'host-tuple').trim();
+crates('host', 'lizard-host', program, '--filter-platform', machine);
+crates('host', 'lizard-web', page, '--filter-platform', 'wasm32-unknown-unknown');
+// Cargo knows the AVR's target by a file; what these crates need does not depend on it.
+crates('.', 'lizard', image);
+
+const rust = run('rustc', '--version').split(' ')[1];
+const std = add('rust', 'rust-std', rust, 'MIT OR Apache-2.0', { downloadLocation: `https://static.rust-lang.org/dist/rustc-${rust}-src.tar.gz` });
+for (const of of [program, image, page]) relate(of, 'STATIC_LINK', std);
+
+// --- Node's packages -------------------------------------------------------
+
+/** Adds the packages of a lock file: those in the page, and those that only build or test it. */
+function nodePackages(folder) {
+  const lock = JSON.parse(readFileSync(`${folder}/package-lock.json`, 'utf8'));
+  for (const [path, entry] of Object.entries(lock.packages)) {
+    if (path === '') continue;
+    const name = path.slice(path.lastIndexOf('node_modules/') + 'node_modules/'.length);
+    const more = purl(`pkg:npm/${name.replace('@', '%40')}@${entry.version}`);
+    if (entry.resolved) more.downloadLocation = entry.resolved;
+    const [algorithm, base64] = entry.integrity?.split('-') ?? [];
+    if (base64) more.checksums = [{ algorithm: algorithm.toUpperCase(), checksumValue: Buffer.from(base64, 'base64').toString('hex') }];
+    const id = add('npm', name, entry.version, entry.license ?? 'NOASSERTION', more);
+    if (entry.dev || entry.devOptional) relate(id, 'BUILD_TOOL_OF', page);
+    else relate(page, 'CONTAINS', id);
+  }
+}
+nodePackages('web');
+nodePackages('judge');
+
+// --- Libraries from Debian -------------------------------------------------
+
+/** Adds a Debian package whose library is in something that is given away. */
+function debian(name, license, of, kind = 'STATIC_LINK') {
+  const number = run('dpkg-query', '-W', '-f=${Version}', name);
+  const [source, sourceVersion] = run('dpkg-query', '-W', '-f=${source:Package} ${source:Version}', name).split(' ');
+  const id = add('debian', name, number, license, {
+    ...purl(`pkg:deb/debian/${name}@${encodeURIComponent(number)}`),
+    sourceInfo: `built from the Debian source package ${source} ${sourceVersion}`,
+  });
+  for (const one of [of].flat()) relate(one, kind, id);
+}
+debian('libsimavr-dev', GPL, program);
+debian('libelf-dev', 'GPL-2.0-or-later OR LGPL-3.0-or-later', program);
+debian('zlib1g-dev', 'Zlib', program);
+debian('libc6-dev', 'LGPL-2.1-or-later', program);
+debian('avr-libc', 'BSD-3-Clause', image);
+debian('gcc-avr', 'GPL-3.0-or-later WITH GCC-exception-3.1', image);
+debian('arduino-core-avr', 'GPL-2.0-or-later', page, 'CONTAINS'); // optiboot
+
+// --- The document ----------------------------------------------------------
+const byId = (a, b) => (a.SPDXID < b.SPDXID ? -1 : 1);
+console.log(JSON.stringify({
+  spdxVersion: 'SPDX-2.3',
+  dataLicense: 'CC0-1.0',
+  SPDXID: 'SPDXRef-DOCUMENT',
+  name: `lizard-${version}`,
+  documentNamespace: `https://spdx.org/spdxdocs/lizard-${version}-${commit}`,
+  creationInfo: { created: new Date(epoch * 1000).toISOString().replace('.000', ''), creators: [`Tool: lizard-spdx-${version}`] },
+  packages: [...packages.values()].sort(byId),
+  relationships: [...relationships].sort().map((line) => {
+    const [spdxElementId, relationshipType, relatedSpdxElement] = line.split(' ');
+    return { spdxElementId, relationshipType, relatedSpdxElement };
+  }),
+}, null, 1));
