@@ -206,3 +206,30 @@ fn no_picture_is_on_two_pages_of_the_book() {
     }
     assert!(seen.len() > 5, "{seen:?}");
 }
+
+#[test]
+fn the_pages_name_the_version_that_is_built() {
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("Cargo.toml");
+    let version = manifest
+        .lines()
+        .find_map(|line| line.strip_prefix("version = "))
+        .expect("a version")
+        .trim_matches('"');
+    let log = fs::read_to_string(root().join("CHANGELOG.md")).expect("CHANGELOG.md");
+    assert!(log.contains(&format!("\n## {version} (")), "CHANGELOG.md");
+    let mut count = 0;
+    for (page, text) in pages() {
+        // `lizard-0.2.0-page.zip`, `git tag v0.2.0`, `# lizard 0.2.0 tables`.
+        for before in ["lizard-", "tag v", "# lizard "] {
+            for rest in text.split(before).skip(1) {
+                let end = |c: char| !c.is_ascii_digit() && c != '.';
+                let named = rest.split(end).next().unwrap_or_default();
+                if named.matches('.').count() == 2 {
+                    assert_eq!(named, version, "{}: {before}{named}", page.display());
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert!(count > 10, "{count}");
+}
