@@ -13,6 +13,22 @@ as_root() {
     fi
 }
 
+# Another apt may be at work. For its lock on the packages apt-get can wait by itself, for that on the lists it
+# cannot. Both are waited for so many seconds.
+LOCK_WAIT=${LOCK_WAIT:-900}
+update_lists() {
+    local answer until=$((SECONDS + LOCK_WAIT)) told=
+    while ! answer=$(as_root env LC_ALL=C apt-get update -q 2>&1); do
+        if [[ $answer != *"Could not get lock"* || $SECONDS -ge $until ]]; then
+            printf '%s\n' "$answer"
+            return 1
+        fi
+        [ -n "$told" ] || say "another program installs packages; waiting for it, up to $LOCK_WAIT s"
+        told=yes
+        sleep 2
+    done
+}
+
 install_missing() {
     missing=()
     local package
@@ -20,6 +36,6 @@ install_missing() {
     [ ${#missing[@]} -eq 0 ] && return
     command -v apt-get >/dev/null || { say "not a Debian machine: install the likes of ${missing[*]} yourself, then run this again"; exit 1; }
     say "installing Debian packages: ${missing[*]}"
-    as_root apt-get update -q
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"
+    update_lists
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout="$LOCK_WAIT" install -y -q --no-install-recommends "${missing[@]}"
 }

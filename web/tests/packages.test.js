@@ -1,0 +1,51 @@
+// A machine on which another program installs packages: `make web` waits for it, and not for ever.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { chmod, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+
+const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
+
+/** What scripts/packages.sh does with an apt-get that fails so many times with this sentence. */
+async function updates(times, sentence, wait) {
+  const folder = await mkdtemp(join(tmpdir(), 'lizard-apt-'));
+  try {
+    const apt = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${times} ] || exit 0\necho '${sentence}'\nexit 100\n`;
+    await writeFile(join(folder, 'n'), '0\n');
+    await writeFile(join(folder, 'apt-get'), apt);
+    await chmod(join(folder, 'apt-get'), 0o755);
+    const { status, stdout } = spawnSync('bash', ['-c', `set -euo pipefail; . ${SCRIPT}; as_root() { "$@"; }; update_lists`], {
+      env: { ...process.env, PATH: `${folder}:${process.env.PATH}`, LOCK_WAIT: String(wait) },
+      encoding: 'utf8',
+      timeout: 60_000,
+    });
+    return { status, stdout, tries: Number(await readFile(join(folder, 'n'), 'utf8')) };
+  } finally {
+    await rm(folder, { recursive: true });
+  }
+}
+
+const HELD = 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 4711 (apt-get)';
+
+test('a lock that is held is waited for', async () => {
+  const { status, stdout, tries } = await updates(2, HELD, 60);
+  assert.equal(status, 0, stdout);
+  assert.equal(tries, 3);
+  assert.match(stdout, /^setup: another program installs packages; waiting for it, up to 60 s$/m);
+});
+
+test('a lock that is held for ever is waited for no longer than was said', async () => {
+  const { status, stdout, tries } = await updates(1000, HELD, 3);
+  assert.notEqual(status, 0);
+  assert.match(stdout, /held by process 4711/);
+  assert.ok(tries >= 2 && tries <= 4, `${tries}`);
+});
+
+test('another trouble is said at once', async () => {
+  const { status, stdout, tries } = await updates(1000, 'E: The repository has no Release file.', 60);
+  assert.notEqual(status, 0);
+  assert.match(stdout, /no Release file/);
+  assert.equal(tries, 1);
+});
