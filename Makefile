@@ -84,7 +84,7 @@ release: ## what users take, from the commit that is checked out, in dist/; take
 release-test: ## a release twice, in different folders: the same bytes, and each file does
 	$(call prepared,.release-test)
 clean: ## remove everything that was built
-	rm -rf target host/target out dist judge/node_modules web/node_modules web/node/node_modules web/dist web/public
+	rm -rf target host/target out dist judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:

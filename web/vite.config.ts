@@ -1,9 +1,11 @@
 import { defineConfig } from 'vite';
+import { offline } from './offline.js';
 
 export default defineConfig({
   // Relative, so that the folder works under any address.
   base: './',
   build: { target: 'es2022', outDir: 'dist', emptyOutDir: true, reportCompressedSize: false },
+  plugins: [offline()],
   // The simulated chip is the judge's.
   server: { fs: { allow: ['..'] } },
 });

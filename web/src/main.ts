@@ -3,6 +3,7 @@ import { run } from './clock';
 import { files } from './files';
 import { kept } from './kept';
 import { hasSerial, NO_SERIAL } from './link/port-link';
+import { keepOffline } from './offline';
 import { Predictor } from './predictor';
 import { lags, Robot } from './robot';
 import { Session } from './session';
@@ -22,8 +23,10 @@ import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
+import { Setup } from './view/setup';
 import { Troubles } from './view/troubles';
 import { World } from './view/world';
+import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
 
 /** Texts that follow the robot are written so many times a second. */
@@ -86,12 +89,16 @@ async function start(): Promise<void> {
   const lengths = new Lengths(now);
   const calibrate = new Calibrate(now);
   let writing = false;
-  const flash = new FlashView(now, (busy) => {
+  const writer = new Writer(now, (busy) => {
     writing = health.held = busy;
     // The line belongs to the boot loader: what would take it away waits.
     choice.enabled = !busy;
     connect.disabled = busy || !hasSerial();
+    flash.update();
+    setup.update();
   });
+  const flash = new FlashView(now, writer);
+  const setup: Setup = new Setup(now, writer, () => connectBoard());
 
   const session: Session = new Session(robot, {
     robot(description) {
@@ -104,6 +111,7 @@ async function start(): Promise<void> {
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
       lengths.take(description.lengths);
+      setup.update();
       floor.clear();
       world.take();
       predict();
@@ -118,7 +126,10 @@ async function start(): Promise<void> {
       scope.pulse(pin, rise, width);
     },
     sent: (line) => log.sent(line),
-    came: (line) => log.came(line),
+    came(line) {
+      log.came(line);
+      setup.came(line);
+    },
     doing(gait) {
       drive.doing(gait);
       texts();
@@ -134,6 +145,7 @@ async function start(): Promise<void> {
         ? `${link.name}: no image has these lengths, tables ${tables}`
         : text[String(tables)] ??
           `on a ${link.name} with the image of another robot, tables ${tables}: choose that robot, or flash this one's`;
+      setup.update();
     },
     speed: (percent) => pace.show(percent),
     link(link) {
@@ -142,6 +154,7 @@ async function start(): Promise<void> {
       element('where').textContent = `waiting for the ${link.name}`;
       element('connect').textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
       flash.update();
+      setup.link();
     },
     trouble(cause, said) {
       // A board without this firmware can have it.
@@ -199,10 +212,15 @@ async function start(): Promise<void> {
     element('no-serial').textContent = NO_SERIAL;
     element('no-serial').hidden = false;
   }
-  connect.addEventListener('click', () => {
-    const change = session.isReal ? session.disconnect() : session.connect();
-    change.catch((error: unknown) => troubles.say('port', `No board is connected: ${sentence(error)}`));
-  });
+  async function connectBoard(): Promise<void> {
+    try {
+      if (session.isReal) await session.disconnect();
+      else if (await session.connect()) setup.met();
+    } catch (error) {
+      troubles.say('port', `No board is connected: ${sentence(error)}`);
+    }
+  }
+  connect.addEventListener('click', () => void connectBoard());
   // A board goes on walking when its page is closed: it is stopped, and the browser asks. It asks, too, before half
   // an image is left on a board.
   addEventListener('beforeunload', (event) => {
@@ -220,6 +238,11 @@ async function start(): Promise<void> {
     troubles.say('robot', said, remedy);
   }
   window.lizard = session;
+  // After what the first step needs has come.
+  void keepOffline((take) => {
+    element('fresh').hidden = false;
+    element('fresh-take').onclick = take;
+  });
   void calibrate;
   let sinceTexts = 0;
   let pictures = 0;

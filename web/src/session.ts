@@ -87,6 +87,8 @@ export class Session {
   mayAsk = false;
   link!: Link;
   dialogue!: Dialogue;
+  /** How often a board has greeted: one that begins anew has lost what was not saved. */
+  beginnings = 0;
   private originalImage: string | null = null;
   private set: Floor | null = null;
   private bootLoader: string | null = null;
@@ -96,6 +98,8 @@ export class Session {
   private onBanner: () => void = () => {};
   /** The tables of the image at the other end; undefined until that is known. */
   private tables: Tables | undefined;
+  /** Whether a board without this firmware has the boot loader of an UNO. */
+  hasLoader = false;
   /** Whether a board on USB says where it is. */
   private watching = false;
   /** Counts what was chosen: a file that comes late is not taken. */
@@ -183,6 +187,16 @@ export class Session {
     }
   }
 
+  /** Whether this firmware answers at the other end. */
+  get answers(): boolean {
+    return this.tables !== undefined && this.tables !== null;
+  }
+
+  /** What the other end has; undefined until that is known. */
+  get has(): Tables | undefined {
+    return this.tables;
+  }
+
   get isReal(): boolean {
     return this.link instanceof PortLink;
   }
@@ -211,10 +225,10 @@ export class Session {
     this.simulated?.supply(this.volts);
   }
 
-  /** Takes a board on USB, if a person picks one, and says what it is. Throws a sentence. */
-  async connect(): Promise<void> {
+  /** Takes a board on USB and says what it is; whether a person picked one and it is still there. Throws a sentence. */
+  async connect(): Promise<boolean> {
     const link = await PortLink.open();
-    if (!link) return;
+    if (!link) return false;
     link.onGone = (why) => {
       void this.simulate().then(() => this.listener.trouble('port', `The board is gone: ${why} The simulation goes on.`));
     };
@@ -222,11 +236,12 @@ export class Session {
     this.listener.trouble('port', null);
     // Opening the port has reset the board. What comes before its banner goes to the boot loader.
     const greeted = await this.greeting();
-    if (this.link !== link) return;
-    if (!greeted && (await this.answers())) this.has('unknown');
-    if (this.link !== link) return;
+    if (this.link !== link) return false;
+    if (!greeted && (await this.replies())) this.found('unknown');
+    if (this.link !== link) return false;
     if (this.tables) await this.watch();
     else await this.identify(link);
+    return this.link === link;
   }
 
   /** Whether a board that was begun anew greets in time. */
@@ -236,7 +251,7 @@ export class Session {
   }
 
   /** Whether this firmware is there: not every port resets its board. */
-  private async answers(): Promise<boolean> {
+  private async replies(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
     const read = answer && status(answer.text);
     if (read) this.doing(read.gait.replaceAll('-', ' '));
@@ -245,17 +260,20 @@ export class Session {
 
   /** Says what a board is that does not have this firmware, as its boot loader knows. */
   private async identify(link: Link): Promise<void> {
-    this.has(null);
+    this.hasLoader = false;
     let said = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
     this.dialogue.end();
     try {
       await identify(link);
+      this.hasLoader = true;
     } catch (error) {
       said = `The board does not speak as this firmware does, and asked for its boot loader ${sentence(error)}. Is it the right port, and an UNO?`;
     } finally {
       if (this.link === link) this.listen();
     }
-    if (this.link === link) this.listener.trouble('board', said);
+    if (this.link !== link) return;
+    this.found(null);
+    this.listener.trouble('board', said);
   }
 
   /** Has a board say where it is. */
@@ -330,10 +348,11 @@ export class Session {
 
   private greeted(banner: string): void {
     const { link } = this;
+    this.beginnings += 1;
     this.doing('stand');
     this.watching = false;
     this.listener.trouble('board', null);
-    this.has(/ tables ([0-9a-f]{8})/.exec(banner)?.[1] ?? 'unknown');
+    this.found(/ tables ([0-9a-f]{8})/.exec(banner)?.[1] ?? 'unknown');
     this.onBanner();
     // A byte would call off what `boot` is set to.
     this.mayAsk = false;
@@ -344,7 +363,7 @@ export class Session {
     });
   }
 
-  private has(tables: Tables): void {
+  private found(tables: Tables): void {
     this.tables = tables;
     this.listener.tables(tables);
   }
@@ -405,7 +424,7 @@ export class Session {
     const greeted = await this.greeting();
     if (this.link !== link) return true;
     if (!greeted) {
-      this.has(null);
+      this.found(null);
       this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it does not greet.`);
     }
     return greeted;

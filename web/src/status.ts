@@ -4,6 +4,8 @@ import type { Four } from './robot';
 export interface Status {
   gait: string;
   pose: Four<number>;
+  /** Since its reset. */
+  frames: number;
   margin: number;
   guard: string;
   fault: string;
@@ -30,6 +32,7 @@ export function status(line: string): Status | null {
   return {
     gait: pairs.get('gait') ?? '',
     pose,
+    frames: number('frames') ?? 0,
     margin: number('margin') ?? 0,
     guard: pairs.get('guard') ?? '',
     fault: pairs.get('fault') ?? 'none',

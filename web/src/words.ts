@@ -4,6 +4,7 @@
 export const WORDS = {
   stop: 'stop',
   rest: 'rest',
+  help: 'help',
   status: 'status',
   pose: 'pose',
   speed: 'speed',
@@ -17,7 +18,15 @@ export const WORDS = {
   save: 'save',
   load: 'load',
   factory: 'factory',
+  boot: 'boot',
+  deadman: 'deadman',
 } as const;
+
+/** Gaits that the page asks for by name: the core has `stand` in every robot, and `walk` is looked for first. */
+export const GAITS = { stand: 'stand', walk: 'walk' } as const;
+
+/** What the firmware says after a reset where nothing was ever saved. */
+export const NOTHING_SAVED = '# calibration: none is saved';
 
 /** Words of the page and of its buttons that are not among the core's. */
 export function unknownWords(buttons: string[], core: string[]): string[] {

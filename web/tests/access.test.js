@@ -35,6 +35,27 @@ for (const [name, options] of [
   });
 }
 
+for (const [name, options] of [
+  ['light', { colorScheme: 'light' }],
+  ['dark, on a phone', { ...PHONE, colorScheme: 'dark' }],
+  ['in colours of the user\'s own', { forcedColors: 'active' }],
+]) {
+  test(`axe-core finds nothing in any step of the first connection, ${name}`, async () => {
+    const page = await standing({ ...options, bypassCSP: true });
+    await page.addScriptTag({ path: AXE });
+    await page.getByRole('button', { name: 'Set up…' }).click();
+    const steps = await page.locator('#setup-steps button').all();
+    assert.equal(steps.length, 9);
+    for (const step of steps) {
+      await step.click();
+      await advance(page, 1500);
+      const { violations } = await page.evaluate(() => window.axe.run('#setup', { resultTypes: ['violations'] }));
+      const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
+      assert.deepEqual(found, [], await page.locator('#setup-step').innerText());
+    }
+  });
+}
+
 test('a phone shows it without scrolling sideways', async () => {
   const page = await opened(PHONE);
   const { wide, seen } = await page.evaluate(() => ({

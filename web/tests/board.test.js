@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { close, complaints, open, page, tidy } from './browser.js';
+import { connected, until } from './board.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -10,25 +11,6 @@ afterEach(tidy);
 after(close);
 
 const text = (opened, selector) => opened.locator(selector).innerText();
-
-/** The page with a board of this image, so long after it was connected. */
-async function connected(image, ms) {
-  const opened = await page({}, fakeSerial);
-  await opened.evaluate((image) => (window.flashed = image), image);
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
-  await opened.waitForFunction(() => window.otherBoard);
-  await opened.clock.runFor(ms);
-  return opened;
-}
-
-/** Lets the page's time go on until this is so, for 20 s of it at most. */
-async function until(opened, what, isSo) {
-  for (let ms = 0; ms < 20_000; ms += 250) {
-    if (await isSo()) return;
-    await opened.clock.runFor(250);
-  }
-  assert.fail(`waited 20 s of the page's time until ${what}`);
-}
 
 /** Until so many lines of the console are this one. */
 const said = (opened, line, times = 1) =>
@@ -51,7 +33,7 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
     assert.ok(await opened.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
   }
   for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
-  assert.equal(await text(opened, '#flash-said'), 'written and verified');
+  assert.match(await text(opened, '#flash-said'), /^written and verified in \d+ s$/);
   await opened.clock.runFor(8000);
   assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
   for (const control of ['#robot', '#connect']) assert.ok(await opened.locator(control).isEnabled(), control);

@@ -5,7 +5,7 @@ import { extname, join, normalize } from 'node:path';
 
 import { chromium } from 'playwright-core';
 
-const DIST = new URL('../dist/', import.meta.url).pathname;
+export const DIST = new URL('../dist/', import.meta.url).pathname;
 const FOLDER = '/somewhere/below/';
 const TYPES = {
   '.html': 'text/html',
@@ -49,10 +49,12 @@ export async function tidy() {
   await within('the pages to close', Promise.all(pages.splice(0).map((opened) => opened.close())));
 }
 
-export async function open() {
-  server = createServer(async (request, response) => {
+/** A web server with a folder's files, below a path of its own; `asked` has the path of each request. */
+export async function serve(folder, asked = []) {
+  const made = createServer(async (request, response) => {
     const path = request.url.split('?')[0].replace(FOLDER, '/');
-    const file = join(DIST, normalize(path === '/' ? '/index.html' : path));
+    asked.push(path);
+    const file = join(folder, normalize(path === '/' ? '/index.html' : path));
     try {
       const bytes = await readFile(file);
       response.setHeader('content-type', TYPES[extname(file)] ?? 'text/plain');
@@ -62,7 +64,12 @@ export async function open() {
       response.end();
     }
   });
-  await within('a web server', new Promise((ready) => server.listen(0, '127.0.0.1', ready)));
+  await within('a web server', new Promise((ready) => made.listen(0, '127.0.0.1', ready)));
+  return made;
+}
+
+export async function open() {
+  server = await serve(DIST);
   browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox'], timeout: PATIENCE });
 }
 
@@ -72,11 +79,14 @@ export async function close() {
 }
 
 /** Where the page is. */
-export const address = () => `http://127.0.0.1:${server.address().port}${FOLDER}`;
+export const address = (of = server) => `http://127.0.0.1:${of.address().port}${FOLDER}`;
 
-/** A page of the browser with nothing in it yet. It is to move only when a test says so. */
+/**
+ * A page of the browser with nothing in it yet. It is to move only when a test says so, and has its files from the server
+ * unless a test asks for service workers.
+ */
 export async function blank(options = {}) {
-  const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', ...options }));
+  const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
   pages.push(opened);
   limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
   limit(opened.clock, 'clock', ['install', 'runFor']);

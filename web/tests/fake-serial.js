@@ -3,7 +3,8 @@
 /**
  * With `window.flashed` set to the name of an image, or to null for none, the board has that one;
  * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
- * of the port.
+ * of the port; `window.garbage` has the board say bytes without a meaning. `window.pulses` has the last width of
+ * each pin, us.
  */
 export function fakeSerial() {
   let board;
@@ -22,11 +23,21 @@ export function fakeSerial() {
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });
       window.unplug = () => {
         clearInterval(port.timer);
+        clearInterval(port.noise);
         port.readable = null;
         out.error(new Error('The device has been lost.'));
       };
       port.writable = new WritableStream({ write: (bytes) => board.send(bytes) });
       board.onByte = (byte) => out.enqueue(Uint8Array.of(byte));
+      if (window.garbage) {
+        board.send = () => {};
+        board.onByte = () => {};
+        let seed = 1;
+        const byte = () => ((seed = (seed * 1103515245 + 12345) % 2147483648) >> 16) & 0xff;
+        port.noise = setInterval(() => out.enqueue(Uint8Array.from({ length: 20 }, byte)), 2);
+      }
+      window.pulses = {};
+      board.onPulse = (pin, rise, width) => (window.pulses[pin] = width / 16);
       if (!window.awake) board.reset('external');
       window.otherBoard = board;
       window.heard = '';
@@ -38,6 +49,7 @@ export function fakeSerial() {
     },
     async close() {
       clearInterval(port.timer);
+      clearInterval(port.noise);
     },
   };
   const requestPort = async () => {

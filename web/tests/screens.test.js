@@ -110,6 +110,28 @@ test('forced colours show which button is pressed and how long a bar is', async 
   assert.equal(new Set(bar).size, 3, bar.join());
 });
 
+for (const [name, viewport] of [
+  ['320 pixels', { width: 320, height: 568 }],
+  ['a tablet', { width: 768, height: 1024 }],
+  ['a large desk', { width: 3840, height: 2160 }],
+]) {
+  test(`${name} wide, with every panel open, nothing is beside the screen`, async () => {
+    const opened = await standing({ viewport });
+    for (const panel of ['Lengths', 'Calibrate', 'Flash']) await opened.getByText(panel, { exact: true }).click();
+    await advance(opened, 500);
+    await opened.getByRole('group', { name: 'A4' }).waitFor();
+    const { wide, seen, outside } = await opened.evaluate(() => ({
+      wide: document.documentElement.scrollWidth,
+      seen: document.documentElement.clientWidth,
+      outside: [...document.querySelectorAll('button, input, select, canvas, table')]
+        .filter((each) => each.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
+        .map(({ id, textContent }) => id || textContent),
+    }));
+    assert.ok(wide <= seen, `${wide} of ${seen} pixels`);
+    assert.deepEqual(outside, []);
+  });
+}
+
 test('a page without JavaScript says what it needs', async () => {
   const opened = await blank({ javaScriptEnabled: false });
   await opened.goto(address());

@@ -4,6 +4,8 @@ import type { Link } from './link';
 
 /** The console takes lines of at most so many characters. */
 export const LONGEST_LINE = 63;
+/** The robot's own lines are shorter than this: what is longer is noise, and is cut. */
+const LONGEST = 500;
 /** No answer within this time, ms, is none. */
 const PATIENCE = 3000;
 
@@ -97,8 +99,8 @@ export class Dialogue {
     if (this.over) return;
     this.text += this.decoder.decode(bytes);
     const lines = this.text.split(/\r?\n/);
-    this.text = lines.pop() ?? '';
-    for (const line of lines) if (line !== '') this.line(line);
+    this.text = (lines.pop() ?? '').slice(-LONGEST);
+    for (const line of lines) if (line !== '') this.line(line.slice(-LONGEST));
   }
 
   private line(line: string): void {

@@ -1,4 +1,4 @@
-// The link to a board on USB, by Web Serial. Chromium and its kin have it, over https or on localhost.
+// The link to a board on USB, by Web Serial. Chromium and its kin and newer Firefox have it, over https or on localhost.
 import { sentence } from '../trouble';
 import type { Link } from './link';
 
@@ -17,7 +17,7 @@ interface Serial {
 
 const BAUD = 115_200;
 /** Why no board can be connected. */
-export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium and Edge have it, on localhost and over https.';
+export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
 /** How long the reset line is pulled, ms. */
 const RESET = 50;
 

@@ -3,20 +3,21 @@ import { hasConsole, imageOf } from '../link/stk500';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
+import type { Writer } from './writer';
 
 export class FlashView {
   private readonly note = element('flash-note');
   private readonly file = element<HTMLInputElement>('flash-file');
   private readonly write = element<HTMLButtonElement>('flash-write');
   private readonly question = element('flash-question');
-  private readonly progress = element<HTMLProgressElement>('flash-progress');
-  private readonly said = element('flash-said');
+  readonly progress = element<HTMLProgressElement>('flash-progress');
+  readonly said = element('flash-said');
   /** The image of the file that was chosen, until a person has decided about it. */
   private chosen: Uint8Array | null = null;
 
   constructor(
     private readonly session: () => Session,
-    private readonly busy: (busy: boolean) => void,
+    private readonly writer: Writer,
   ) {
     this.write.addEventListener('click', () => this.writeOwn());
     this.file.addEventListener('change', () => {
@@ -35,8 +36,8 @@ export class FlashView {
   update(): void {
     const { link, image } = this.session();
     this.forget();
-    this.file.disabled = !link.canFlash;
-    this.write.disabled = !link.canFlash || image === null;
+    this.file.disabled = !link.canFlash || this.writer.isBusy;
+    this.write.disabled = !link.canFlash || image === null || this.writer.isBusy;
     this.note.textContent = !link.canFlash
       ? 'The core runs in the page, without a chip: there is nothing to flash. Build an image with `make firmware` and this robot.toml.'
       : image === null
@@ -80,28 +81,6 @@ export class FlashView {
   }
 
   private async flash(image: Uint8Array): Promise<void> {
-    this.busy(true);
-    this.write.disabled = this.file.disabled = true;
-    this.progress.hidden = false;
-    this.said.textContent = 'calling the boot loader…';
-    let written = false;
-    try {
-      await this.session().flash(image, (done, of, what) => {
-        const share = (50 * done) / of + (what === 'verifying' ? 50 : 0);
-        this.progress.value = share;
-        const text = what === 'writing' ? 'writing…' : 'verifying…';
-        if (this.said.textContent !== text) this.said.textContent = text;
-      });
-      this.said.textContent = 'written and verified';
-      written = true;
-    } catch (error) {
-      this.said.textContent = `not written: ${sentence(error)}`;
-    }
-    this.progress.hidden = true;
-    this.busy(false);
-    this.update();
-    if (written && !(await this.session().begins())) {
-      this.said.textContent = 'written and verified; it does not greet as this firmware does';
-    }
+    await this.writer.write(image, this);
   }
 }

@@ -1,0 +1,23 @@
+// The page's service worker, with the list of all files that were built.
+import { createHash } from 'node:crypto';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+const NAME = 'service-worker.js';
+
+/** Writes the service worker of the page in a folder. */
+export function writeServiceWorker(folder) {
+  const paths = readdirSync(folder, { recursive: true, withFileTypes: true })
+    .filter((entry) => entry.isFile())
+    .map((entry) => join(entry.parentPath ?? entry.path, entry.name).slice(join(folder, '/').length).replaceAll('\\', '/'))
+    .filter((path) => path !== NAME)
+    .sort();
+  const hash = (path) => createHash('sha256').update(readFileSync(join(folder, path))).digest('hex');
+  const list = paths.map((path) => `  [${JSON.stringify(path)}, '${hash(path)}'],`).join('\n');
+  const source = readFileSync(new URL(NAME, import.meta.url), 'utf8');
+  const build = createHash('sha256').update(list).digest('hex');
+  writeFileSync(join(folder, NAME), `const BUILD = '${build}';\nconst FILES = [\n${list}\n];\n\n${source}`);
+}
+
+/** As the last thing that Vite does. */
+export const offline = () => ({ name: 'offline', apply: 'build', closeBundle: () => writeServiceWorker(new URL('dist', import.meta.url).pathname) });

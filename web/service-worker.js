@@ -1,0 +1,64 @@
+// Keeps the page on the machine that has opened it once, so that it works without a network: all of its files, as they
+// were built together. The build puts in front of this the list of
+// them, FILES, each path with the SHA-256 of its bytes, and BUILD, that of the list.
+
+/** Other pages of the same origin have caches of their own. */
+const PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
+const VERSION = PREFIX + BUILD;
+
+const addressOf = (path) => new URL(path, self.registration.scope).href;
+
+async function hashOf(bytes) {
+  const sum = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
+  return Array.from(sum, (byte) => byte.toString(16).padStart(2, '0')).join('');
+}
+
+/** A file as it was built: from an older cache if that has the same, or else from the server. Throws if that has another. */
+async function right(path, hash) {
+  for (const name of await caches.keys()) {
+    if (!name.startsWith(PREFIX)) continue;
+    const kept = await (await caches.open(name)).match(addressOf(path));
+    if (kept && (await hashOf(await kept.clone().arrayBuffer())) === hash) return kept;
+  }
+  const response = await fetch(addressOf(path), { cache: 'no-cache' });
+  const isRight = response.ok && (await hashOf(await response.clone().arrayBuffer())) === hash;
+  if (!isRight) throw new Error(`${path} is not what was built together with the page`);
+  return response;
+}
+
+// All files or none: while one is missing, what was kept before goes on.
+self.addEventListener('install', (event) => {
+  event.waitUntil(
+    (async () => {
+      const found = await Promise.all(FILES.map(async ([path, hash]) => [path, await right(path, hash)]));
+      const cache = await caches.open(VERSION);
+      for (const [path, response] of found) await cache.put(addressOf(path), response);
+    })(),
+  );
+});
+
+self.addEventListener('activate', (event) => {
+  event.waitUntil(
+    (async () => {
+      for (const name of await caches.keys()) if (name.startsWith(PREFIX) && name !== VERSION) await caches.delete(name);
+      await self.clients.claim();
+    })(),
+  );
+});
+
+// A person has asked for the newer page.
+self.addEventListener('message', ({ data }) => {
+  if (data === 'take over') void self.skipWaiting();
+});
+
+self.addEventListener('fetch', (event) => {
+  const { request } = event;
+  if (request.method !== 'GET' || !request.url.startsWith(self.registration.scope)) return;
+  event.respondWith(
+    (async () => {
+      const url = new URL(request.url);
+      const address = url.href === self.registration.scope || request.mode === 'navigate' ? addressOf('index.html') : url.origin + url.pathname;
+      return (await (await caches.open(VERSION)).match(address)) ?? fetch(request);
+    })(),
+  );
+});

@@ -1,0 +1,272 @@
+// What the steps of a first connection do at the robot. The signs come before the trims: a servo whose sign is wrong
+// would turn away from where it is told to. Nothing is kept before `save`; `takeBack` gives the robot what it had.
+import type { Answer } from '../link/dialogue';
+import type { Link } from '../link/link';
+import type { Four } from '../robot';
+import type { Session } from '../session';
+import { status } from '../status';
+import { GAITS, WORDS } from '../words';
+import { angle, type Calibration, calibrationOf, copyOf, isSame, linesOf } from './calibration';
+
+/** How far a servo is turned to prove its sign, deg; the first that the robot does not refuse. */
+const PROOFS = [10, 5, -10, -5];
+/** The same to measure its scale. */
+const SPANS = [20, -20, 15, -15, 10, -10];
+/** The longest wait for a motion to end, ms, and the time between two looks. */
+const MOTION = 5000;
+const LOOK = 60;
+/**
+ * Frames without motion after which the robot stands still: a motion begins so slowly that its first ones are not
+ * seen in hundredths of a degree.
+ */
+const STILL = 10;
+/** A pose is reached as near as this, deg. */
+const NEAR = 0.02;
+
+/** The robot has not done it, and says why. */
+export class Refusal extends Error {}
+
+/** The other end is not the one any more that this guide began with. */
+export class Gone extends Error {}
+
+export class Guide {
+  /** What the robot had, or has saved since. */
+  private before: Calibration;
+  /** What it has. */
+  private now: Calibration;
+  private readonly link: Link;
+  private readonly beginnings: number;
+  /** Its neutral angles, deg, once it has stood. */
+  private neutral: Four<number> | null = null;
+
+  private constructor(
+    private readonly session: Session,
+    has: Calibration,
+  ) {
+    this.before = has;
+    this.now = copyOf(has);
+    this.link = session.link;
+    this.beginnings = session.beginnings;
+  }
+
+  /** Asks the robot what it has; nothing moves. Throws a sentence. */
+  static async begin(session: Session): Promise<Guide> {
+    const has = calibrationOf((await tell(session, WORDS.cal)).notes);
+    if (!has) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');
+    return new Guide(session, has);
+  }
+
+  /** Whether the robot is still the one that it began with, and was not begun anew. */
+  get isCurrent(): boolean {
+    return this.session.link === this.link && this.session.beginnings === this.beginnings;
+  }
+
+  /** What the robot has, saved or not. */
+  get has(): Readonly<Calibration> {
+    return this.now;
+  }
+
+  /** Whether something is not saved. */
+  get isChanged(): boolean {
+    return !isSame(this.before, this.now);
+  }
+
+  /** Lets it stand; its neutral angles, deg. */
+  async stand(): Promise<Four<number>> {
+    await this.tell(GAITS.stand);
+    return (this.neutral = await settle(this.session));
+  }
+
+  /** Ends the pulses: servos that get power then do not start all at once. */
+  async rest(): Promise<void> {
+    await this.tell(WORDS.rest);
+  }
+
+  /** Every servo in its middle, without its trim: so the horns are fitted. */
+  async center(): Promise<void> {
+    await this.stand();
+    await this.tell(WORDS.center);
+    await settle(this.session);
+  }
+
+  /** Turns one servo alone from its neutral angle, and says by how much: deg, counter-clockwise. */
+  async prove(servo: number): Promise<number> {
+    return this.turned(servo, PROOFS);
+  }
+
+  /** The same as far as its scale is measured with. */
+  async span(servo: number): Promise<number> {
+    return this.turned(servo, SPANS);
+  }
+
+  private async turned(servo: number, choices: number[]): Promise<number> {
+    const neutral = await this.stand();
+    let refusal: Refusal | null = null;
+    for (const by of choices) {
+      try {
+        await this.point(servo, neutral[servo] + by);
+        return by;
+      } catch (error) {
+        if (!(error instanceof Refusal)) throw error;
+        refusal ??= error;
+      }
+    }
+    throw refusal ?? new Refusal('no way to turn it is known');
+  }
+
+  /** Points one servo to an angle, the others to neutral. */
+  async point(servo: number, degrees: number): Promise<void> {
+    const others = this.neutral ?? (await this.stand());
+    const pose = others.map((neutral, place) => (place === servo ? degrees : neutral));
+    await this.tell(`${WORDS.pose} ${pose.map((each) => angle(each).toFixed(2)).join(' ')}`);
+    await settle(this.session, pose as Four<number>);
+  }
+
+  /** The servo turns the other way than it was thought to. */
+  async reverse(servo: number): Promise<void> {
+    await this.stand();
+    const next = copyOf(this.now);
+    const set = next.servos[servo];
+    set.dir = set.dir === '+' ? '-' : '+';
+    // The horn stays where it is: the same pulse is now the opposite trim.
+    set.trim = 0 - set.trim;
+    await this.tell(`${WORDS.dir} ${servo + 1} ${set.dir}`);
+    if (set.trim !== 0) await this.tell(`${WORDS.trim} ${servo + 1} ${set.trim.toFixed(2)}`);
+    this.now = next;
+    await settle(this.session);
+  }
+
+  /** Turns a servo's neutral place, deg counter-clockwise. */
+  async trim(servo: number, by: number): Promise<void> {
+    const next = copyOf(this.now);
+    const trim = Math.round((next.servos[servo].trim + by) * 100) / 100 + 0;
+    next.servos[servo].trim = trim;
+    await this.tell(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
+    this.now = next;
+  }
+
+  /** A servo has turned by `measured` where `asked` was told, deg. Its new scale, us per deg. */
+  async scale(servo: number, asked: number, measured: number): Promise<number> {
+    await this.stand();
+    const next = copyOf(this.now);
+    const scale = Math.round((next.servos[servo].scale * Math.abs(asked) * 100) / Math.abs(measured)) / 100;
+    next.servos[servo].scale = scale;
+    await this.tell(`${WORDS.scale} ${servo + 1} ${scale.toFixed(2)}`);
+    this.now = next;
+    return scale;
+  }
+
+  /** The travel of a servo, counter-clockwise from the first angle to the second, deg. */
+  async limit(servo: number, from: number, to: number): Promise<void> {
+    const next = copyOf(this.now);
+    const limit: [number, number] = [angle(from), angle(to)];
+    next.servos[servo].limit = limit;
+    await this.tell(`${WORDS.limit} ${servo + 1} ${limit[0].toFixed(2)} ${limit[1].toFixed(2)}`);
+    this.now = next;
+  }
+
+  /** Begins `walk`, or the first gait that moves, and says which. */
+  async walk(): Promise<string> {
+    const { notes } = await this.tell(WORDS.help);
+    const list = notes.find((line) => line.startsWith('# gaits: '))?.slice('# gaits: '.length) ?? '';
+    const gaits = list.split('|').filter((name) => name !== '' && name !== GAITS.stand);
+    const gait = gaits.includes(GAITS.walk) ? GAITS.walk : gaits[0];
+    if (!gait) throw new Refusal('this robot has no gait');
+    await this.tell(gait);
+    return gait;
+  }
+
+  async save(): Promise<void> {
+    await this.tell(WORDS.save);
+    this.before = copyOf(this.now);
+  }
+
+  /** Gives the robot what it had before, and lets it stand; whether anything had been changed. */
+  async takeBack(): Promise<boolean> {
+    try {
+      await this.stand();
+    } catch (error) {
+      // The supply may be too low for it, which is no reason to stay.
+      if (!(error instanceof Refusal)) throw error;
+    }
+    if (!this.isChanged) return false;
+    await this.apply(this.before);
+    return true;
+  }
+
+  /** Gives it another calibration, unsaved; one that is refused changes nothing. Throws the robot's reason. */
+  async give(set: Calibration): Promise<void> {
+    const had = copyOf(this.now);
+    try {
+      await this.apply(set);
+      const read = calibrationOf((await this.tell(WORDS.cal)).notes);
+      if (!read || !isSame(read, set)) throw new Refusal('the robot has not taken all of it');
+    } catch (error) {
+      if (error instanceof Refusal) await this.apply(had);
+      throw error;
+    }
+    await settle(this.session);
+  }
+
+  /**
+   * Each line has to leave the gaits within the servos' travel, and on the way from one calibration to another one
+   * may not, though the end would: what is refused is tried again after the others, and once more from the
+   * values of robot.toml.
+   */
+  private async apply(set: Calibration): Promise<void> {
+    let lines = linesOf(set);
+    for (let fromFactory = false; ; ) {
+      let refusal: Refusal | null = null;
+      const left: string[] = [];
+      for (const line of lines) {
+        try {
+          await this.tell(line);
+        } catch (error) {
+          if (!(error instanceof Refusal)) throw error;
+          refusal ??= error;
+          left.push(line);
+        }
+      }
+      if (!refusal) break;
+      if (left.length < lines.length) lines = left;
+      else if (fromFactory) throw refusal;
+      else {
+        fromFactory = true;
+        await this.tell(WORDS.factory);
+        lines = linesOf(set);
+      }
+    }
+    this.now = copyOf(set);
+  }
+
+  private tell(line: string): Promise<Answer> {
+    if (!this.isCurrent) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
+    return tell(this.session, line);
+  }
+}
+
+/** Says a line; the answer is good, or its reason is thrown. */
+async function tell(session: Session, line: string): Promise<Answer> {
+  const { link } = session;
+  const answer = await session.ask(line);
+  if (!answer) throw new Gone(session.link === link ? `The robot has not answered "${line}".` : 'The board is gone; what was not saved is lost.');
+  if (!answer.ok) throw new Refusal(`The robot refuses "${line}": ${answer.text.replace(/^err \d+ /, '')}.`);
+  return answer;
+}
+
+/** Waits until the robot stands still, in a pose if one is named; its pose, deg. */
+async function settle(session: Session, wanted: Four<number> | null = null): Promise<Four<number>> {
+  const isThere = (pose: Four<number>) => wanted?.every((each, n) => Math.abs(((each - pose[n] + 540) % 360) - 180) < NEAR) ?? true;
+  const { link } = session;
+  let still = null as { frames: number; pose: string } | null;
+  for (let waited = 0; ; waited += LOOK) {
+    const answer = await session.ask(WORDS.status, true);
+    const now = answer && status(answer.text);
+    if (!now || session.link !== link) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
+    const pose = now.pose.join();
+    if (still?.pose !== pose) still = { frames: now.frames, pose };
+    else if (now.frames - still.frames >= STILL && isThere(now.pose)) return now.pose;
+    if (waited >= MOTION) return now.pose;
+    await link.wait(LOOK);
+  }
+}

@@ -1,0 +1,295 @@
+// First connection, as one path: which step it is, and what a person sees of it. It can be left and entered at any step.
+import { imageOf } from '../link/stk500';
+import type { Link } from '../link/link';
+import type { Session } from '../session';
+import { calibrationIn } from '../setup/calibration-file';
+import { Guide } from '../setup/guide';
+import { sentence } from '../trouble';
+import { GAITS, NOTHING_SAVED } from '../words';
+import { element } from './canvas';
+import { board } from './setup/board';
+import { drawing, PLACES } from './setup/drawing';
+import { firmware } from './setup/firmware';
+import { horns } from './setup/horns';
+import { keep } from './setup/keep';
+import { forgetLimits, limits } from './setup/limits';
+import { button } from './setup/parts';
+import { forgetScale, scale } from './setup/scale';
+import { forgetSigns, signs } from './setup/signs';
+import type { Step, Tools } from './setup/step';
+import { trims } from './setup/trims';
+import { walk } from './setup/walk';
+import type { Writer } from './writer';
+
+const STEPS: readonly Step[] = [board, firmware, horns, signs, trims, scale, limits, walk, keep];
+/** Steps that go from servo to servo. */
+const BY_SERVO: readonly Step[] = [signs, trims, scale, limits];
+const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
+
+/** Steps take its methods apart, so these are bound. */
+export class Setup implements Tools {
+  guide: Guide | null = null;
+  servo = 0;
+  private step: Step = board;
+  private readonly finished = new Set<string>();
+  private readonly box = element('setup');
+  private readonly steps = element('setup-steps');
+  private readonly title = element('setup-step');
+  private readonly what = element('setup-what');
+  private readonly servos = element('setup-servos');
+  private readonly picture = element('setup-drawing');
+  private readonly said = element('setup-said');
+  private readonly progress = element<HTMLProgressElement>('setup-progress');
+  /** Counts what was begun: of something that was overtaken nothing is shown. */
+  private work = 0;
+  private isBusy = false;
+  /** Whether what is done was not asked for by a button: one that is pressed meanwhile has its turn after it. */
+  private isOwn = false;
+  private next: (() => Promise<string>) | null = null;
+  private under: Promise<void> = Promise.resolve();
+  private lastLink: Link | null = null;
+  private wasReal = false;
+  /** Whether the board said after its reset that nothing was ever saved. */
+  private isNew = false;
+
+  constructor(
+    private readonly sessionOf: () => Session,
+    readonly writer: Writer,
+    private readonly connectBoard: () => Promise<void>,
+  ) {
+    element('setup-open').addEventListener('click', () => this.begin());
+    element('setup-leave').addEventListener('click', () => void this.leave());
+    element('setup-back').addEventListener('click', () => this.by(-1));
+    element('setup-next').addEventListener('click', () => this.by(1));
+    for (const { name } of STEPS) {
+      const item = document.createElement('li');
+      item.append(button(name, () => this.go(name)));
+      this.steps.append(item);
+    }
+    PLACES.forEach((place, servo) => {
+      const choose = () => {
+        this.servo = servo;
+        this.said.textContent = '';
+        this.show();
+      };
+      this.servos.append(button(`A${servo + 1} ${place}`, choose));
+    });
+  }
+
+  get session(): Session {
+    return this.sessionOf();
+  }
+
+  /** Opens it where it was left, or at the first step. */
+  private begin(): void {
+    this.reveal();
+    this.enter(this.step);
+    this.box.scrollIntoView({ block: 'start' });
+  }
+
+  private reveal(): void {
+    this.box.hidden = false;
+    element('setup-open').setAttribute('aria-expanded', 'true');
+    element('setup-left').hidden = true;
+  }
+
+  /** A board was connected: what is missing on it comes first. */
+  met(): void {
+    const { has, description } = this.session;
+    const step = has === null || (has !== 'unknown' && has !== description.hash) ? firmware : this.isNew ? horns : null;
+    if (this.box.hidden) {
+      if (!step) return;
+      this.step = step;
+      this.reveal();
+      this.enter(step);
+    } else if (this.step === board && step) this.go(step.name);
+    else this.enter(this.step);
+  }
+
+  /** A line of the robot's. */
+  came(line: string): void {
+    if (line.startsWith(NOTHING_SAVED)) this.isNew = true;
+  }
+
+  /** Another end of the line: what was under way is over. */
+  link(): void {
+    const { link, isReal } = this.session;
+    if (link === this.lastLink) return this.update();
+    const isGone = this.wasReal && !isReal;
+    this.lastLink = link;
+    this.wasReal = isReal;
+    this.isNew = false;
+    this.drop();
+    if (isGone && !this.box.hidden) this.say('The board is not connected any more. What was not saved is lost. Connect it again and go on here.');
+    this.update();
+  }
+
+  /** What the other end has, or which robot the page has, may be another now. */
+  update(): void {
+    if (this.guide && !this.guide.isCurrent) {
+      const { isChanged } = this.guide;
+      if (isChanged) this.drop();
+      this.guide = null;
+      this.work += 1;
+      this.isBusy = false;
+      this.say(isChanged ? 'The board has begun anew. What was not saved is lost.' : 'The board has begun anew.');
+    }
+    if (!this.box.hidden && !this.isBusy) this.show();
+  }
+
+  private drop(): void {
+    this.work += 1;
+    this.isBusy = false;
+    this.next = null;
+    this.guide = null;
+    this.finished.clear();
+    for (const forget of [forgetSigns, forgetScale, forgetLimits]) forget();
+  }
+
+  /** Leaves; what was not saved is taken back, once the robot is done with what it does. */
+  private async leave(): Promise<void> {
+    if (this.guide?.isCurrent) await this.under;
+    let said = '';
+    const { guide } = this;
+    if (guide?.isCurrent) {
+      try {
+        if (await guide.takeBack()) said = 'The first connection was left: the robot has the calibration that it had before.';
+      } catch (error) {
+        said = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${sentence(error)}`;
+      }
+    }
+    this.box.hidden = true;
+    const opener = element('setup-open');
+    opener.setAttribute('aria-expanded', 'false');
+    opener.focus();
+    this.drop();
+    const left = element('setup-left');
+    left.textContent = said;
+    left.hidden = said === '';
+  }
+
+  readonly done = (step: string): void => {
+    this.finished.add(step);
+  };
+
+  readonly isDone = (step: string): boolean => {
+    return this.finished.has(step);
+  };
+
+  readonly connect = (): void => {
+    void this.connectBoard();
+  };
+
+  readonly write = (): void => {
+    const { image } = this.session;
+    if (image === null) return;
+    this.guide = null;
+    this.act(async () => {
+      const { said, progress } = this;
+      if (await this.writer.write(imageOf(image), { said, progress })) this.done('Firmware');
+      return said.textContent ?? '';
+    });
+  };
+
+  readonly give = (text: string, name: string): void => {
+    this.act(async () => {
+      const set = await calibrationIn(text).catch((error: unknown) => {
+        throw new Error(`${name}: ${sentence(error)}`);
+      });
+      const guide = await this.asked();
+      await guide.give(set);
+      return `The robot has the calibration of ${name}. It is not saved yet.`;
+    });
+  };
+
+  readonly run = (work: (guide: Guide) => Promise<string>): void => {
+    this.act(async () => work(await this.asked()));
+  };
+
+  /** The guide of the robot at the other end. */
+  private async asked(): Promise<Guide> {
+    if (!this.session.answers) throw new Error(NO_ROBOT);
+    this.guide ??= await Guide.begin(this.session);
+    return this.guide;
+  }
+
+  /** Does one thing at a time. */
+  private act(work: () => Promise<string>, isOwn = false): void {
+    if (this.isBusy) {
+      if (this.isOwn && !isOwn) this.next = work;
+      return;
+    }
+    this.isOwn = isOwn;
+    const number = ++this.work;
+    this.isBusy = true;
+    this.say('');
+    this.box.setAttribute('aria-busy', 'true');
+    this.under = work()
+      .catch(sentence)
+      .then((said) => {
+        if (number !== this.work) return;
+        this.isBusy = false;
+        this.say(said);
+        this.update();
+        const { next } = this;
+        this.next = null;
+        if (next) this.act(next);
+      })
+      .finally(() => this.box.setAttribute('aria-busy', String(this.isBusy)));
+  }
+
+  private say(text: string): void {
+    this.said.textContent = text;
+  }
+
+  readonly go = (name: string): void => {
+    const step = STEPS.find((each) => each.name === name);
+    if (step) this.enter(step);
+  };
+
+  private by(steps: number): void {
+    const step = STEPS[STEPS.indexOf(this.step) + steps];
+    if (step) this.enter(step);
+  }
+
+  private enter(step: Step): void {
+    if (step !== this.step && BY_SERVO.includes(step)) this.servo = 0;
+    this.step = step;
+    if (!this.isBusy) this.say('');
+    this.show();
+    this.title.focus({ preventScroll: true });
+    if (!step.needsRobot || !this.session.answers) return;
+    // What a step has turned goes back before the next one.
+    const { guide } = this;
+    if (!guide) this.act(async () => this.asked().then(() => ''), true);
+    else if (this.session.gait !== GAITS.stand) this.act(async () => guide.stand().then(() => ''), true);
+  }
+
+  readonly show = (): void => {
+    const { step, session } = this;
+    if (!session?.link) return;
+    const at = STEPS.indexOf(step);
+    this.steps.querySelectorAll('button').forEach((each, n) => {
+      each.toggleAttribute('aria-current', n === at);
+      if (n === at) each.setAttribute('aria-current', 'step');
+      each.classList.toggle('done', this.isDone(STEPS[n].name));
+    });
+    this.title.textContent = `${at + 1} of ${STEPS.length}: ${step.title}`;
+    element<HTMLButtonElement>('setup-back').disabled = at === 0;
+    element<HTMLButtonElement>('setup-next').disabled = at === STEPS.length - 1;
+    const can = !step.needsRobot || session.answers;
+    this.servos.hidden = !can || !BY_SERVO.includes(step);
+    this.servos.querySelectorAll('button').forEach((each, servo) => each.setAttribute('aria-pressed', String(servo === this.servo)));
+    const scene = session.last?.scene ?? null;
+    const shown = can && step.drawing && scene ? drawing(session.description, scene, step.drawing(this)) : null;
+    this.picture.replaceChildren(...(shown ? [shown] : []));
+    this.picture.hidden = !shown;
+    const parts = can ? step.parts(this) : [Object.assign(document.createElement('p'), { textContent: NO_ROBOT }), button('To the board', () => this.go(board.name), true)];
+    // Whoever uses the keyboard stays where they were, or comes to what is next.
+    const focused = this.what.contains(document.activeElement) ? document.activeElement?.textContent : null;
+    this.what.replaceChildren(...parts);
+    if (focused === null) return;
+    const buttons = [...this.what.querySelectorAll('button')];
+    (buttons.find(({ textContent }) => textContent === focused) ?? this.what.querySelector<HTMLElement>('button.main') ?? this.title).focus();
+  };
+}

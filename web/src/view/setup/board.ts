@@ -1,0 +1,40 @@
+// Connect, and what answers.
+import { hasSerial, NO_SERIAL } from '../../link/port-link';
+import type { Session } from '../../session';
+import { button, list, note, row, warning, words } from './parts';
+import type { Step } from './step';
+
+/** What is at the other end of the line, as a sentence. */
+export function answerOf(session: Session): string {
+  const { link, has, description, file } = session;
+  if (has === undefined) return `The ${link.name} has not said yet what it is.`;
+  if (has === null && session.isReal && !session.hasLoader) return `The ${link.name} answers neither as this firmware nor as a boot loader. Is it the right port, and an UNO?`;
+  if (has === null) return `The ${link.name} is an UNO by its boot loader, and this firmware is not on it.`;
+  if (has === 'unknown') return `The ${link.name} has this firmware. For which robot it says only after its reset button was pressed.`;
+  if (has === description.hash) return `The ${link.name} has the firmware of this robot, ${file}.toml.`;
+  return `The ${link.name} has this firmware for another robot, tables ${has}. Choose that robot above, or write this one's.`;
+}
+
+export const board: Step = {
+  name: 'Board',
+  title: 'Connect the board',
+  needsRobot: false,
+  parts({ session, connect, go }) {
+    if (session.isReal) {
+      return [
+        words(answerOf(session)),
+        row(button(session.answers ? 'Go on' : 'Write the firmware', () => go('Firmware'), true), button('Disconnect', connect)),
+      ];
+    }
+    const parts = [
+      list(
+        'The servos\' own supply, 5 V and 3 A, stays off until the horns are fitted. The board needs its USB cable alone.',
+        'The USB cable has to carry data: some only charge.',
+        'Close other programs that use the port, such as a console.',
+      ),
+      hasSerial() ? row(button('Choose its port…', connect, true)) : warning(NO_SERIAL),
+    ];
+    parts.push(note('Without a board, every step can be tried with the simulated one of this page.'));
+    return parts;
+  },
+};

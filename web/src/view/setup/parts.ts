@@ -1,0 +1,55 @@
+// What the steps are made of: paragraphs, buttons, boxes for numbers.
+
+type Child = Node | string;
+
+function made<K extends keyof HTMLElementTagNameMap>(tag: K, children: Child[], className = ''): HTMLElementTagNameMap[K] {
+  const box = document.createElement(tag);
+  box.append(...children);
+  if (className !== '') box.className = className;
+  return box;
+}
+
+export const words = (...children: Child[]): HTMLElement => made('p', children);
+export const note = (...children: Child[]): HTMLElement => made('p', children, 'note');
+export const warning = (text: string): HTMLElement => made('p', [text], 'refusal');
+export const row = (...children: Child[]): HTMLElement => made('p', children, 'actions');
+export const list = (...items: Child[]): HTMLElement => made('ul', items.map((item) => made('li', [item])));
+
+export function button(label: string, act: () => void, isMain = false): HTMLButtonElement {
+  const box = made('button', [label], isMain ? 'main' : '');
+  box.type = 'button';
+  box.addEventListener('click', act);
+  return box;
+}
+
+/** A box for a number; `act` gets what a person has put in. */
+export function number(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
+  const box = document.createElement('input');
+  box.type = 'number';
+  box.step = step;
+  if (value !== null) box.value = String(value);
+  box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && act(box.valueAsNumber));
+  return made('label', [label, ' ', box], 'number');
+}
+
+/** A link to a file that is made when a person asks for it. */
+export function save(name: string, type: string, text: string): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+/** A table with a head. */
+export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
+  const cells = (texts: string[], isHead: boolean) =>
+    made('tr', texts.map((text, n) => {
+      const cell = document.createElement(isHead || n === 0 ? 'th' : 'td');
+      if (isHead || n === 0) cell.scope = isHead ? 'col' : 'row';
+      cell.textContent = text;
+      return cell;
+    }));
+  const name = made('caption', [caption], 'hidden');
+  return made('table', [name, made('thead', [cells(head, true)]), made('tbody', rows.map((texts) => cells(texts, false)))], 'settings');
+}

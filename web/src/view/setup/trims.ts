@@ -1,0 +1,36 @@
+// The trims: each crank is straightened by degrees, which act at once.
+import { nameOf } from './drawing';
+import { button, note, row, words } from './parts';
+import type { Step } from './step';
+
+/** Coarse and fine, deg counter-clockwise. */
+const BY = [0.5, 0.1, -0.1, -0.5];
+
+export const trims: Step = {
+  name: 'Trims',
+  title: 'Straighten the cranks',
+  needsRobot: true,
+  drawing: ({ servo }) => ({ servo, by: null }),
+  parts({ guide, servo, run, done, session }) {
+    const trim = guide?.has.servos[servo].trim;
+    const neutral = session.description.servos[servo].neutral.toFixed(1);
+    const turn = (by: number) => () =>
+      run(async (guide) => {
+        await guide.trim(servo, by);
+        done('Trims');
+        return `The trim of A${servo + 1} is ${guide.has.servos[servo].trim.toFixed(2)}°.`;
+      });
+    const stand = () =>
+      run(async (guide) => {
+        await guide.stand();
+        return 'The robot stands.';
+      });
+    return [
+      words(`Let the robot stand, and turn the crank of ${nameOf(servo)} until it points to ${neutral}°, or mirrors the one on the other side.`),
+      row(button('Stand', stand, true)),
+      row(...BY.map((by) => button(`${by > 0 ? '↺' : '↻'} ${Math.abs(by)}°`, turn(by)))),
+      words(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
+      note('↺ is counter-clockwise seen from above. A trim above 7.2° would be less on the next tooth: fit that horn anew.'),
+    ];
+  },
+};

@@ -1,0 +1,135 @@
+// The page once it was opened: without a network, updated as a whole, and asking nobody else for anything.
+import assert from 'node:assert/strict';
+import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+
+import { writeServiceWorker } from '../offline.js';
+import { address, advance, blank, close, complaints, DIST, open, serve, tidy, within } from './browser.js';
+
+let folder;
+const servers = [];
+
+before(async () => {
+  await open();
+  folder = await mkdtemp(join(tmpdir(), 'lizard-page-'));
+});
+afterEach(async () => {
+  await tidy();
+  for (const each of servers.splice(0)) {
+    each.closeAllConnections();
+    each.close();
+  }
+});
+after(async () => {
+  await close();
+  if (folder) await rm(folder, { recursive: true });
+});
+
+/** A copy of the page on a server of its own. */
+async function copied(name, asked = []) {
+  const own = join(folder, name);
+  await cp(DIST, own, { recursive: true });
+  const server = await serve(own, asked);
+  servers.push(server);
+  return { own, server, asked };
+}
+
+const allowed = () => blank({ serviceWorkers: 'allow' });
+const begun = (opened) => opened.waitForFunction(() => window.lizard);
+
+/** Until the page is kept, and is the one that answers. */
+async function kept(opened) {
+  await begun(opened);
+  await opened.waitForFunction(async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller);
+}
+
+test('once opened, the page walks without a server, with any of its robots', async () => {
+  const { server } = await copied('offline');
+  const opened = await allowed();
+  await opened.goto(address(server));
+  await kept(opened);
+  server.closeAllConnections();
+  await within('the server to close', new Promise((closed) => server.close(closed)));
+  await opened.reload();
+  await begun(opened);
+  await opened.locator('#robot').selectOption('large');
+  await opened.waitForFunction(() => window.lizard.file === 'large');
+  await advance(opened, 3000);
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await advance(opened, 3000);
+  assert.ok((await opened.evaluate(() => window.lizard.last.place.y)) > 20);
+  assert.equal(await opened.locator('#trouble').isVisible(), false);
+});
+
+test('a newer page is offered, taken as a whole when a person says so, and the older one is gone then', async () => {
+  const { own, server } = await copied('newer');
+  const opened = await allowed();
+  await opened.goto(address(server));
+  await kept(opened);
+  const caches = () => opened.evaluate(() => window.caches.keys());
+  const [first] = await caches();
+  const page = await readFile(join(own, 'index.html'), 'utf8');
+  assert.ok(page.includes('<h1>lizard</h1>'));
+  await writeFile(join(own, 'index.html'), page.replace('<h1>lizard</h1>', '<h1>lizard, newer</h1>'));
+  writeServiceWorker(own);
+  await opened.reload();
+  await begun(opened);
+  assert.equal(await opened.locator('h1').innerText(), 'lizard', 'nothing changes under a person');
+  await opened.getByRole('button', { name: 'Take it now' }).click();
+  await opened.locator('h1', { hasText: 'lizard, newer' }).waitFor();
+  await begun(opened);
+  await opened.waitForFunction(async (first) => !(await window.caches.keys()).includes(first), first);
+  assert.equal((await caches()).length, 1);
+});
+
+test('a page of which a part is missing on the server is not taken, and the one that is kept goes on', async () => {
+  const { own, server, asked } = await copied('torn');
+  const opened = await allowed();
+  await opened.goto(address(server));
+  await kept(opened);
+  const before = await opened.evaluate(() => window.caches.keys());
+  const page = await readFile(join(own, 'index.html'), 'utf8');
+  await writeFile(join(own, 'index.html'), page.replace('<h1>lizard</h1>', '<h1>lizard, newer</h1>'));
+  writeServiceWorker(own);
+  // It was put there by halves: the list is new, the page is not.
+  await writeFile(join(own, 'index.html'), page);
+  asked.length = 0;
+  await opened.reload();
+  await begun(opened);
+  await opened.waitForFunction(async () => {
+    const registration = await navigator.serviceWorker.ready;
+    return !registration.installing && !registration.waiting;
+  });
+  for (let n = 0; n < 100 && !asked.includes('/index.html'); n++) await new Promise((next) => setTimeout(next, 100));
+  assert.ok(asked.includes('/index.html'), 'it was asked for');
+  assert.equal(await opened.locator('#fresh').isVisible(), false);
+  assert.ok((await opened.evaluate(() => window.caches.keys())).includes(before[0]));
+  server.closeAllConnections();
+  await opened.reload();
+  await begun(opened);
+});
+
+test('the first load is below 500 KB compressed, and nothing is asked of another origin', async () => {
+  const asked = [];
+  const { server } = await copied('size', asked);
+  const opened = await blank();
+  const strangers = [];
+  opened.on('request', (request) => {
+    if (!request.url().startsWith(address(server)) && !/^(data|blob):/.test(request.url())) strangers.push(request.url());
+  });
+  await opened.goto(address(server));
+  await begun(opened);
+  await advance(opened, 3000);
+  await opened.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
+  const paths = [...new Set(asked)].map((path) => (path === '/' ? '/index.html' : path));
+  assert.ok(paths.some((path) => path.endsWith('.wasm')) && paths.some((path) => path.endsWith('.js')), paths.join());
+  const sizes = await Promise.all(paths.map(async (path) => [path, gzipSync(await readFile(join(DIST, path))).length]));
+  const all = sizes.reduce((sum, [, size]) => sum + size, 0);
+  assert.ok(all < 500_000, `${all} bytes: ${sizes.map(([path, size]) => `${path} ${size}`).join(', ')}`);
+  assert.deepEqual(strangers, []);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

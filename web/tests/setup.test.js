@@ -1,0 +1,329 @@
+// The first connection, from a board as it comes out of its box to a robot that walks and is saved; and everything that may
+// come between.
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { promisify } from 'node:util';
+
+import { connected, until } from './board.js';
+import { advance, close, complaints, open, page, standing, tidy } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+/** Arduino pins of A1 to A4, as robot.toml has them. */
+const PINS = [9, 10, 11, 3];
+const setup = (opened) => opened.locator('#setup');
+const text = (opened, selector) => opened.locator(selector).innerText();
+const press = (opened, name) => setup(opened).getByRole('button', { name, exact: true }).click();
+const step = (opened, name) => setup(opened).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
+const pulses = (opened) => opened.evaluate((pins) => pins.map((pin) => window.pulses[pin]), PINS);
+
+/** Lets time go on until this is said. */
+const said = (opened, what) => until(opened, `${what} is said`, async () => what.test(await text(opened, '#setup-said')));
+
+/** Presses a button and waits for what is said of it. */
+async function does(opened, name, what) {
+  await press(opened, name);
+  await said(opened, what);
+}
+
+function near(found, wanted, by, what) {
+  found.forEach((value, n) => assert.ok(Math.abs(value - wanted[n]) <= by, `${what}: ${found}, not ${wanted}`));
+}
+
+/** The lines that the robot itself says of its calibration. */
+async function cal(opened) {
+  const before = await opened.locator('#log div', { hasText: /^ok cal$/ }).count();
+  await opened.getByLabel('A line for the robot').fill('cal');
+  await opened.getByRole('button', { name: 'Send' }).click();
+  await until(opened, 'cal is answered', async () => (await opened.locator('#log div', { hasText: /^ok cal$/ }).count()) > before);
+  return (await opened.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
+}
+
+test('a new UNO becomes a robot that walks, is saved, and has a file that lizard restore takes', async () => {
+  const opened = await connected(null, 5000);
+  await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
+  await setup(opened).getByText('The board on USB is an UNO by its boot loader, and this firmware is not on it.').waitFor();
+  await does(opened, 'Write the firmware of robot.toml', /^written and verified in \d+ s$/);
+  await until(opened, 'it greets', async () => (await setup(opened).getByText('has the firmware of this robot, robot.toml').count()) > 0);
+  await press(opened, 'Go on');
+
+  // Before the servos get power there are no pulses.
+  await does(opened, 'Let the servos rest', /^No pulses now/);
+  await opened.clock.runFor(200);
+  await opened.evaluate(() => (window.pulses = {}));
+  await opened.clock.runFor(500);
+  assert.deepEqual(await opened.evaluate(() => window.pulses), {});
+
+  // Horns: the pins themselves say that every servo stands in its middle.
+  await does(opened, 'Turn all servos to their middle', /1500 µs/);
+  near(await pulses(opened), [1500, 1500, 1500, 1500], 0.5, 'us of the middle');
+
+  // Signs: A2 is mounted upside down, so a person says no to it.
+  await step(opened, 'Signs');
+  for (const [servo, isWrong] of [[1, false], [2, true], [3, false], [4, false]]) {
+    await does(opened, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
+    near(await pulses(opened), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'one servo alone');
+    if (isWrong) {
+      await does(opened, 'No, the other way', new RegExp(`^The sign of A${servo} is "-" now`));
+      await does(opened, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
+      near(await pulses(opened), [1500, 1400, 1500, 1500], 0.6, 'the other way');
+    }
+    await press(opened, 'Yes');
+  }
+  await said(opened, /^All four turn the right way/);
+  await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
+
+  await press(opened, 'A3 back right');
+  await does(opened, '↻ 0.5°', /^The trim of A3 is -0\.50°/);
+  await does(opened, '↺ 0.1°', /^The trim of A3 is -0\.40°/);
+
+  await step(opened, 'Scale');
+  await does(opened, 'Turn A1 by 20°', /^A1 was told to turn 20°/);
+  near(await pulses(opened), [1700, 1500, 1496, 1500], 0.6, 'twenty degrees of one servo');
+  await setup(opened).getByLabel('It turned by, degrees').fill('18.5');
+  await setup(opened).getByLabel('It turned by, degrees').press('Enter');
+  // 10 us per degree, times 20, over 18.5.
+  await said(opened, /^The scale of A1 is 10\.81 µs per degree/);
+
+  await step(opened, 'Limits');
+  await until(opened, 'it stands', async () => (await text(opened, '#doing')) === 'stand');
+  await press(opened, 'A4 back left');
+  await does(opened, '↻ 5°', /^A4 points to 216\.41°/);
+  await press(opened, 'A4 back left');
+  await setup(opened).getByLabel('From, degrees').fill('150');
+  await setup(opened).getByLabel('From, degrees').press('Enter');
+  await said(opened, /^A4 goes from 150\.00° to 311\.41°/);
+
+  await step(opened, 'First walk');
+  assert.equal(await setup(opened).getByText('Not proven yet').count(), 0);
+  await until(opened, 'it stands', async () => (await text(opened, '#doing')) === 'stand');
+  await does(opened, 'Let it walk', /^The robot does "walk"/);
+  const place = await opened.evaluate(() => window.lizard.last.place.y);
+  await opened.clock.runFor(3000);
+  assert.ok((await opened.evaluate(() => window.lizard.last.place.y)) - place > 10, 'it walks');
+  await does(opened, 'Let it stand', /^The robot stands/);
+
+  await setup(opened).getByRole('button', { name: 'Save it before', exact: true }).waitFor();
+  await step(opened, 'Keep');
+  await setup(opened).getByText('Not saved yet.').waitFor();
+  await does(opened, 'Save in the board', /^Saved: the board begins with it/);
+  const coming = opened.waitForEvent('download');
+  await press(opened, 'Keep as a file');
+  const file = await (await coming).path();
+
+  // The board, begun anew, has it; and so has the file, as the host's own program reads it.
+  await opened.evaluate(() => window.otherBoard.reset('external'));
+  await opened.clock.runFor(5000);
+  assert.deepEqual(await cal(opened), [
+    '# A1 trim 0.00 limit 48.59 228.59 dir + scale 10.81',
+    '# A2 trim 0.00 limit 311.41 131.41 dir - scale 10.00',
+    '# A3 trim -0.40 limit 228.59 48.59 dir + scale 10.00',
+    '# A4 trim 0.00 limit 150.00 311.41 dir + scale 10.00',
+  ]);
+  const folder = await mkdtemp(join(tmpdir(), 'lizard-'));
+  try {
+    const kept = join(folder, 'calibration.toml');
+    await writeFile(kept, await readFile(file));
+    const root = new URL('../..', import.meta.url).pathname;
+    const robot = ['--sim', '--elf', 'target/web/robot.elf', '--robot', 'robot.toml'];
+    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: 120_000 });
+    assert.match(stdout, /has the calibration of .* and has saved it/);
+  } finally {
+    await rm(folder, { recursive: true });
+  }
+});
+
+test('a board with the firmware of another robot is told from this one, and can have this one\'s', async () => {
+  const opened = await connected('large', 5000);
+  await setup(opened).getByText('has this firmware for another robot, tables').waitFor();
+  await setup(opened).getByRole('button', { name: 'Write the firmware of robot.toml', exact: true }).waitFor();
+});
+
+test('a board that answers nothing is asked about, and no step is a dead end', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => (window.flashed = null));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.evaluate(() => (window.otherBoard.send = () => {}));
+  await opened.clock.runFor(7000);
+  await setup(opened).getByText('answers neither as this firmware nor as a boot loader').waitFor();
+  await does(opened, 'Write the firmware of robot.toml', /^not written: the board does not answer/);
+  await step(opened, 'Horns');
+  await setup(opened).getByText('No robot with this firmware answers').waitFor();
+  await press(opened, 'To the board');
+  await press(opened, 'Disconnect');
+  await until(opened, 'the simulation is back', async () => /simulated UNO/.test(await text(opened, '#where')));
+});
+
+test('a board that says bytes without a meaning is told from a robot', async () => {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => (window.garbage = true));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await until(opened, 'it is asked about', async () => setup(opened).getByText('answers neither as this firmware nor as a boot loader').isVisible());
+  await does(opened, 'Write the firmware of robot.toml', /^not written: /);
+  const lengths = await opened.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
+  assert.ok(Math.max(0, ...lengths) < 1000, 'a line that never ends is cut');
+});
+
+test('a board that is unplugged at any step is said to be gone, and the path goes on where it was', async () => {
+  const opened = await page({}, fakeSerial);
+  const names = await opened.locator('#setup-steps button').allTextContents();
+  assert.equal(names.length, 9);
+  for (const name of names) {
+    await opened.evaluate(() => (window.otherBoard = undefined));
+    await opened.getByRole('button', { name: 'Connect a board' }).click();
+    await opened.waitForFunction(() => window.otherBoard);
+    await opened.clock.runFor(4500);
+    await step(opened, name);
+    await opened.clock.runFor(400);
+    // In the middle of something, where there is something to do.
+    const acts = setup(opened).locator('#setup-what button.main');
+    const act = (await acts.count()) > 0 && !['Board', 'Firmware'].includes(name) ? acts.first() : null;
+    if (act) await act.click();
+    await opened.clock.runFor(60);
+    await opened.evaluate(() => window.unplug());
+    await until(opened, `${name} says it`, async () => /is not connected any more/.test(await text(opened, '#setup-said')));
+    assert.match(await text(opened, '#setup-step'), new RegExp(`^${names.indexOf(name) + 1} of 9`), 'the step is kept');
+    assert.equal(await setup(opened).getAttribute('aria-busy') === 'true', false, 'nothing waits for ever');
+  }
+});
+
+test('a board that is unplugged while it is written says so, and can be written when it is back', async () => {
+  const opened = await connected(null, 5000);
+  await press(opened, 'Write the firmware of robot.toml');
+  await opened.clock.runFor(1500);
+  await opened.evaluate(() => window.unplug());
+  await until(opened, 'it is said', async () => /is not connected any more|not written/.test(await text(opened, '#setup-said')));
+  await opened.evaluate(() => (window.otherBoard = undefined));
+  await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(5000);
+  await does(opened, 'Write the firmware of robot.toml', /^written and verified/);
+});
+
+test('a board that begins anew in between is said to have lost what was not saved', async () => {
+  const opened = await connected('robot', 4500);
+  await setup(opened).getByText('3 of 9: Fit the horns').waitFor();
+  await step(opened, 'Trims');
+  await opened.clock.runFor(500);
+  await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  await opened.evaluate(() => window.otherBoard.reset('external'));
+  await said(opened, /^The board has begun anew\. What was not saved is lost\.$/);
+  await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+});
+
+test('who leaves leaves the robot as it was, and comes back to the same step', async () => {
+  const opened = await connected('robot', 4500);
+  const before = await cal(opened);
+  await step(opened, 'Trims');
+  await opened.clock.runFor(500);
+  await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  assert.notDeepEqual(await cal(opened), before);
+  await press(opened, 'Leave');
+  await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
+  await opened.getByText('the robot has the calibration that it had before').waitFor();
+  assert.deepEqual(await cal(opened), before);
+  await opened.getByRole('button', { name: 'Set up…' }).click();
+  await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
+});
+
+test('what the robot refuses is said in its words, and changes nothing', async () => {
+  const opened = await connected('robot', 4500);
+  const before = await cal(opened);
+  await step(opened, 'Limits');
+  await opened.clock.runFor(1000);
+  await setup(opened).getByLabel('From, degrees').fill('125');
+  await setup(opened).getByLabel('From, degrees').press('Enter');
+  await said(opened, /^The robot refuses "limit 1 125\.00 228\.59": A1 would not reach what the gaits need/);
+  assert.equal(await setup(opened).getByLabel('From, degrees').inputValue(), '48.59');
+  assert.deepEqual(await cal(opened), before);
+});
+
+const KEPT = `format = "lizard calibration 1"
+boot = "stand"
+deadman = 0
+${[1, 2, 3, 4].map((n) => `[servo.A${n}]\ntrim = ${n}.25\nlimit = [${[48.59, 311.41, 228.59, 131.41][n - 1]}, ${[228.59, 131.41, 48.59, 311.41][n - 1]}]\ndir = "+"\nscale = 10.0\n`).join('')}`;
+
+test('a kept file is given to the robot, and one that is none says what is wrong with it', async () => {
+  const opened = await connected('robot', 4500);
+  await step(opened, 'Keep');
+  await opened.clock.runFor(1500);
+  const choose = (name, body) =>
+    setup(opened).getByLabel('A file that was kept').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
+  await choose('mine.toml', KEPT);
+  await said(opened, /^The robot has the calibration of mine\.toml\. It is not saved yet\.$/);
+  assert.match((await cal(opened))[2], /^# A3 trim 3\.25 /);
+  const before = await cal(opened);
+  const wrong = [
+    ['<img src=x onerror="window.strange=1">.toml', 'hello', /^<img .*>\.toml: line 1: this is not TOML$/],
+    ['a.toml', 'format = "lizard calibration 2"', /^a\.toml: the key format = "lizard calibration 1" is missing/],
+    ['b.toml', KEPT.replace('2.25', '400'), /^b\.toml: servo\.A2\.trim: 400 is no number/],
+    ['c.toml', KEPT.replace('"stand"', '"stand\\nsave"'), /^c\.toml: boot: .* is no name of a gait$/],
+    ['d.toml', KEPT.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
+  ];
+  for (const [name, body, sentence] of wrong) {
+    await choose(name, body);
+    await said(opened, sentence);
+    assert.deepEqual(await cal(opened), before, `${name} changes nothing`);
+  }
+  assert.equal(await opened.evaluate(() => window.strange), undefined);
+});
+
+test('without a board every step can be tried, by the keyboard alone', async () => {
+  const opened = await standing();
+  await opened.getByRole('button', { name: 'Set up…' }).focus();
+  await opened.keyboard.press('Enter');
+  assert.equal(await opened.evaluate(() => document.activeElement.id), 'setup-step');
+  /** Goes to a control by the tab key, as far as there may be controls. */
+  const tabTo = async (name) => {
+    for (let n = 0; n < 40; n++) {
+      if ((await opened.evaluate(() => document.activeElement.textContent)) === name) return;
+      await opened.keyboard.press('Tab');
+    }
+    assert.fail(`no tab leads to ${name}`);
+  };
+  for (const title of ['Write the firmware', 'Fit the horns']) {
+    await tabTo('Next step');
+    await opened.keyboard.press('Enter');
+    await setup(opened).getByText(title).first().waitFor();
+  }
+  await tabTo('Turn all servos to their middle');
+  await opened.keyboard.press('Enter');
+  for (let n = 0; n < 40 && (await text(opened, '#setup-said')) === ''; n++) await advance(opened, 250);
+  assert.match(await text(opened, '#setup-said'), /^Every servo holds its middle now/);
+  assert.equal(await opened.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'it stays where it was');
+  await advance(opened, 500);
+  assert.deepEqual(await opened.locator('#widths td:nth-child(3)').allInnerTexts(), ['1500.00', '1500.00', '1500.00', '1500.00']);
+});
+
+for (const [name, options] of [
+  ['a phone', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
+  ['the narrowest screen', { viewport: { width: 320, height: 640 }, hasTouch: true, isMobile: true }],
+]) {
+  test(`every step fits on ${name} without scrolling sideways`, async () => {
+    const opened = await standing(options);
+    await opened.getByRole('button', { name: 'Set up…' }).tap();
+    for (const button of await opened.locator('#setup-steps button').all()) {
+      await button.tap();
+      await advance(opened, 1500);
+      const { wide, seen, outside } = await opened.evaluate(() => ({
+        wide: document.documentElement.scrollWidth,
+        seen: document.documentElement.clientWidth,
+        outside: [...document.querySelectorAll('#setup button, #setup table, #setup svg')].filter((each) => each.getBoundingClientRect().right > innerWidth).map(({ textContent }) => textContent),
+      }));
+      assert.ok(wide <= seen, `${await text(opened, '#setup-step')}: ${wide} of ${seen} pixels`);
+      assert.deepEqual(outside, []);
+    }
+  });
+}
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
