@@ -103,6 +103,8 @@ export async function blank(options = {}) {
 export async function page(options = {}, before = undefined) {
   const opened = await blank(options);
   opened.on('console', (message) => {
+    // Said of the pages that are to have their files from the server.
+    if (message.text() === 'Service Worker registration blocked by Playwright') return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
   opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));

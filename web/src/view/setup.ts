@@ -131,7 +131,7 @@ export class Setup implements Tools {
       if (isChanged) this.drop();
       this.guide = null;
       this.work += 1;
-      this.isBusy = false;
+      this.hold(false);
       this.say(isChanged ? 'The board has begun anew. What was not saved is lost.' : 'The board has begun anew.');
     }
     if (!this.box.hidden && !this.isBusy) this.show();
@@ -139,7 +139,7 @@ export class Setup implements Tools {
 
   private drop(): void {
     this.work += 1;
-    this.isBusy = false;
+    this.hold(false);
     this.next = null;
     this.guide = null;
     this.finished.clear();
@@ -221,21 +221,24 @@ export class Setup implements Tools {
     }
     this.isOwn = isOwn;
     const number = ++this.work;
-    this.isBusy = true;
+    this.hold(true);
     this.say('');
-    this.box.setAttribute('aria-busy', 'true');
     this.under = work()
       .catch(sentence)
       .then((said) => {
         if (number !== this.work) return;
-        this.isBusy = false;
+        this.hold(false);
         this.say(said);
         this.update();
         const { next } = this;
         this.next = null;
         if (next) this.act(next);
-      })
-      .finally(() => this.box.setAttribute('aria-busy', String(this.isBusy)));
+      });
+  }
+
+  private hold(isBusy: boolean): void {
+    this.isBusy = isBusy;
+    this.box.setAttribute('aria-busy', String(isBusy));
   }
 
   private say(text: string): void {
