@@ -5,7 +5,7 @@ use simulated_uno::Image;
 pub use simulated_uno::avr_gcc::{assembler, c};
 
 /// C compiled with avr-gcc, a section for each function, then linked; between the two
-/// `change` may replace the object by another one and assembly that goes with it.
+/// `change` may replace the object by another one and assembly that is linked before it.
 ///
 /// # Panics
 /// If avr-gcc is missing or refuses the program, with its words.
@@ -24,6 +24,6 @@ pub fn c_by_way_of_an_object(
     let (new, more) = change(std::fs::read(&object).expect("there is an object"));
     std::fs::write(&object, new).expect("the object is written");
     std::fs::write(&assembly, more).expect("the assembly is written");
-    gcc(&flags, &[object.as_ref(), assembly.as_ref()], &output);
+    gcc(&flags, &[assembly.as_ref(), object.as_ref()], &output);
     Image::read(output).expect("avr-gcc's ELF loads")
 }

@@ -8,7 +8,8 @@
 
 use crate::code::Code;
 use crate::edit::{Edit, Reference};
-use crate::instruction::{ends_block, is_branch, reads_flags, result, skips, writes_flags};
+use crate::flow::are_flags_dead;
+use crate::instruction::{is_branch, result, skips};
 
 /// The flag Z, as a branch names it.
 const ZERO: u16 = 1;
@@ -36,26 +37,12 @@ pub fn edit(
             return None;
         }
         let there = place(code.reference(branch.offset)?)?;
-        let there = all.iter().position(|at| at.offset == there)?;
-        (is_dead(code, index + 2) && is_dead(code, there)).then(|| Edit {
+        let is_dead = |next| are_flags_dead(code, next, place);
+        (is_dead(code.offset(index + 2)) && is_dead(there)).then(|| Edit {
             at: compared.offset,
             remove: 2,
             insert: Vec::new(),
             references: Vec::new(),
         })
     })
-}
-
-/// Whether nobody asks for the flags from an instruction on. They do not outlive a block,
-/// which the compiler ends with all branches on one comparison.
-fn is_dead(code: &Code, from: usize) -> bool {
-    for at in &code.instructions[from.min(code.instructions.len())..] {
-        if reads_flags(at.code) {
-            return false;
-        }
-        if writes_flags(at.code) || ends_block(at.code) {
-            return true;
-        }
-    }
-    true
 }

@@ -7,6 +7,8 @@ pub const RETI: u16 = 0x9518;
 /// `call` and `jmp`, whose targets are in the word behind them.
 pub const CALL: u16 = 0x940e;
 pub const JMP: u16 = 0x940c;
+/// `icall`.
+pub const ICALL: u16 = 0x9509;
 /// `in r28, SPL` and `in r29, SPH`.
 pub const POINTER_FROM_STACK: [u16; 2] = [0xb7cd, 0xb7de];
 /// `in r0, SREG`, `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
@@ -134,11 +136,10 @@ pub const fn reads_flags(code: u16) -> bool {
         || code & 0xfe0f == 0x9000
 }
 
-/// Whether what follows is not always next: a jump, a call, a return, a skip.
-pub const fn ends_block(code: u16) -> bool {
-    is_relative(code)
-        || code & 0xfe0c == JMP
-        || code & 0xff0f == 0x9508
-        || code & 0xfe0f == 0x9409
-        || skips(code)
+/// Whether what lies behind it may be executed after it, where it is the last instruction of
+/// a function. A call is not: a compiler ends a function with one that never returns.
+pub const fn runs_on(code: u16) -> bool {
+    let is_return = code == RET || code == RETI;
+    let is_jump = is_near_jump(code) || code & 0xfe0e == JMP || code & 0xffef == 0x9409;
+    !(is_return || is_jump || is_call(code))
 }

@@ -60,7 +60,8 @@ fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
         Ok::<PathBuf, String>(path)
     };
     Ok(Some([
-        write("short.o", &new)?,
+        // First, so that it lies behind `.lowtext` and before the rest.
         write("frames.S", ROUTINES.as_bytes())?,
+        write("short.o", &new)?,
     ]))
 }

@@ -2,14 +2,18 @@
 
 use std::fmt;
 
-use object::build::elf::{Builder, Section, SectionData, SectionId, SymbolId};
+use object::build::elf::{Builder, Relocation, Section, SectionData, SectionId, SymbolId};
 use object::elf;
 
 use crate::code::Code;
 use crate::edit::{Edit, Edits, Reference};
 use crate::frame::{FIRST, Frame, Routines};
-use crate::instruction::{is_call, writes_flags, writes_r26};
-use crate::{branch, compare};
+use crate::instruction::{is_call, runs_on, skips, writes_flags, writes_r26};
+use crate::order::{Call, Pieces};
+use crate::{branch, compare, sparse, truth};
+
+/// Bytes of the routines of `frames.S`, about; what is estimated by it is their distance.
+const ROUTINES_SIZE: u32 = 320;
 
 /// Why an object cannot be read or written.
 #[derive(Debug)]
@@ -38,6 +42,12 @@ pub struct Savings {
     pub branches: i64,
     /// By comparisons left out.
     pub comparisons: i64,
+    /// By truth values that are branches.
+    pub truths: i64,
+    /// By variables of which only what is not zero is in flash.
+    pub data: i64,
+    /// By functions near those that call them, as far as it can be told before linking.
+    pub calls: i64,
 }
 
 /// The object file with shorter functions, and how much was saved; none for what is no ELF file. The
@@ -66,7 +76,13 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
             savings.comparisons += edits.gain();
             object.apply(section, &edits);
         }
+        while let Some(edits) = object.next(section, truth::edit) {
+            savings.truths += edits.gain();
+            object.apply(section, &edits);
+        }
     }
+    savings.data = object.sparse();
+    savings.calls = object.order();
     let mut new = Vec::new();
     object.0.write(&mut new)?;
     Ok(Some((new, savings)))
@@ -167,11 +183,20 @@ impl Object<'_> {
 
     /// All offsets of a section that anything leads to.
     fn targets(&self, section: SectionId) -> Vec<u64> {
+        self.targets_without(section, None)
+    }
+
+    /// All offsets of a section that anything leads to but what an edit replaces.
+    fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
             if let SectionData::Relocation(all) = &table.data {
+                let own = edit.filter(|_| table.sh_info_section == Some(section));
                 let places = all.iter().filter_map(|relocation| {
-                    self.place(section, relocation.symbol?, relocation.r_addend)
+                    let at = relocation.r_offset;
+                    let replaced = own.is_some_and(|edit| edit.at == at || edit.covers(at));
+                    let symbol = relocation.symbol.filter(|_| !replaced)?;
+                    self.place(section, symbol, relocation.r_addend)
                 });
                 targets.extend(places);
             }
@@ -236,7 +261,9 @@ impl Object<'_> {
         let code = self.code(section)?;
         let targets = self.targets(section);
         let place = |reference: &Reference| self.place(section, reference.symbol, reference.addend);
-        Edits::new(vec![edit(&code, &targets, &place)?], &targets)
+        let edit = edit(&code, &targets, &place)?;
+        let targets = self.targets_without(section, Some(&edit));
+        Edits::new(vec![edit], &targets)
     }
 
     /// Changes a section, and everything that says something of its offsets.
@@ -268,16 +295,7 @@ impl Object<'_> {
             };
             if own {
                 all.clear();
-                all.extend(
-                    references
-                        .iter()
-                        .map(|reference| object::build::elf::Relocation {
-                            r_offset: reference.offset,
-                            symbol: Some(reference.symbol),
-                            r_type: reference.kind,
-                            r_addend: reference.addend,
-                        }),
-                );
+                all.extend(references.iter().map(relocation));
             } else {
                 for relocation in all {
                     if let Some(symbol) = relocation.symbol {
@@ -295,5 +313,202 @@ impl Object<'_> {
         let code = self.0.sections.get_mut(section);
         code.sh_size = bytes.len() as u64;
         code.data = SectionData::Data(bytes.into());
+    }
+
+    /// Clears each variable that is zero but for a few bytes, and writes those. One that holds
+    /// an address, which only the linker knows, stays as it is.
+    fn sparse(&mut self) -> i64 {
+        let is_data = |section: &&Section| {
+            let flags = elf::SHF_ALLOC | elf::SHF_WRITE;
+            section.name.starts_with(b".data.")
+                && section.sh_type == elf::SHT_PROGBITS
+                && section.sh_flags == flags
+                && self.references(section.id()).is_empty()
+        };
+        let all: Vec<SectionId> = self
+            .0
+            .sections
+            .iter()
+            .filter(is_data)
+            .map(Section::id)
+            .collect();
+        let mut saved = 0;
+        for section in all {
+            let bytes = self.bytes(section);
+            let mut symbols = self.0.symbols.iter();
+            let symbol = symbols.find(|symbol| symbol.section == Some(section));
+            let variable = symbol.map(|symbol| (symbol.id(), -(symbol.st_value as i64)));
+            let (Some(variable), Some(table)) = (variable, sparse::table(&bytes)) else {
+                continue;
+            };
+            let name = self.0.sections.get(section).name.to_vec();
+            let name = name.strip_prefix(b".data").unwrap_or(&name);
+            let size = table.len();
+            let place = self.add(&[b".progmem.data", name].concat(), elf::SHF_ALLOC, table);
+            let label = self.0.symbols.add();
+            label.name = [b"__not_zero", name].concat().into();
+            label.set_st_info(elf::STB_LOCAL, elf::STT_OBJECT);
+            label.st_size = size as u64;
+            label.section = Some(place);
+            let label = label.id();
+            let (code, references) = sparse::code(variable, (label, size));
+            let code: Vec<u8> = code.iter().flat_map(|word| word.to_le_bytes()).collect();
+            saved += bytes.len() as i64 - size as i64 - code.len() as i64;
+            let startup = self.add(b".init5", elf::SHF_ALLOC | elf::SHF_EXECINSTR, code);
+            self.refer(startup, &references);
+            let cleared = self.0.sections.get_mut(section);
+            cleared.name = [b".bss", name].concat().into();
+            cleared.sh_type = elf::SHT_NOBITS;
+            cleared.data = SectionData::UninitializedData(bytes.len() as u64);
+            self.need(b"__do_clear_bss");
+        }
+        saved
+    }
+
+    /// A new section of the program.
+    fn add(&mut self, name: &[u8], flags: elf::SectionFlags, bytes: Vec<u8>) -> SectionId {
+        let section = self.0.sections.add();
+        section.name = name.to_vec().into();
+        section.sh_type = elf::SHT_PROGBITS;
+        section.sh_flags = flags;
+        section.sh_addralign = 1;
+        section.sh_size = bytes.len() as u64;
+        section.data = SectionData::Data(bytes.into());
+        section.id()
+    }
+
+    /// Says what the bytes of a new section refer to.
+    fn refer(&mut self, section: SectionId, references: &[Reference]) {
+        let is_table = |table: &&Section| matches!(table.data, SectionData::Symbol);
+        let symbols = self.0.sections.iter().find(is_table).map(Section::id);
+        let table = self.0.sections.add();
+        table.name = ".rela.init5".into();
+        table.sh_type = elf::SHT_RELA;
+        table.sh_flags = elf::SHF_INFO_LINK;
+        table.sh_addralign = 4;
+        table.sh_entsize = 12;
+        table.sh_link_section = symbols;
+        table.sh_info_section = Some(section);
+        table.data = SectionData::Relocation(references.iter().map(relocation).collect());
+    }
+
+    /// Has a library's routine linked.
+    fn need(&mut self, name: &[u8]) {
+        if !self.0.symbols.iter().any(|symbol| *symbol.name == *name) {
+            let symbol = self.0.symbols.add();
+            symbol.name = name.to_vec().into();
+            symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
+        }
+    }
+
+    /// Puts the functions into an order in which calls are short, with the routines of
+    /// `frames.S` in their middle: what is to lie before those is named `.lowtext`, as the
+    /// linker's script has it, and the rest comes behind them if they are linked first. Nothing
+    /// is done if a piece of code might run on into the next, or branches to another.
+    fn order(&mut self) -> i64 {
+        let functions = self.functions();
+        let may_move = |section: &Section| {
+            let Some(code) = self.code(section.id()) else {
+                return false;
+            };
+            let ends = match code.instructions.as_slice() {
+                [.., before, last] => !skips(before.code) && !runs_on(last.code),
+                [last] => !runs_on(last.code),
+                [] => true,
+            };
+            // A branch to another section has its limit.
+            let is_near = |reference: &Reference| {
+                let near = [elf::R_AVR_7_PCREL, elf::R_AVR_13_PCREL];
+                !near.contains(&reference.kind)
+                    || self.0.symbols.get(reference.symbol).section == Some(section.id())
+            };
+            ends && code.references.iter().all(is_near)
+        };
+        let is_code =
+            |section: &&Section| *section.name == *b".text" || section.name.starts_with(b".text.");
+        let codes = || self.0.sections.iter().filter(is_code);
+        if !codes().all(may_move) {
+            return 0;
+        }
+        // Functions; the routines, and what is left where it is behind them; other files.
+        let [middle, others] = [functions.len(), functions.len() + 1];
+        let piece = |section: SectionId| functions.iter().position(|other| *other == section);
+        let mut pieces = Pieces::default();
+        let is_long = |reference: &&Reference| reference.kind == elf::R_AVR_CALL;
+        for section in &functions {
+            // As if all calls in it were short.
+            let less = 2 * self.references(*section).iter().filter(is_long).count() as u64;
+            let size = self.0.sections.get(*section).sh_size - less;
+            pieces.sizes.push(size as u32);
+        }
+        let staying = codes().filter(|section| piece(section.id()).is_none());
+        let staying: u64 = staying.map(|section| section.sh_size).sum();
+        pieces.sizes.extend([ROUTINES_SIZE + staying as u32, 0]);
+        for section in codes() {
+            for reference in self.references(section.id()) {
+                let symbol = self.0.symbols.get(reference.symbol);
+                let from = piece(section.id()).unwrap_or(middle);
+                let to = match symbol.section {
+                    Some(section) => piece(section).unwrap_or(middle),
+                    None if symbol.name.starts_with(b"__frame_") => middle,
+                    None => others,
+                };
+                if is_long(&&reference) && from != to {
+                    let at = if from == middle {
+                        0
+                    } else {
+                        reference.offset as u32
+                    };
+                    pieces.calls.push(Call { from, at, to });
+                }
+            }
+        }
+        let order = pieces.order();
+        let compiled: Vec<usize> = (0..=others).collect();
+        let saved = 2 * (pieces.far(&compiled) as i64 - pieces.far(&order) as i64);
+        if saved <= 0 {
+            return 0;
+        }
+        let mut is_low = true;
+        for piece in order {
+            match functions.get(piece) {
+                Some(section) => self.move_to_the_end(*section, is_low),
+                None => is_low = false,
+            }
+        }
+        saved
+    }
+
+    /// Makes a section of code, and its table of relocations, the last ones of the file: the
+    /// linker meets a section where it reads the one or the other first.
+    fn move_to_the_end(&mut self, section: SectionId, is_low: bool) {
+        let new = self.0.sections.copy(section);
+        if let (true, Some(name)) = (is_low, new.name.strip_prefix(b".text")) {
+            new.name = [b".lowtext", name].concat().into();
+        }
+        let new = new.id();
+        self.0.sections.get_mut(section).delete = true;
+        for symbol in &mut self.0.symbols {
+            if symbol.section == Some(section) {
+                symbol.section = Some(new);
+            }
+        }
+        let tables = self.0.sections.iter();
+        let tables = tables.filter(|table| table.sh_info_section == Some(section));
+        let tables: Vec<SectionId> = tables.map(Section::id).collect();
+        for table in tables {
+            self.0.sections.copy(table).sh_info_section = Some(new);
+            self.0.sections.get_mut(table).delete = true;
+        }
+    }
+}
+
+/// As the file has it.
+fn relocation(reference: &Reference) -> Relocation {
+    Relocation {
+        r_offset: reference.offset,
+        symbol: Some(reference.symbol),
+        r_type: reference.kind,
+        r_addend: reference.addend,
     }
 }
