@@ -298,10 +298,13 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   }
   await tabTo('Turn all servos to their middle');
   await opened.keyboard.press('Enter');
+  // Keys that drive do not while somebody has their fingers at the links.
+  await opened.keyboard.down('ArrowUp');
   for (let n = 0; n < 40 && (await text(opened, '#setup-said')) === ''; n++) await advance(opened, 250);
   assert.match(await text(opened, '#setup-said'), /^Every servo holds its middle now/);
   assert.equal(await opened.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'it stays where it was');
   await advance(opened, 500);
+  await opened.keyboard.up('ArrowUp');
   assert.deepEqual(await opened.locator('#widths td:nth-child(3)').allInnerTexts(), ['1500.00', '1500.00', '1500.00', '1500.00']);
 });
 

@@ -12,18 +12,16 @@ import { drawing, PLACES } from './setup/drawing';
 import { firmware } from './setup/firmware';
 import { horns } from './setup/horns';
 import { keep } from './setup/keep';
-import { forgetLimits, limits } from './setup/limits';
+import { Limits } from './setup/limits';
 import { button } from './setup/parts';
-import { forgetScale, scale } from './setup/scale';
-import { forgetSigns, signs } from './setup/signs';
+import { Scale } from './setup/scale';
+import { Signs } from './setup/signs';
 import type { Step, Tools } from './setup/step';
 import { trims } from './setup/trims';
 import { walk } from './setup/walk';
 import type { Writer } from './writer';
 
-const STEPS: readonly Step[] = [board, firmware, horns, signs, trims, scale, limits, walk, keep];
-/** Steps that go from servo to servo. */
-const BY_SERVO: readonly Step[] = [signs, trims, scale, limits];
+const STEPS: readonly Step[] = [board, firmware, horns, new Signs(), trims, new Scale(), new Limits(), walk, keep];
 const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
 /** Steps take its methods apart, so these are bound. */
@@ -143,7 +141,7 @@ export class Setup implements Tools {
     this.next = null;
     this.guide = null;
     this.finished.clear();
-    for (const forget of [forgetSigns, forgetScale, forgetLimits]) forget();
+    for (const step of STEPS) step.forget?.();
   }
 
   /** Leaves; what was not saved is taken back, once the robot is done with what it does. */
@@ -256,7 +254,10 @@ export class Setup implements Tools {
   }
 
   private enter(step: Step): void {
-    if (step !== this.step && BY_SERVO.includes(step)) this.servo = 0;
+    if (step !== this.step) {
+      if (step.isByServo) this.servo = 0;
+      step.forget?.();
+    }
     this.step = step;
     if (!this.isBusy) this.say('');
     this.show();
@@ -281,7 +282,7 @@ export class Setup implements Tools {
     element<HTMLButtonElement>('setup-back').disabled = at === 0;
     element<HTMLButtonElement>('setup-next').disabled = at === STEPS.length - 1;
     const can = !step.needsRobot || session.answers;
-    this.servos.hidden = !can || !BY_SERVO.includes(step);
+    this.servos.hidden = !can || !step.isByServo;
     this.servos.querySelectorAll('button').forEach((each, servo) => each.setAttribute('aria-pressed', String(servo === this.servo)));
     const scene = session.last?.scene ?? null;
     const shown = can && step.drawing && scene ? drawing(session.description, scene, step.drawing(this)) : null;

@@ -116,8 +116,8 @@ export class Steer {
       return;
     }
     const { target } = event;
-    // Somebody types, chooses, moves a slider or the view.
-    const taken = target instanceof Element && target.closest('input, select, textarea, canvas, [role="log"]') !== null;
+    // Somebody types, chooses, moves a slider or the view, or sets the robot up.
+    const taken = target instanceof Element && target.closest('input, select, textarea, canvas, [role="log"], #setup') !== null;
     if (taken || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     if (event.repeat) return;

@@ -1,50 +1,78 @@
 // The limits: how far a servo may go before a part of the print touches another.
 import { angle } from '../../setup/calibration';
-import { nameOf } from './drawing';
+import { nameOf, type Shown } from './drawing';
 import { button, note, number, row, words } from './parts';
-import type { Step } from './step';
+import type { Step, Tools } from './step';
 
-/** Where a servo was turned to, deg; null while it stands. */
-let at: { servo: number; degrees: number } | null = null;
+/** By how much it is turned at a time, deg. */
 const BY = 5;
 
-export const limits: Step = {
-  name: 'Limits',
-  title: 'Limit their travel',
-  needsRobot: true,
-  drawing: ({ servo }) => ({ servo, by: null }),
-  parts({ guide, servo, run, done, session }) {
+export class Limits implements Step {
+  readonly name = 'Limits';
+  readonly title = 'Limit their travel';
+  readonly needsRobot = true;
+  readonly isByServo = true;
+  /** Where a servo was turned to, deg; null while it stands. */
+  private at: { servo: number; degrees: number } | null = null;
+
+  forget(): void {
+    this.at = null;
+  }
+
+  drawing({ servo }: Tools): Shown {
+    return { servo, by: null };
+  }
+
+  parts(tools: Tools): Node[] {
+    const { guide, servo, session } = tools;
     const limit = guide?.has.servos[servo].limit ?? null;
-    const { neutral } = session.description.servos[servo];
-    const place = at?.servo === servo ? at.degrees : neutral;
-    const turn = (by: number) => () =>
-      run(async (guide) => {
-        await guide.point(servo, place + by);
-        at = { servo, degrees: place + by };
-        return `A${servo + 1} points to ${angle(place + by).toFixed(2)}°.`;
-      });
-    const set = (from: number, to: number) =>
-      run(async (guide) => {
-        await guide.limit(servo, from, to);
-        done('Limits');
-        return `A${servo + 1} goes from ${angle(from).toFixed(2)}° to ${angle(to).toFixed(2)}°.`;
-      });
+    const place = this.at?.servo === servo ? this.at.degrees : session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
+    const box = (label: string, value: number, set: (value: number) => void) => number(label, value, '0.01', set);
     return [
       words(`Turn ${nameOf(servo)} until a part of your print is about to touch another, and let it go no further. Where nothing touches, there is nothing to do.`),
-      row(button(`↺ ${BY}°`, turn(BY)), button(`↻ ${BY}°`, turn(-BY)), button('Stand', () => run(async (guide) => {
-        await guide.stand();
-        at = null;
-        return 'The robot stands.';
-      }))),
-      row(button('Not further ↺ than here', () => set(from, place)), button('Not further ↻ than here', () => set(place, to))),
-      ...(limit ? [row(number('From, degrees', from, '0.01', (value) => set(value, to)), number('to, degrees', to, '0.01', (value) => set(from, value)))] : []),
+      row(
+        button(`↺ ${BY}°`, () => this.turn(tools, place + BY)),
+        button(`↻ ${BY}°`, () => this.turn(tools, place - BY)),
+        button('Stand', () => this.stand(tools)),
+      ),
+      ...(limit
+        ? [
+            row(
+              button('Not further ↺ than here', () => this.set(tools, from, place)),
+              button('Not further ↻ than here', () => this.set(tools, place, to)),
+            ),
+            row(
+              box('From, degrees', from, (value) => this.set(tools, value, to)),
+              box('to, degrees', to, (value) => this.set(tools, from, value)),
+            ),
+          ]
+        : []),
       note('A limit goes counter-clockwise from its first angle to its second. One with which a gait could not be walked is refused.'),
     ];
-  },
-};
+  }
 
-/** Begins anew, for another robot. */
-export function forgetLimits(): void {
-  at = null;
+  private turn({ servo, run }: Tools, degrees: number): void {
+    run(async (guide) => {
+      await guide.point(servo, degrees);
+      this.at = { servo, degrees };
+      return `A${servo + 1} points to ${angle(degrees).toFixed(2)}°.`;
+    });
+  }
+
+  private stand({ run }: Tools): void {
+    run(async (guide) => {
+      await guide.stand();
+      this.forget();
+      return 'The robot stands.';
+    });
+  }
+
+  private set({ servo, run, done }: Tools, from: number, to: number): void {
+    run(async (guide) => {
+      await guide.limit(servo, from, to);
+      done(this.name);
+      return `A${servo + 1} goes from ${angle(from).toFixed(2)}° to ${angle(to).toFixed(2)}°.`;
+    });
+  }
 }

@@ -1,80 +1,100 @@
 // The signs: a servo whose sign is wrong stands on the other side of its neutral angle, and the guard would take
 // an unsafe pose for a safe one.
-import { nameOf } from './drawing';
+import { nameOf, PLACES, type Shown } from './drawing';
 import { button, note, row, words } from './parts';
 import type { Step, Tools } from './step';
-
-/** By how much the servo of the step has been turned, deg; null before. */
-let moved: { servo: number; by: number } | null = null;
-/** What a person may have seen that no answer mends. */
-let advice: 'other' | 'none' | null = null;
 
 const doneWord = (servo: number) => `sign ${servo}`;
 
 /** The servos whose signs nobody has proven. */
 export const unproven = (tools: Tools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(doneWord(servo)));
 
-function turn(tools: Tools): void {
-  const { servo } = tools;
-  advice = null;
-  tools.run(async (guide) => {
-    moved = { servo, by: await guide.prove(servo) };
-    return `A${servo + 1} was told to turn ${Math.abs(moved.by)}° ${moved.by > 0 ? 'counter-clockwise' : 'clockwise'}.`;
-  });
-}
+export class Signs implements Step {
+  readonly name = 'Signs';
+  readonly title = 'Prove the signs';
+  readonly needsRobot = true;
+  readonly isByServo = true;
+  /** By how much a servo has been turned, deg; null before. */
+  private moved: { servo: number; by: number } | null = null;
+  /** What a person has seen that no answer mends. */
+  private seen: 'other' | 'none' | null = null;
 
-export const signs: Step = {
-  name: 'Signs',
-  title: 'Prove the signs',
-  needsRobot: true,
-  drawing: ({ servo }) => ({ servo, by: moved?.servo === servo ? moved.by : 10 }),
-  parts(tools) {
+  forget(): void {
+    this.moved = this.seen = null;
+  }
+
+  drawing({ servo }: Tools): Shown {
+    return { servo, by: this.moved?.servo === servo ? this.moved.by : 10 };
+  }
+
+  parts(tools: Tools): Node[] {
     const { servo } = tools;
-    const wasMoved = moved?.servo === servo;
-    const next = () => {
-      tools.done(doneWord(servo));
-      moved = advice = null;
-      const [first] = unproven(tools);
-      if (first === undefined) {
-        tools.done('Signs');
-        tools.run(async (guide) => {
-          await guide.stand();
-          return 'All four turn the right way.';
-        });
-        return tools.go('Trims');
-      }
-      tools.servo = first;
+    const wasMoved = this.moved?.servo === servo;
+    const name = `A${servo + 1}`;
+    return [
+      words(`${nameOf(servo)}: one servo alone turns by 10°. Look from above.`),
+      row(button(wasMoved ? `Turn ${name} once more` : `Turn ${name}`, () => this.turn(tools), !wasMoved)),
+      ...(wasMoved ? this.question(tools) : []),
+      note('Do not leave this step out: the robot would take an unsafe pose for a safe one.'),
+    ];
+  }
+
+  private question(tools: Tools): Node[] {
+    const { servo, session } = tools;
+    const { pin } = session.description.servos[servo];
+    const say = (what: 'other' | 'none') => () => {
+      this.seen = what;
       tools.show();
     };
-    const parts: Node[] = [
-      words(`${nameOf(servo)}: one servo alone turns by 10°. Look from above.`),
-      row(button(wasMoved ? `Turn A${servo + 1} once more` : `Turn A${servo + 1}`, () => turn(tools), !wasMoved)),
+    const advice = {
+      other: `Two signal wires are exchanged. Switch the servos' supply off and put the signal of the servo at the ${PLACES[servo]} on pin D${pin}. Then turn it once more.`,
+      none: `Has its supply power, and are its ground and the UNO's joined? Is its plug the right way round, the signal (orange) on pin D${pin}? Then turn it once more.`,
+    };
+    return [
+      words('Did it turn as the arrow shows?'),
+      row(
+        button('Yes', () => this.proven(tools), true),
+        button('No, the other way', () => this.reverse(tools)),
+        button('Another servo turned', say('other')),
+        button('Nothing turned', say('none')),
+      ),
+      ...(this.seen ? [words(advice[this.seen])] : []),
     ];
-    if (wasMoved) {
-      const reverse = () =>
-        tools.run(async (guide) => {
-          await guide.reverse(servo);
-          moved = null;
-          return `The sign of A${servo + 1} is "${guide.has.servos[servo].dir}" now. Turn it once more and look.`;
-        });
-      const say = (what: 'other' | 'none') => () => {
-        advice = what;
-        tools.show();
-      };
-      parts.push(
-        words('Did it turn as the arrow shows?'),
-        row(button('Yes', next, true), button('No, the other way', reverse), button('Another servo turned', say('other')), button('Nothing turned', say('none'))),
-      );
-      const pin = tools.session.description.servos[servo].pin;
-      if (advice === 'other') parts.push(words(`Two signal wires are exchanged. Switch the servos' supply off and put the signal of the servo at the ${nameOf(servo).slice(4)} on pin D${pin}. Then turn it once more.`));
-      if (advice === 'none') parts.push(words(`Has its supply power, and are its ground and the UNO's joined? Is its plug the right way round, the signal (orange) on pin D${pin}? Then turn it once more.`));
-    }
-    parts.push(note('Do not leave this step out: the robot would take an unsafe pose for a safe one.'));
-    return parts;
-  },
-};
+  }
 
-/** Begins anew, for another robot. */
-export function forgetSigns(): void {
-  moved = advice = null;
+  private turn(tools: Tools): void {
+    const { servo } = tools;
+    tools.run(async (guide) => {
+      const by = await guide.prove(servo);
+      this.seen = null;
+      this.moved = { servo, by };
+      return `A${servo + 1} was told to turn ${Math.abs(by)}° ${by > 0 ? 'counter-clockwise' : 'clockwise'}.`;
+    });
+  }
+
+  private reverse(tools: Tools): void {
+    const { servo } = tools;
+    tools.run(async (guide) => {
+      await guide.reverse(servo);
+      this.forget();
+      return `The sign of A${servo + 1} is "${guide.has.servos[servo].dir}" now. Turn it once more and look.`;
+    });
+  }
+
+  /** This one is right: to the next that nobody has proven, or to the next step. */
+  private proven(tools: Tools): void {
+    tools.done(doneWord(tools.servo));
+    this.forget();
+    const [first] = unproven(tools);
+    if (first !== undefined) {
+      tools.servo = first;
+      return tools.show();
+    }
+    tools.done(this.name);
+    tools.run(async (guide) => {
+      await guide.stand();
+      return 'All four turn the right way.';
+    });
+    tools.go('Trims');
+  }
 }

@@ -35,8 +35,12 @@ export interface Step {
   readonly title: string;
   /** Whether a robot with this firmware has to answer. */
   readonly needsRobot: boolean;
+  /** Whether it goes from servo to servo. */
+  readonly isByServo?: boolean;
   /** What a person sees and may do. */
   parts(tools: Tools): Node[];
   /** What the drawing shows; without it there is none. */
   drawing?(tools: Tools): Shown | null;
+  /** Begins anew, for another board or after it was left. */
+  forget?(): void;
 }

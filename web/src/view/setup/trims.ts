@@ -10,6 +10,7 @@ export const trims: Step = {
   name: 'Trims',
   title: 'Straighten the cranks',
   needsRobot: true,
+  isByServo: true,
   drawing: ({ servo }) => ({ servo, by: null }),
   parts({ guide, servo, run, done, session }) {
     const trim = guide?.has.servos[servo].trim;
