@@ -234,6 +234,15 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
   assert.deepEqual(await cal(opened), before);
   await opened.getByRole('button', { name: 'Set up…' }).click();
   await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
+  // What was proven and is not taken back counts on.
+  await step(opened, 'Signs');
+  await does(opened, 'Turn A1', /^A1 was told to turn 10°/);
+  await press(opened, 'Yes');
+  await press(opened, 'Leave');
+  await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
+  await opened.getByRole('button', { name: 'Set up…' }).click();
+  await step(opened, 'First walk');
+  await setup(opened).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
 });
 
 test('what the robot refuses is said in its words, and changes nothing', async () => {

@@ -126,21 +126,19 @@ export class Setup implements Tools {
   update(): void {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
-      if (isChanged) this.drop();
-      this.guide = null;
-      this.work += 1;
-      this.hold(false);
+      this.drop(isChanged);
       this.say(isChanged ? 'The board has begun anew. What was not saved is lost.' : 'The board has begun anew.');
     }
     if (!this.box.hidden && !this.isBusy) this.show();
   }
 
-  private drop(): void {
+  /** Nothing is under way any more. What was proven counts on, unless the robot has lost it. */
+  private drop(isLost = true): void {
     this.work += 1;
     this.hold(false);
     this.next = null;
     this.guide = null;
-    this.finished.clear();
+    if (isLost) this.finished.clear();
     for (const step of STEPS) step.forget?.();
   }
 
@@ -160,7 +158,7 @@ export class Setup implements Tools {
     const opener = element('setup-open');
     opener.setAttribute('aria-expanded', 'false');
     opener.focus();
-    this.drop();
+    this.drop(said !== '');
     const left = element('setup-left');
     left.textContent = said;
     left.hidden = said === '';
