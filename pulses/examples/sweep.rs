@@ -34,7 +34,9 @@ const fn pin(number: u8) -> Pin {
 }
 
 mod servos {
-    servo_pulses::engine!(super::PINS);
+    // Pins that are connected while the program runs; `engine!(super::PINS)` would have
+    // them from the start.
+    servo_pulses::engine!(later: 8);
 }
 
 /// The bytes that have come last, and how many have, modulo 256: the handler moves the
@@ -62,6 +64,7 @@ fn main() -> ! {
         .ucsr0b()
         .write(|w| w.rxen0().set_bit().txen0().set_bit().rxcie0().set_bit());
     chip.PORTB.ddrb().modify(|_, w| w.pb5().set_bit());
+    servos::connect(PINS);
     // SAFETY: interrupts are off, and nothing else uses Timer1.
     unsafe { servos::start() };
     // SAFETY: every interrupt that is enabled above has its handler.

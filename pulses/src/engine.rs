@@ -153,7 +153,7 @@ mod registers {
     use crate::store::store_at;
     use crate::timing::slot_cycles;
 
-    // Timer1 of an ATmega328P (data sheet, 30).
+    // Timer1 of an ATmega328P (data sheet, register summary).
     const TIFR1: usize = 0x36;
     const TIMSK1: usize = 0x6f;
     const TCCR1A: usize = 0x80;
@@ -188,7 +188,8 @@ mod registers {
 
     impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         /// Puts the pins low and makes them outputs, in the order of the widths. Once,
-        /// before the first [`Engine::submit`].
+        /// before the first [`Engine::submit`]; with interrupts off, if any handler changes
+        /// other pins of these ports.
         #[inline(always)]
         pub fn connect(&self, pins: [Pin; SERVOS]) {
             for (slot, pin) in self.pins.iter().zip(&pins) {

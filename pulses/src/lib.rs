@@ -63,9 +63,10 @@
 //! - The longest of the program's other handlers and the longest stretch with interrupts
 //!   off take less than [`LEAD`] together, less the 60 cycles that a handler here
 //!   needs itself before it reads the timer. Where that fails the edge is late.
-//! - Handlers do not let other interrupts in. Timer1's compare interrupts come before
-//!   Timer0's, the USART's and all later ones, but not before INT0, INT1, PCINT, the
-//!   watchdog and Timer2: those count as other handlers twice if they come in turn.
+//! - Handlers do not let other interrupts in. Timer1's compare interrupts are served
+//!   before Timer0's, the USART's and all later ones. INT0, INT1, PCINT, the watchdog and
+//!   Timer2 are served before Timer1: where a program uses several of them, the times of
+//!   their handlers add up.
 //! - Interrupts are never off for 62 us, 1000 cycles. A slot whose end is missed so
 //!   is played again without a pulse, and everything comes a slot later from then on.
 //! - Only the two handlers touch Timer1, because all its 16-bit registers share

@@ -6,7 +6,7 @@
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
-    /// Data address of its PORT register; DDR is one below (data sheet, 14.4 and 30).
+    /// Data address of its PORT register; DDR is one below (data sheet, 14.4).
     pub(crate) port: u8,
     /// Its bit in that register.
     pub(crate) mask: u8,
@@ -75,7 +75,7 @@ mod tests {
     fn every_pin_has_the_port_and_the_bit_of_the_circuit_diagram() {
         for (number, port, bit) in SOCKETS {
             let pin = Pin::arduino(number).expect("the UNO has it");
-            // Data sheet, 30 Register Summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
+            // Data sheet, register summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
             let address = match port {
                 'B' => 0x25,
                 'C' => 0x28,
