@@ -114,7 +114,7 @@ impl Counter {
     }
 
     /// The count so far. Switches interrupts off for about 10 cycles.
-    #[cfg(target_arch = "avr")]
+    #[cfg(any(doc, target_arch = "avr"))]
     pub fn read(&self) -> u16 {
         let sreg: u8;
         // SAFETY: reads and then clears the interrupt flag.

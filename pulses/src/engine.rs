@@ -11,7 +11,7 @@ use crate::timing::{LEAD, most_width};
 pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     #[doc(hidden)]
     /// Ports and masks of the pins, by slot. Zero, which is no pin, until
-    /// `connect`.
+    /// [`Engine::connect`].
     pub pins: &'a [[Byte; 2]; SIZE],
     #[doc(hidden)]
     /// Two sets of widths: the one that plays and the one that main fills.
@@ -144,7 +144,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
 }
 
 /// What touches registers.
-#[cfg(target_arch = "avr")]
+#[cfg(any(doc, target_arch = "avr"))]
 mod registers {
     use core::ptr::with_exposed_provenance_mut;
 

@@ -81,7 +81,7 @@
 pub mod cells;
 mod engine;
 mod pin;
-#[cfg(target_arch = "avr")]
+#[cfg(any(doc, target_arch = "avr"))]
 mod store;
 mod timing;
 
