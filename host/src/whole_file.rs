@@ -44,7 +44,12 @@ pub fn write_picture(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// The sentence for a path that cannot be written.
 pub fn cannot(path: &Path, error: &io::Error) -> Failure {
-    Failure::Impossible(format!("cannot write {}: {error}", path.display()))
+    let why = error.to_string();
+    // tempfile adds the name of the temporary file, which means nothing to a user.
+    let why = why
+        .split_once(" at path ")
+        .map_or(why.as_str(), |(why, _)| why);
+    Failure::Impossible(format!("cannot write {}: {why}", path.display()))
 }
 
 fn folders(path: &Path) -> io::Result<()> {
@@ -182,6 +187,17 @@ mod tests {
         let inner = folder.path().join("new/folder/a.svg");
         write_picture(&inner, b"<svg/>").expect("its folders are made");
         assert_eq!(fs::read(&inner).expect("it is read"), b"<svg/>");
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn of_a_folder_that_takes_no_files_the_file_alone_is_named() {
+        let words = refusal(Path::new("/proc/self/a.toml"));
+        assert!(
+            words.starts_with("cannot write /proc/self/a.toml: "),
+            "{words}"
+        );
+        assert!(!words.contains("at path"), "{words}");
     }
 
     #[test]

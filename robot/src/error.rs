@@ -90,7 +90,7 @@ pub enum Problem {
     #[error("is not UTF-8 text: line {0} holds other bytes")]
     NotText(usize),
     /// The text is not TOML.
-    #[error("not TOML: {0}")]
+    #[error("{0}")]
     Syntax(String),
     /// A key that must be there is not.
     #[error("is missing; it must be {0}")]

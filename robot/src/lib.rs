@@ -49,6 +49,7 @@ mod sprung;
 mod stance;
 mod strut;
 mod supply;
+mod syntax;
 mod table;
 mod tabled_gait;
 #[cfg(test)]
@@ -86,6 +87,7 @@ pub use sprung::Sprung;
 pub use stance::Stance;
 pub use strut::{SLOT, Strut};
 pub use supply::{Rail, Supplies, healthy_rail_mv};
+pub use syntax::mistake;
 pub use travel::{Prediction, Travel};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 pub use walker::{Slip, Walker};

@@ -24,6 +24,7 @@ use crate::reader::{self, Section};
 use crate::servo::{self, FORWARD, Pace, Servo};
 use crate::strut::Strut;
 use crate::supply::Supplies;
+use crate::syntax;
 use crate::table::{Tables, Unfit};
 use crate::tabled_gait::TabledGait;
 use crate::travel::{Prediction, Travel};
@@ -85,7 +86,11 @@ impl Robot {
                 .span()
                 .map(|span| text[..span.start].matches('\n').count() + 1),
             key: String::new(),
-            problem: Problem::Syntax(fault.message().to_string()),
+            problem: Problem::Syntax(syntax::mistake(
+                text,
+                fault.span().map_or(text.len(), |span| span.start),
+                fault.message(),
+            )),
         })?;
         let table = document.get_ref();
         read(table).map_err(|Fault { key, problem }| Error {

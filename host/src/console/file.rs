@@ -49,12 +49,10 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
         text.get(..at)
             .map_or(1, |before| before.lines().count().max(1))
     };
-    let table: toml::Table = text.parse().map_err(|error| {
-        format!(
-            "line {}: this is not TOML: {}",
-            line(&error),
-            error.message()
-        )
+    let table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
+        let at = error.span().map_or(0, |span| span.start);
+        let why = lizard_robot::mistake(text, at, error.message());
+        format!("line {}: {why}", line(&error))
     })?;
     match table.get("format") {
         Some(format) if format.as_str() == Some(FORMAT) => {}

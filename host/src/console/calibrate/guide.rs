@@ -16,6 +16,9 @@ const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left
 /// How far a servo is moved to prove its sign, degrees; the first that the robot
 /// does not refuse.
 const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
+/// How far a servo is moved to measure its scale, degrees: the farther, the finer; the first
+/// that the robot does not refuse.
+const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest wait for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
 /// Frames without motion after which the robot stands still: a motion that has just
@@ -50,12 +53,16 @@ enum Step {
     Horns,
     Sign(usize),
     Trim(usize),
+    /// Whether scales and limits are to be set, too.
+    More,
+    Scale(usize),
+    Limit(usize),
     Walk,
     Save,
     Saved,
 }
 
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 22] = [
     Step::Begin,
     Step::Horns,
     Step::Sign(0),
@@ -66,6 +73,15 @@ const STEPS: [Step; 13] = [
     Step::Trim(1),
     Step::Trim(2),
     Step::Trim(3),
+    Step::More,
+    Step::Scale(0),
+    Step::Scale(1),
+    Step::Scale(2),
+    Step::Scale(3),
+    Step::Limit(0),
+    Step::Limit(1),
+    Step::Limit(2),
+    Step::Limit(3),
     Step::Walk,
     Step::Save,
     Step::Saved,
@@ -97,6 +113,8 @@ pub struct Guide<'a, P> {
     at: usize,
     /// By how much the servo of this step has been moved, if it has.
     moved: Option<f64>,
+    /// Whether scales and limits were left as they are.
+    left_out: bool,
     walks: bool,
     message: String,
 }
@@ -117,6 +135,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             neutral: pose,
             at: 0,
             moved: None,
+            left_out: false,
             walks: false,
             message: String::new(),
         })
@@ -140,14 +159,26 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         let done = match (key, self.step()) {
             (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
             (Key::Leave, _) => self.leave().map(|()| true),
+            (Key::Back, Step::Walk) if self.left_out => self.to(Step::More).map(|()| false),
             (Key::Back, _) => self.go(self.at.saturating_sub(1)).map(|()| false),
+            (Key::Next, Step::More) => {
+                self.left_out = true;
+                self.to(Step::Walk).map(|()| false)
+            }
+            (Key::Yes, Step::More) => {
+                self.left_out = false;
+                self.go(self.at + 1).map(|()| false)
+            }
             (Key::Next, Step::Sign(_)) => {
                 self.message = "Press the space bar, look, then answer with y or n.".to_owned();
                 Ok(false)
             }
             (Key::Next, Step::Save) => self.save().map(|()| false),
             (Key::Next, _) => self.go(self.at + 1).map(|()| false),
-            (Key::Act, Step::Sign(servo)) => self.move_one(servo).map(|()| false),
+            (Key::Act, Step::Sign(servo)) => self.move_one(servo, &PROOFS).map(|()| false),
+            (Key::Act, Step::Scale(servo)) => self.move_one(servo, &FAR).map(|()| false),
+            (Key::Turn(degrees), Step::Scale(servo)) => self.scale(servo, degrees).map(|()| false),
+            (Key::Turn(degrees), Step::Limit(servo)) => self.limit(servo, degrees).map(|()| false),
             (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
             (Key::Turn(degrees), Step::Trim(servo)) => self.trim(servo, degrees).map(|()| false),
             (Key::Act, Step::Walk) => self.walk(!self.walks).map(|()| false),
@@ -201,6 +232,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.go(self.at + 1)
     }
 
+    fn to(&mut self, step: Step) -> Result<(), LinkError> {
+        let place = STEPS.iter().position(|at| *at == step);
+        self.go(place.unwrap_or(self.at))
+    }
+
     fn go(&mut self, to: usize) -> Result<(), LinkError> {
         match STEPS[to] {
             Step::Horns => {
@@ -223,20 +259,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    fn move_one(&mut self, servo: usize) -> Result<(), LinkError> {
+    /// Moves one servo by the first of some angles that the robot does not refuse.
+    fn move_one(&mut self, servo: usize, angles: &[f64]) -> Result<(), LinkError> {
         self.stand()?;
         let mut refusal = None;
-        for proof in PROOFS {
-            let mut pose = self.neutral;
-            pose[servo] += proof;
-            let [a1, a2, a3, a4] = pose;
-            match self
-                .link
-                .tell(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))
-            {
-                Ok(_) => {
-                    self.moved = Some(proof);
-                    settle(self.link)?;
+        for by in angles {
+            match self.turn_to(servo, *by) {
+                Ok(()) => {
                     self.message = format!("A{} has moved.", servo + 1);
                     return Ok(());
                 }
@@ -245,6 +274,56 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
         }
         refusal.map_or(Ok(()), Err)
+    }
+
+    /// Moves one servo so far from its middle, the others in theirs.
+    fn turn_to(&mut self, servo: usize, by: f64) -> Result<(), LinkError> {
+        let mut pose = self.neutral;
+        pose[servo] = (pose[servo] + by).rem_euclid(360.0);
+        let [a1, a2, a3, a4] = pose;
+        self.link
+            .tell(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))?;
+        self.moved = Some(by);
+        settle(self.link)?;
+        Ok(())
+    }
+
+    /// Sets the scale with which a servo that was moved turns by so many degrees more. Its
+    /// middle stays where it is, so its trim counts in the new degrees.
+    fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let Some(by) = self.moved else {
+            self.message = "Press the space bar first, and look where it points.".to_owned();
+            return Ok(());
+        };
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        let (old_scale, old_trim) = (set.scale, set.trim);
+        set.scale = hundredths(old_scale * (1.0 + degrees / by));
+        set.trim = hundredths(old_trim * old_scale / set.scale);
+        let (n, scale, trim) = (servo + 1, set.scale, set.trim);
+        self.link.tell(&format!("scale {n} {scale:.2}"))?;
+        if trim != old_trim
+            && let Err(error) = self.link.tell(&format!("trim {n} {trim:.2}"))
+        {
+            self.link.tell(&format!("scale {n} {old_scale:.2}"))?;
+            return Err(error);
+        }
+        self.now = next;
+        Ok(())
+    }
+
+    /// Moves an end of a servo's travel by one degree: its first one with the keys that turn
+    /// far, its second with those that turn little.
+    fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        let end = &mut set.limit[usize::from(degrees.abs() < 0.3)];
+        *end = hundredths((*end + degrees.signum()).rem_euclid(360.0));
+        let [min, max] = set.limit;
+        self.link
+            .tell(&format!("limit {} {min:.2} {max:.2}", servo + 1))?;
+        self.now = next;
+        Ok(())
     }
 
     fn prove(&mut self, servo: usize, answer: Key) -> Result<(), LinkError> {
@@ -277,8 +356,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     fn trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
         let set = next.servo.at(servo);
-        // Hundredths, as the robot has them; and no negative zero.
-        set.trim = ((set.trim + degrees) * 100.0).round() / 100.0 + 0.0;
+        set.trim = hundredths(set.trim + degrees);
         let line = format!("trim {} {:.2}", servo + 1, set.trim);
         self.link.tell(&line)?;
         self.now = next;
@@ -374,6 +452,59 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                 ],
                 "left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
             ),
+            Step::More => (
+                step("scales and limits"),
+                vec![
+                    "Most servos turn one degree for 10 us, and parts as designed touch".to_owned(),
+                    "nowhere: then go on. If a crank turns too far or not far enough, or if a"
+                        .to_owned(),
+                    "part would touch another, set scales and limits now.".to_owned(),
+                ],
+                "y: set them    Enter: leave them as they are    b: back    q: leave",
+            ),
+            Step::Scale(place) => {
+                let by = self.moved.unwrap_or(FAR[0]);
+                let end = (self.neutral[place] + by).rem_euclid(360.0);
+                (
+                    step(&format!("how far does {} turn?", servo(place))),
+                    vec![
+                        format!(
+                            "The space bar turns A{} alone by {:.0} degrees, so that its crank",
+                            place + 1,
+                            by.abs()
+                        ),
+                        format!(
+                            "should point to {end:.2} deg. If it does not, turn it there with the"
+                        ),
+                        "arrow keys.".to_owned(),
+                        String::new(),
+                        format!(
+                            "    scale {:.2} us per degree",
+                            self.now.servo.all()[place].scale
+                        ),
+                    ],
+                    "space: move it    left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
+                )
+            }
+            Step::Limit(place) => {
+                let [min, max] = self.now.servo.all()[place].limit;
+                (
+                    step(&format!("how far may {} turn?", servo(place))),
+                    vec![
+                        format!(
+                            "The crank of A{} never turns beyond its limits. Where a part would",
+                            place + 1
+                        ),
+                        "touch another, end its travel before that angle. Left and right move the"
+                            .to_owned(),
+                        "first limit counter-clockwise and back, up and down the second one."
+                            .to_owned(),
+                        String::new(),
+                        format!("    limits {min:.2} to {max:.2} deg"),
+                    ],
+                    "left, right: first, 1 deg    up, down: second, 1 deg    Enter: next    b: back    q: leave",
+                )
+            }
             Step::Walk => (
                 step("a test walk"),
                 vec![
@@ -399,13 +530,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                     ));
                 }
                 text.push(String::new());
-                text.push(
-                    "Trims and limits in deg, scales in us per deg. Limits and scales are as"
-                        .to_owned(),
-                );
-                text.push(
-                    "they were; `limit` and `scale` in `lizard console` change them.".to_owned(),
-                );
+                text.push("Trims and limits in deg, scales in us per deg.".to_owned());
                 (
                     step("save"),
                     text,
@@ -428,6 +553,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             message: self.message.clone(),
         }
     }
+}
+
+/// A number as the robot has it, and no negative zero.
+fn hundredths(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0 + 0.0
 }
 
 /// Waits until the robot stands still; returns its pose.

@@ -253,12 +253,12 @@ duty = 0.95"#,
     (
         "amplitude = 15.0",
         "amplitude =",
-        "not TOML: string values must be quoted, expected literal string",
+        "`amplitude` has no value behind the =",
     ),
     (
         "amplitude = 15.0",
         r#"amplitude = 15.0
 amplitude = 15.0"#,
-        "not TOML: duplicate key",
+        "`amplitude` is there twice, first in line 161; keep one of them",
     ),
 ];

@@ -45,7 +45,8 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
         &mut guide,
         &[Key::Turn(-0.5), Key::Next, Key::Next, Key::Next],
     );
-    press(&mut guide, &[Key::Act]);
+    assert!(guide.view().title.contains("scales and limits"));
+    press(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
     guide.idle().expect("it answers");
     assert!(guide.view().text[1].starts_with("It walks"));
     press(&mut guide, &[Key::Next]);
@@ -86,10 +87,11 @@ fn who_leaves_at_any_step_leaves_everything_as_it_was() {
             Key::Next,
             Key::Next,
             Key::Next,
+            Key::Next,
             Key::Act,
         ])
         .collect();
-    for length in [1, 4, 13, 18] {
+    for length in [1, 4, 13, 19] {
         let mut link = robot();
         link.tell("trim 1 2.50").expect("it is taken");
         link.tell("boot walk").expect("it is taken");
@@ -156,4 +158,60 @@ fn one_can_go_back_and_a_refused_trim_is_said_and_changes_nothing() {
     );
     press(&mut guide, &[Key::Back]);
     assert!(guide.view().title.contains("which way does A4"));
+}
+
+/// The keys from the beginning to the first scale.
+fn to_scales() -> Vec<Key> {
+    let mut keys = vec![Key::Next, Key::Next];
+    keys.extend(PROVE.repeat(4));
+    keys.extend([Key::Next; 4]);
+    keys.push(Key::Yes);
+    keys
+}
+
+#[test]
+fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
+    let mut link = robot();
+    link.tell("trim 1 2.00").expect("it is taken");
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &to_scales());
+    assert!(
+        guide
+            .view()
+            .title
+            .contains("how far does A1, front left turn")
+    );
+    press(&mut guide, &[Key::Turn(0.5)]);
+    assert!(guide.view().message.contains("space bar first"));
+    press(&mut guide, &[Key::Act]);
+    let by = guide.moved.expect("it was moved");
+    assert!(by.abs() >= 20.0, "{by}");
+    // Four times half a degree more in so many.
+    press(&mut guide, &[Key::Turn(0.5); 4]);
+    let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
+    let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    assert!((now.scale - expected).abs() < 0.03, "{now:?}");
+    // The pulse of the middle is as before: trim times scale.
+    assert!((now.trim * now.scale - 20.0).abs() < 0.2, "{now:?}");
+}
+
+#[test]
+fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
+    let mut link = robot();
+    let before = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &to_scales());
+    press(&mut guide, &[Key::Next; 4]);
+    let title = guide.view().title;
+    assert!(title.contains("how far may A1, front left turn"), "{title}");
+    press(&mut guide, &[Key::Turn(0.5); 3]);
+    press(&mut guide, &[Key::Turn(-0.1); 2]);
+    let now = guide.now.servo.a1.clone();
+    assert_eq!(now.limit, [before.limit[0] + 3.0, before.limit[1] - 2.0]);
+    press(&mut guide, &[Key::Turn(-0.1); 90]);
+    let view = guide.view();
+    assert!(view.message.contains("refuses `limit 1"), "{view:?}");
+    let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let shown = format!("    limits {:.2} to {:.2} deg", now.limit[0], now.limit[1]);
+    assert!(view.text.contains(&shown), "{view:?}, {now:?}");
 }

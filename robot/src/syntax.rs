@@ -1,0 +1,203 @@
+//! What somebody did who wrote a line that is no TOML.
+//!
+//! A parser says what it expected next, in the words of its grammar. Who edits a robot has
+//! left a value out, written a comma for the point or a unit behind a number, and wants to
+//! know that. So the line is looked at for the mistakes that people make; what is none of
+//! them keeps the parser's sentence.
+
+/// The sentence for a mistake at byte `at` of a text, about which the parser says `said`.
+#[must_use]
+pub fn mistake(text: &str, at: usize, said: &str) -> String {
+    let number = text.get(..at).map_or(0, |text| text.matches('\n').count());
+    let lines: Vec<&str> = text.lines().map(without_comment).collect();
+    let line = lines.get(number).copied().unwrap_or_default();
+    let twice = (said == "duplicate key").then(|| twice(&lines, number));
+    twice
+        .flatten()
+        .or_else(|| in_line(line))
+        .unwrap_or_else(|| format!("this is not TOML: {said}"))
+}
+
+/// A line without spaces at its ends and without a comment.
+fn without_comment(line: &str) -> &str {
+    let mut quoted = None;
+    let mut escaped = false;
+    for (place, c) in line.char_indices() {
+        match (quoted, c) {
+            _ if escaped => escaped = false,
+            (Some('"'), '\\') => escaped = true,
+            (Some(mark), c) if c == mark => quoted = None,
+            (None, '"' | '\'') => quoted = Some(c),
+            (None, '#') => return line[..place].trim(),
+            _ => {}
+        }
+    }
+    line.trim()
+}
+
+/// The name of a table whose heading this line is.
+fn heading(line: &str) -> Option<&str> {
+    line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
+}
+
+/// Where the table or the key of a line was before.
+fn twice(lines: &[&str], number: usize) -> Option<String> {
+    let before = lines.get(..number)?;
+    let line = lines.get(number)?;
+    if let Some(table) = heading(line) {
+        let first = before
+            .iter()
+            .position(|line| heading(line) == Some(table))?
+            + 1;
+        return Some(format!(
+            "the table [{table}] is there twice, first in line {first}; put all its keys under one of them"
+        ));
+    }
+    let key = line.split_once('=')?.0.trim();
+    let table = before
+        .iter()
+        .rposition(|line| heading(line).is_some())
+        .map_or(0, |heading| heading + 1);
+    let is_key = |line: &&str| {
+        line.split_once('=')
+            .is_some_and(|(name, _)| name.trim() == key)
+    };
+    let first = table + before[table..].iter().position(is_key)? + 1;
+    Some(format!(
+        "`{key}` is there twice, first in line {first}; keep one of them"
+    ))
+}
+
+/// What is wrong with a line by itself.
+fn in_line(line: &str) -> Option<String> {
+    if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
+        return Some(format!("`{line}` lacks the ] behind the table's name"));
+    }
+    let Some((key, value)) = line.split_once('=') else {
+        let key = line.split_whitespace().next()?;
+        let is_key = key
+            .chars()
+            .all(|c| c.is_alphanumeric() || "_-.".contains(c));
+        return is_key.then(|| format!("`{line}` lacks the = between `{key}` and its value"));
+    };
+    let (key, value) = (key.trim(), value.trim());
+    if value.is_empty() {
+        return Some(format!("`{key}` has no value behind the ="));
+    }
+    number(value).or_else(|| word(value))
+}
+
+/// A number that is written otherwise than TOML has it.
+fn number(value: &str) -> Option<String> {
+    let is_number =
+        |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
+    let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    if let Some((whole, part)) = value.split_once(',')
+        && digits(whole.trim_start_matches(['-', '+']))
+        && digits(part)
+    {
+        return Some(format!(
+            "`{value}` is no number; the decimal mark is a point: {whole}.{part}"
+        ));
+    }
+    let bare = value.trim_start_matches(['-', '+']);
+    if let Some(part) = bare.strip_prefix('.')
+        && digits(part)
+    {
+        let sign = if value.starts_with('-') { "-" } else { "" };
+        return Some(format!(
+            "`{value}` is no number in TOML; write {sign}0.{part}"
+        ));
+    }
+    if let Some(whole) = bare.strip_suffix('.')
+        && digits(whole)
+    {
+        return Some(format!("`{value}` is no number in TOML; write {value}0"));
+    }
+    let split = value.find(|c: char| c.is_alphabetic() || c.is_whitespace() || c == '%')?;
+    let (amount, unit) = (value[..split].trim(), value[split..].trim());
+    let is_unit = unit.starts_with(|c: char| c.is_alphabetic() || c == '%');
+    (is_number(amount) && is_unit).then(|| {
+        format!(
+            "`{value}`: a number stands alone; write {amount}, and `{unit}` behind a # if at all"
+        )
+    })
+}
+
+/// A word without its quotation marks.
+fn word(value: &str) -> Option<String> {
+    let plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
+    let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(plain);
+    let is_known = ["true", "false", "inf", "nan"].contains(&value);
+    (is_word && !is_known)
+        .then(|| format!("`{value}` lacks its quotation marks; write \"{value}\""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mistake;
+
+    /// What is said of a text whose last line is wrong.
+    fn said(text: &str) -> String {
+        let at = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
+        mistake(text, at, "expected newline")
+    }
+
+    #[test]
+    fn a_mistake_is_named_and_how_it_is_written_right() {
+        for (line, sentence) in [
+            ("l1 = ", "`l1` has no value behind the ="),
+            ("l1 = # mm", "`l1` has no value behind the ="),
+            (
+                "l1 = 30,0",
+                "`30,0` is no number; the decimal mark is a point: 30.0",
+            ),
+            (
+                "l1 = -0,5 # mm",
+                "`-0,5` is no number; the decimal mark is a point: -0.5",
+            ),
+            ("l1 = .5", "`.5` is no number in TOML; write 0.5"),
+            ("l1 = -.5", "`-.5` is no number in TOML; write -0.5"),
+            ("l1 = 30.", "`30.` is no number in TOML; write 30.0"),
+            (
+                "l1 = 30 mm",
+                "`30 mm`: a number stands alone; write 30, and `mm` behind a # if at all",
+            ),
+            (
+                "l1 = 30mm",
+                "`30mm`: a number stands alone; write 30, and `mm` behind a # if at all",
+            ),
+            ("l1 30", "`l1 30` lacks the = between `l1` and its value"),
+            ("pin = D9", "`D9` lacks its quotation marks; write \"D9\""),
+            ("[links", "`[links` lacks the ] behind the table's name"),
+        ] {
+            assert_eq!(said(line), sentence);
+            assert_eq!(said(&format!("[links]\nl0 = 20.0\n{line}\n")), sentence);
+        }
+    }
+
+    #[test]
+    fn what_is_there_twice_is_named_with_its_first_place() {
+        let text = "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n";
+        let at = text.rfind("x = 4").expect("there");
+        assert_eq!(
+            mistake(text, at, "duplicate key"),
+            "`x` is there twice, first in line 4; keep one of them"
+        );
+        let text = "[servo.A1]\npin = \"D9\"\n[servo.A2]\n[servo.A1] # again\n";
+        let at = text.rfind("[servo.A1]").expect("there");
+        assert_eq!(
+            mistake(text, at, "duplicate key"),
+            "the table [servo.A1] is there twice, first in line 1; put all its keys under one of them"
+        );
+    }
+
+    #[test]
+    fn another_mistake_keeps_the_parsers_sentence() {
+        for line in ["l1 = \"a", "l1 = [1, 2", "l1 = 1 2", "= 3", "l1 = 'it''s'"] {
+            assert_eq!(said(line), "this is not TOML: expected newline", "{line}");
+        }
+        assert_eq!(mistake("", 0, "x"), "this is not TOML: x");
+        assert_eq!(mistake("a = 1", 99, "x"), "this is not TOML: x");
+    }
+}
