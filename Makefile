@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs install release release-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .install .release .release-test .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .install .release .release-test .parallel-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -83,6 +83,8 @@ release: ## what users take, from the commit that is checked out, in dist/; take
 	$(call prepared,.release)
 release-test: ## a release twice, in different folders: the same bytes, and each file does
 	$(call prepared,.release-test)
+parallel-test: ## long computations in parts by GNU parallel, merged: byte for byte what one process prints
+	$(call prepared,.parallel-test)
 clean: ## remove everything that was built
 	rm -rf target host/target out dist judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
 
@@ -233,6 +235,10 @@ PREFIX ?= $(HOME)/.local
 
 .release-test:
 	@scripts/release-test
+
+.parallel-test:
+	@cd host && cargo build --workspace --bin lizard --quiet
+	@scripts/parallel-test $(HOST)/debug/lizard
 
 .lint:
 	@cargo fmt --check

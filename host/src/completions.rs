@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Command;
 use clap_complete::Shell;
 
-use crate::{Failure, whole_file};
+use crate::{Failure, commands, whole_file};
 
 /// Print what a shell needs to complete commands and options
 #[derive(clap::Args, Debug)]
@@ -29,11 +29,12 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
-/// Runs `lizard completions` for the whole program's command.
+/// Runs `lizard completions` for the whole program.
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
+pub fn completions(args: CompletionsArgs) -> Result<(), Failure> {
+    let mut command = commands::program();
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, "lizard", &mut script);
     let mut out = io::stdout().lock();
@@ -41,12 +42,12 @@ pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Fa
     Ok(out.flush()?)
 }
 
-/// Runs `lizard man` for the whole program's command.
+/// Runs `lizard man` for the whole program.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
-    let mut command = command.disable_help_subcommand(true);
+pub fn man(args: ManArgs) -> Result<(), Failure> {
+    let mut command = commands::program().disable_help_subcommand(true);
     command.build();
     let mut count = 1;
     page(&args, "lizard", command.clone())?;

@@ -1,11 +1,11 @@
 //! What the `lizard` program does, one module for each subcommand: its
-//! `Args` and its `run`.
+//! `Args` and its `run`. `commands` has the table of them.
 
-pub mod absent;
 #[cfg(feature = "simulator")]
 pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
+pub mod commands;
 pub mod completions;
 #[cfg(feature = "console")]
 pub mod console;
@@ -16,7 +16,6 @@ mod firmware;
 #[cfg(feature = "console")]
 pub mod flash;
 pub mod gaits;
-pub mod groups;
 mod json;
 #[cfg(all(feature = "simulator", feature = "parts"))]
 pub mod mjcf;
@@ -31,6 +30,7 @@ pub mod prove;
 mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
+pub mod spread;
 pub mod spring;
 mod suggestion;
 #[cfg(all(feature = "simulator", feature = "paper"))]

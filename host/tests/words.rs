@@ -48,7 +48,10 @@ fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
     ];
     let places = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
     assert!(places.is_sorted(), "{help}");
-    assert_eq!(under(&help, "The program itself"), ["completions", "man"]);
+    assert_eq!(
+        under(&help, "The program itself"),
+        ["merge", "completions", "man"]
+    );
     assert!(under(&help, "Drive the robot").contains(&"console".to_owned()));
     assert_eq!(said(&["help"]), help);
 }

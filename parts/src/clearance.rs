@@ -7,12 +7,13 @@
 use std::fmt;
 
 use lizard_kinematics::Solution;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::Assembly;
 use crate::shape::Shape;
 
 /// The least distance found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clearance {
     /// One body.
     pub first: String,

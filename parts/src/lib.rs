@@ -103,7 +103,7 @@ pub use part::Part;
 pub use picture::{Drawn, Label, View, labelled, picture, whole};
 pub use placement::Placement;
 pub use placements::placements;
-pub use proof::{Clash, ENOUGH, LEAST, Near, Proof};
+pub use proof::{Answer, Clash, ENOUGH, LEAST, Near, Proof, Questions};
 pub use reach::{Act, Aside, Blocked, KEY, SOCKET};
 pub use shape::Shape;
 pub use sheet::{Layer, Sheet, extent, sheets};

@@ -29,8 +29,7 @@ const STILL: f64 = 1e-3;
 /// A unit of length that makes rows in mm and in radians comparable.
 const LENGTH: f64 = 50.0;
 
-/// Degrees of freedom of body and legs, by Gruebler's count and by the rank of
-/// the constraint Jacobian at a pose.
+/// Degrees of freedom of body and legs, counted and by the rank of the constraints
 ///
 /// The rank is taken twice, with the driven cranks free and with them locked:
 /// what can move in spite of locked servos is loose, as the end point is at a

@@ -14,8 +14,7 @@ use crate::paper::verdict;
 use crate::pose_args::ANGLES;
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// The velocity matrices of a pose and the nearest singularities, or a map of
-/// the head's (theta1, theta4) plane.
+/// The velocity matrices of a pose and the nearest singularities, or a map of them
 ///
 /// K (8x4) holds the derivatives of the loop equations by the servo angles theta1,
 /// theta4, theta8, theta5, K* (8x8) those by the passive joints; rows and columns

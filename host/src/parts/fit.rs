@@ -3,10 +3,11 @@
 use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lizard_parts::{Assembly, ENOUGH, Near, Proof, Unfit};
+use lizard_parts::{Answer, Assembly, ENOUGH, Near, Proof, Questions, Unfit};
 use lizard_robot::servo::NAMES;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
 /// Prove that no two parts meet at any pose that the guard accepts
@@ -16,7 +17,7 @@ use crate::{Failure, RobotFile};
 /// refuses every pose, or no part can come nearer than is printed. Clearances up to 2 mm
 /// are measured. docs/fit.md says what that is worth, and what it leaves out. Exit code
 /// 1 if two parts overlap or come nearer than 0.2 mm.
-#[derive(clap::Args, Debug)]
+#[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard fit
   lizard fit --robot robots/unequal.toml --all")]
@@ -28,7 +29,19 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    #[serde(skip)]
     robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "fit";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
 }
 
 /// Two parts as `--json` prints them.
@@ -73,15 +86,23 @@ impl<'a> From<&'a Near> for Pair<'a> {
     }
 }
 
-/// Proves it, with a bar.
-pub(super) fn proof(assembly: &Assembly) -> Proof {
+/// A bar of so many pairs of mounts.
+fn bar(length: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} looking for parts that meet")
         .expect("a template");
-    let bar = ProgressBar::new(0).with_style(style);
-    let proof = assembly.prove(|done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    });
+    ProgressBar::new(length as u64).with_style(style)
+}
+
+/// Proves it, with a bar.
+pub(super) fn proof(assembly: &Assembly) -> Proof {
+    answered(&Questions::new(assembly, |_, _| true), None)
+}
+
+/// The proof, of answers that are known or else are found here.
+fn answered(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
+    let bar = bar(questions.count());
+    let known = |place: usize| known.as_ref()?.get(place).cloned();
+    let proof = questions.answer(known, |done, _| bar.set_position(done as u64));
     bar.finish_and_clear();
     proof
 }
@@ -94,7 +115,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);
     assembly.measures_fit()?;
-    let proof = proof(&assembly);
+    let questions = Questions::new(&assembly, |_, _| true);
+    let count = questions.count();
+    if let Some(part) = args.spread.part() {
+        let bar = bar(part.count(count));
+        let one = |place| {
+            bar.inc(1);
+            questions.one(place)
+        };
+        part.print(&args, &args.robot, count, one)?;
+        bar.finish_and_clear();
+        return Ok(());
+    }
+    let proof = answered(&questions, args.spread.read(count)?);
     let judged = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {

@@ -14,9 +14,10 @@ use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CoreRobot, Robot};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::json;
+use crate::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
 pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
@@ -30,7 +31,7 @@ pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 /// whose type-2 margin keeps its limit), and how far from its limit a pose may be
 /// that the two decide differently. Exit code 1 if one
 /// is farther than the band that the documentation states.
-#[derive(clap::Args, Debug)]
+#[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard prove
   lizard prove --robot robots/unequal.toml
@@ -46,7 +47,19 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    #[serde(skip)]
     robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "prove";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
 }
 
 /// Which pairs are looked at: in each row, those whose column is a certain
@@ -100,8 +113,14 @@ impl Proof {
         share: Share,
         progress: impl Fn(u64) + Sync,
     ) -> Self {
+        let piece = |place| walk::piece(robot, guard, share, place, &progress);
+        Self::with(robot, guard, (0..walk::PIECES).map(piece).collect())
+    }
+
+    /// The same of what its pieces have found.
+    fn with(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
         Self {
-            findings: walk::all(robot, guard, share, &progress),
+            findings: walk::findings(robot, guard, pieces),
             hash: guard.hash(),
             margin_band: walk::widest_band(robot, guard),
         }
@@ -135,9 +154,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let style = ProgressStyle::with_template("{bar:40} {percent} % of all rows, {eta} left")
         .map_err(|error| Failure::Impossible(error.to_string()))?;
-    let bar = ProgressBar::new(Proof::rows(guard)).with_style(style);
-    let proof = Proof::of(&robot, guard, share, |rows| bar.inc(rows));
+    let rows = Proof::rows(guard) * args.spread.own(walk::PIECES) as u64 / walk::PIECES as u64;
+    let bar = ProgressBar::new(rows).with_style(style);
+    let piece = |place| walk::piece(&robot, guard, share, place, &|rows| bar.inc(rows));
+    let pieces = args.spread.all(&args, &args.robot, walk::PIECES, piece)?;
     bar.finish_and_clear();
+    let Some(pieces) = pieces else {
+        return Ok(());
+    };
+    let proof = Proof::with(&robot, guard, pieces);
 
     let mut out = io::stdout().lock();
     if args.json {

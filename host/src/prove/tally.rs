@@ -1,7 +1,7 @@
 //! What a walk over many pairs of positions adds up.
 
 use lizard_kinematics::FiveBar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How near to a margin's limit the guard may decide otherwise than floating
 /// point, a sine; see [`margin_band`].
@@ -23,7 +23,7 @@ pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
 }
 
 /// Errors and disagreements of one end, one side or one leg.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// Pairs of positions looked at.
     pub pairs: u64,

@@ -16,42 +16,62 @@ use super::{Finding, Share};
 /// Columns that floating point takes at once.
 const LANES: usize = 8;
 
-/// Every end, side and leg of a robot.
-pub fn all(
+/// Pieces that the rows of an end or a side are cut into.
+const CUTS: usize = 64;
+/// Pieces of the whole walk: of both ends and of both sides.
+pub const PIECES: usize = 4 * CUTS;
+
+/// One piece of the walk by its place, below [`PIECES`].
+pub fn piece(
     robot: &Robot,
     guard: &CoreRobot,
     share: Share,
+    place: usize,
     progress: &(impl Fn(u64) + Sync),
-) -> Vec<Finding> {
-    let positions = [0, 1, 2, 3].map(|servo| Positions::of(guard, servo));
+) -> Tally {
+    let (whole, cut) = (place / CUTS, place % CUTS);
+    let of = |[first, second]: [usize; 2]| [first, second].map(|servo| Positions::of(guard, servo));
+    if let Some(end) = End::ALL.get(whole) {
+        let pair = of(end.servos());
+        let walk = EndWalk::new(robot, guard, *end);
+        walk.walk(pair.each_ref(), share, cut, progress)
+    } else {
+        let side = Side::ALL[whole - End::ALL.len()];
+        let pair = of(side.servos());
+        let walk = SideWalk::new(robot, guard, side);
+        walk.walk(pair.each_ref(), share, cut, progress)
+    }
+}
+
+/// What all pieces, in their order, say of every end, side and leg of a robot.
+pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Finding> {
+    let mut pieces = pieces.into_iter();
+    let mut of_one = || {
+        pieces
+            .by_ref()
+            .take(CUTS)
+            .fold(Tally::default(), Tally::and)
+    };
     let mut findings = Vec::new();
     for end in End::ALL {
         findings.push(Finding {
             part: end.name().to_string(),
             servos: names(end.servos()),
-            tally: EndWalk::new(robot, guard, end).walk(
-                end.pick(positions.each_ref()),
-                share,
-                progress,
-            ),
+            tally: of_one(),
         });
     }
     for side in Side::ALL {
         findings.push(Finding {
             part: format!("{side} side"),
             servos: names(side.servos()),
-            tally: SideWalk::new(robot, guard, side).walk(
-                side.pick(positions.each_ref()),
-                share,
-                progress,
-            ),
+            tally: of_one(),
         });
     }
-    for (servo, positions) in positions.iter().enumerate() {
+    for (servo, leg_name) in servo::LEGS.iter().enumerate() {
         findings.push(Finding {
-            part: format!("leg {}", servo::LEGS[servo]),
+            part: format!("leg {leg_name}"),
             servos: vec![servo::NAMES[servo]],
-            tally: leg(robot, guard, positions),
+            tally: leg(robot, guard, &Positions::of(guard, servo)),
         });
     }
     findings
@@ -88,13 +108,15 @@ fn columns(share: Share, row: usize, count: usize) -> impl Iterator<Item = usize
     (first..count).step_by(share.one_in as usize)
 }
 
-/// Walks all rows on all cores.
+/// Walks the rows of a piece on all cores.
 fn rows_of(
     first: &Positions,
+    cut: usize,
     progress: &(impl Fn(u64) + Sync),
     row: impl Fn(usize) -> Tally + Sync,
 ) -> Tally {
-    (0..first.fixed.len())
+    let rows = first.fixed.len();
+    (rows * cut / CUTS..rows * (cut + 1) / CUTS)
         .into_par_iter()
         .map(|index| {
             let tally = row(index);
@@ -175,9 +197,10 @@ impl<'a> EndWalk<'a> {
         &self,
         [left, right]: [&Positions; 2],
         share: Share,
+        cut: usize,
         progress: &(impl Fn(u64) + Sync),
     ) -> Tally {
-        rows_of(left, progress, |row| {
+        rows_of(left, cut, progress, |row| {
             let mut tally = Tally::default();
             let crank = splat(left.exact[row]);
             eight_by_eight(columns(share, row, right.fixed.len()), |eight, count| {
@@ -312,6 +335,7 @@ impl SideWalk {
         &self,
         [front, rear]: [&Positions; 2],
         share: Share,
+        cut: usize,
         progress: &(impl Fn(u64) + Sync),
     ) -> Tally {
         let turned = |direction: Direction| match self.side {
@@ -319,7 +343,7 @@ impl SideWalk {
             Side::Right => direction.mirrored(),
         };
         let band = STEPS_BAND / self.steps_per_mm;
-        rows_of(front, progress, |row| {
+        rows_of(front, cut, progress, |row| {
             let mut tally = Tally::default();
             let crank = turned(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));

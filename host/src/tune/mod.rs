@@ -10,8 +10,10 @@ use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot};
+use serde::{Deserialize, Serialize};
 
 use crate::json;
+use crate::spread::{Spread, Spreads};
 use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
 use goal::Goal;
@@ -34,7 +36,7 @@ const SLOWEST: f64 = 10.0;
 /// judged by the contact model with SG-90 servos on random robots and floors: by what 95 %
 /// of them exceed. At last it is compared with the gait on other random ones, and its table
 /// for robot.toml is printed. The same seed finds the same on every machine.
-#[derive(clap::Args, Debug)]
+#[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard tune
   lizard tune --gait left
@@ -71,7 +73,19 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    #[serde(skip)]
     robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "tune";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
 }
 
 /// Searches and tells.
@@ -81,7 +95,9 @@ pub struct Args {
 /// do; no gait that the limits allow; an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let report = tune(&robot, &args)?;
+    let Some(report) = tune(&robot, &args)? else {
+        return Ok(());
+    };
     let mut out = io::stdout().lock();
     if args.json {
         json::line(&mut out, &report)?;
@@ -91,19 +107,23 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-fn tune(robot: &Robot, args: &Args) -> Result<Report, Failure> {
+/// The report; none where a part was computed alone.
+fn tune(robot: &Robot, args: &Args) -> Result<Option<Report>, Failure> {
     let gait = surpassed(robot, &args.gait)?;
     let goal = Goal::of(gait, robot.ground())?;
     let rate = rate(robot, gait, args.rate)?;
     free(robot, &args.name)?;
-    let found = found(robot, args, goal, rate)?;
+    let Some(found) = found(robot, args, goal, rate)? else {
+        return Ok(None);
+    };
     let judge = Judge::new(
         robot,
         goal,
         args.robots as usize,
         args.seed.wrapping_add(FRESH),
     );
-    Ok(Report::of(robot, &judge, goal, rate, gait, &found))
+    let report = Report::of(robot, &judge, goal, rate, gait, &found);
+    Ok(Some(report))
 }
 
 fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
@@ -146,32 +166,52 @@ fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// The best gait of all kinds whose way does not depend on ties.
-fn found(robot: &Robot, args: &Args, goal: Goal, rate: f64) -> Result<Built, Failure> {
+/// The best gait of all kinds whose way does not depend on ties; none where a part was
+/// computed alone. Kinds are searched apart from each other, and so are the pieces.
+fn found(robot: &Robot, args: &Args, goal: Goal, rate: f64) -> Result<Option<Built>, Failure> {
     let rounds = args.rounds as usize;
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} gaits, {eta}")
         .expect("the template is well formed");
-    let bar = ProgressBar::new((Kind::ALL.len() * search::trials(rounds)) as u64).with_style(style);
+    let kinds = args.spread.own(Kind::ALL.len());
+    let bar = ProgressBar::new((kinds * search::trials(rounds)) as u64).with_style(style);
     let judge = Judge::new(robot, goal, JUDGES, args.seed);
     let widest = Built::widest(robot, goal, rate);
     let space = Space { goal, widest };
-    let mut best: Vec<(f64, Built)> = Vec::new();
-    for (kind, seed) in Kind::ALL.into_iter().zip(args.seed..) {
+    let build = |kind: Kind, parameters: &[f64]| {
+        Built::of(robot, &Plan::of(kind, space, parameters), &args.name, rate)
+    };
+    let one = |place: usize| -> Vec<(f64, Vec<f64>)> {
+        let kind = Kind::ALL[place];
         let judged = |parameters: &[f64]| {
             bar.inc(1);
-            let plan = Plan::of(kind, space, parameters);
-            let built = Built::of(robot, &plan, &args.name, rate)?;
-            Some((judge.score(built.gait())?, built))
+            Some((judge.score(build(kind, parameters)?.gait())?, ()))
         };
+        let seed = args.seed.wrapping_add(place as u64);
         let members = search::search(&kind.begin(), rounds, seed, judged);
-        best.extend(members.into_iter().filter_map(|member| member.found));
-    }
+        let scores = members
+            .into_iter()
+            .filter_map(|member| Some((member.found?.0, member.parameters)));
+        scores.collect()
+    };
+    let pieces = args.spread.all(args, &args.robot, Kind::ALL.len(), one)?;
     bar.finish_and_clear();
-    best.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some(pieces) = pieces else {
+        return Ok(None);
+    };
+    let mut best: Vec<(Kind, f64, Vec<f64>)> = Vec::new();
+    for (kind, piece) in Kind::ALL.into_iter().zip(pieces) {
+        best.extend(
+            piece
+                .into_iter()
+                .map(|(score, parameters)| (kind, score, parameters)),
+        );
+    }
+    best.sort_by(|a, b| b.1.total_cmp(&a.1));
     let decided = |built: &Built| built.gait().predict(robot.ground()).is_decided();
     best.into_iter()
-        .map(|(_, built)| built)
+        .filter_map(|(kind, _, parameters)| build(kind, &parameters))
         .find(decided)
+        .map(Some)
         .ok_or_else(|| {
             Failure::Impossible(format!(
                 "no gait was found that robot.toml's limits allow at {rate:.0} deg/s; more --rounds may find one"
@@ -197,7 +237,8 @@ mod tests {
         let robot = Robot::parse(PAPER).expect("right");
         let line = Line::try_parse_from(std::iter::once("tune").chain(words.split_whitespace()));
         let args = line.map_err(|error| error.to_string())?.args;
-        tune(&robot, &args).map_err(|failure| failure.to_string())
+        let report = tune(&robot, &args).map_err(|failure| failure.to_string())?;
+        Ok(report.expect("all parts"))
     }
 
     /// Of `lizard tune --rounds 1 --robot robots/paper.toml`, which docs/twin.md quotes.

@@ -24,6 +24,7 @@ mod sweep;
 use std::fmt;
 
 use lizard_kinematics::Solution;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::Assembly;
 use crate::body::Body;
@@ -43,7 +44,7 @@ const TOUCH: f64 = 0.02;
 const JOINT_STEPS: u32 = 6;
 
 /// Two parts, and how near they come.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Near {
     /// One body.
     pub first: String,
@@ -154,6 +155,117 @@ impl Proof {
     }
 }
 
+/// All that a proof asks: of what moves with one mount and what moves with another, how near
+/// they come. Each can be answered without the others, on another machine as well.
+pub struct Questions<'a> {
+    assembly: &'a Assembly,
+    guard: Guard<'a>,
+    tasks: Vec<Task>,
+    /// Whether parts are seen to meet; then the tasks are those that meet most.
+    seen: bool,
+    joints: Vec<Solution>,
+}
+
+/// The answer to one question.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// The nearest of what is pinned, which is made to meet.
+    pinned: Option<Near>,
+    /// The nearest of all else, and the regions of poses looked at.
+    nearest: Option<(Near, u64)>,
+}
+
+impl<'a> Questions<'a> {
+    /// Those of some pairs of bodies.
+    pub fn new(assembly: &'a Assembly, which: impl Fn(&Body, &Body) -> bool) -> Self {
+        let guard = Guard::new(assembly.robot());
+        let tasks = Task::all(assembly, &guard, ENOUGH, which);
+        let worst = first::worst(assembly, &tasks);
+        Self {
+            seen: worst.is_some(),
+            tasks: worst.unwrap_or(tasks),
+            joints: assembly.poses(JOINT_STEPS).collect(),
+            guard,
+            assembly,
+        }
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.tasks.len()
+    }
+
+    /// The answer to one, by its place below [`Questions::count`].
+    #[must_use]
+    pub fn one(&self, place: usize) -> Answer {
+        self.within(place, search::MANY)
+    }
+
+    /// The answer to one that looks at no more than `most` regions.
+    fn within(&self, place: usize, most: u64) -> Answer {
+        let mut task = self.tasks[place].clone();
+        let pinned = match task.meet {
+            true => self.assembly.take_joint(&mut task, &self.joints),
+            false => None,
+        };
+        let nearest = (!task.solids.is_empty()).then(|| {
+            let found = search::least(self.assembly, &self.guard, &task, most);
+            let regions = found.regions;
+            (self.assembly.near(found), regions)
+        });
+        Answer { pinned, nearest }
+    }
+
+    /// The proof. Answers that [`Questions::one`] gave elsewhere are taken from `known`, by
+    /// their places. It ends at the first parts that do not fit; where they only may not,
+    /// what follows is looked at less closely, and not taken from `known`.
+    pub fn answer(
+        &self,
+        mut known: impl FnMut(usize) -> Option<Answer>,
+        mut progress: impl FnMut(usize, usize),
+    ) -> Proof {
+        let mut most = search::MANY;
+        let mut proof = Proof {
+            apart: Vec::new(),
+            meeting: Vec::new(),
+            ranges: self.guard.ranges.map(|range| [range.low, range.high]),
+            pairs: self.tasks.iter().map(|task| task.solids.len()).sum(),
+            regions: 0,
+        };
+        let count = self.count();
+        for (place, task) in self.tasks.iter().enumerate() {
+            progress(place, count);
+            let answer = match most {
+                search::MANY => known(place).unwrap_or_else(|| self.one(place)),
+                fewer => self.within(place, fewer),
+            };
+            proof.meeting.extend(answer.pinned);
+            let Some((near, regions)) = answer.nearest else {
+                continue;
+            };
+            proof.regions += regions;
+            let clash = near.clash(task.least());
+            if task.meet {
+                proof.meeting.push(near);
+            } else {
+                proof.apart.push(near);
+            }
+            // One is enough, and where parts hardly fit each takes long.
+            match clash {
+                Some(Clash::Unsure(_)) => most = search::MANY / 10,
+                Some(_) if !self.seen => break,
+                _ => {}
+            }
+        }
+        progress(count, count);
+        for list in [&mut proof.apart, &mut proof.meeting] {
+            list.sort_by(|a, b| a.proved.total_cmp(&b.proved));
+        }
+        proof
+    }
+}
+
 impl Assembly {
     /// How near any two parts come at any pose that the guard accepts; whether that is
     /// near enough to fit, [`Proof::judge`] says. If parts are seen to meet already at one
@@ -167,52 +279,9 @@ impl Assembly {
     pub fn prove_some(
         &self,
         which: impl Fn(&Body, &Body) -> bool,
-        mut progress: impl FnMut(usize, usize),
+        progress: impl FnMut(usize, usize),
     ) -> Proof {
-        let guard = Guard::new(self.robot());
-        let mut tasks = Task::all(self, &guard, ENOUGH, which);
-        let mut most = search::MANY;
-        let worst = first::worst(self, &tasks);
-        let seen = worst.is_some();
-        if let Some(worst) = worst {
-            tasks = worst;
-        }
-        let mut proof = Proof {
-            apart: Vec::new(),
-            meeting: Vec::new(),
-            ranges: guard.ranges.map(|range| [range.low, range.high]),
-            pairs: tasks.iter().map(|task| task.solids.len()).sum(),
-            regions: 0,
-        };
-        let joints: Vec<_> = self.poses(JOINT_STEPS).collect();
-        let count = tasks.len();
-        for (done, mut task) in tasks.into_iter().enumerate() {
-            progress(done, count);
-            let list = if task.meet {
-                proof.meeting.extend(self.take_joint(&mut task, &joints));
-                &mut proof.meeting
-            } else {
-                &mut proof.apart
-            };
-            if !task.solids.is_empty() {
-                let found = search::least(self, &guard, &task, most);
-                proof.regions += found.regions;
-                let near = self.near(found);
-                let clash = near.clash(task.least());
-                list.push(near);
-                // One is enough, and where parts hardly fit each takes long.
-                match clash {
-                    Some(Clash::Unsure(_)) => most = search::MANY / 10,
-                    Some(_) if !seen => break,
-                    _ => {}
-                }
-            }
-        }
-        progress(count, count);
-        for list in [&mut proof.apart, &mut proof.meeting] {
-            list.sort_by(|a, b| a.proved.total_cmp(&b.proved));
-        }
-        proof
+        Questions::new(self, which).answer(|_| None, progress)
     }
 
     /// Takes what is pinned out of a task: pins in round holes, whose centres are one

@@ -22,7 +22,7 @@ use crate::{Failure, PoseArgs, RobotFile, draw, json, whole_file};
 const STEP: f64 = 0.005;
 const RINGS: usize = 16;
 
-/// Draws all charts into a folder, each as SVG and PNG.
+/// Draw all charts into a folder, each as SVG and PNG.
 ///
 /// workspace (with the maximal inscribed circle), conditioning (the LCI map),
 /// performance (over the whole design space), singularity (with the gaits'

@@ -9,16 +9,17 @@ mod search;
 use std::io::{self, BufWriter, Write};
 
 use lizard_robot::Robot;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::json;
 use crate::pose_args::length;
+use crate::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
 pub use chart::{Point, bar, chart};
 pub use performance::{CLAIM, Conditioning, Performance, lci};
 pub use proportions::{Proportions, SUM, triangle};
-pub use search::{Demands, Design, design, search};
+pub use search::{Demands, Design, Search, design, ranked};
 
 /// Rings across the inscribed circle for one design, and for each of many.
 const FINE: usize = 128;
@@ -31,7 +32,7 @@ pub const COARSE: usize = 32;
 /// to 0.9) and the base l0: workspace, maximal inscribed circle (MIC), local
 /// conditioning index (LCI) over it, dimensional factor D and link table. Without
 /// options these are the paper's.
-#[derive(clap::Args)]
+#[derive(clap::Args, Serialize, Deserialize)]
 #[command(
     allow_negative_numbers = true,
     after_help = "Examples:
@@ -75,7 +76,19 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    #[serde(skip)]
     robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "design";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
 }
 
 fn step(text: &str) -> Result<f64, String> {
@@ -113,6 +126,11 @@ fn sweep(text: &str) -> Result<f64, String> {
 /// A wrong robot.toml, proportions that make no mechanism, an output that cannot be
 /// written.
 pub fn run(args: Args) -> Result<(), Failure> {
+    if args.spread.part().is_some() && !args.search {
+        return Err(Failure::Input(
+            "--part goes with --search, which alone takes long".to_owned(),
+        ));
+    }
     let proportions = args.proportions().map_err(Failure::Input)?;
     let l0 = args.l0.unwrap_or(20.0);
     let robot = args.robot.load()?;
@@ -301,8 +319,16 @@ fn ranking(
         sweep: args.sweep,
     };
     let progress = bar("designs");
-    let designs = search(args.step, &demands, &progress);
+    let search = Search::new(args.step, demands, &progress, |count| {
+        args.spread.own(count)
+    });
+    let one = |place| search.piece(place);
+    let pieces = args.spread.all(args, &args.robot, search.pieces(), one)?;
     progress.finish_and_clear();
+    let Some(pieces) = pieces else {
+        return Ok(());
+    };
+    let designs = ranked(pieces);
     let shown = &designs[..designs.len().min(args.top)];
     let reference = design(given, &demands);
     if args.json {

@@ -2,7 +2,7 @@
 //! r3 (half the base) of a symmetrical five-bar, with r1 + r2 + r3 = 0.9.
 
 use lizard_kinematics::FiveBar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// r1 + r2 + r3.
 pub const SUM: f64 = 0.9;
@@ -11,7 +11,7 @@ pub const SUM: f64 = 0.9;
 const SHORTEST: f64 = 0.001;
 
 /// A point of the design space.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Proportions {
     /// Crank, l1 / D.
     pub r1: f64,

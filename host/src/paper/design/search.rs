@@ -7,10 +7,10 @@
 //! the servos' travel. All four servos may be anywhere within it at once, so
 //! any gait of that amplitude is safe.
 
-use indicatif::{ParallelProgressIterator, ProgressBar};
+use indicatif::ProgressBar;
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::proportions::{Proportions, triangle};
 
@@ -34,7 +34,7 @@ pub struct Demands {
 }
 
 /// A design that can sweep at least as far as is demanded.
-#[derive(Clone, Copy, Serialize)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Design {
     /// Its proportions.
     #[serde(flatten)]
@@ -58,15 +58,57 @@ pub struct Design {
     pub pareto: bool,
 }
 
-/// All designs of the triangle that meet the demands, best first.
-pub fn search(step: f64, demands: &Demands, progress: &ProgressBar) -> Vec<Design> {
-    let points = triangle(step);
-    progress.set_length(points.len() as u64);
-    let mut designs: Vec<Design> = points
-        .into_par_iter()
-        .progress_with(progress.clone())
-        .filter_map(|proportions| design(proportions, demands))
-        .collect();
+/// Points of a piece: enough for all cores.
+const AT_ONCE: usize = 64;
+
+/// The search, in pieces that do not depend on each other.
+pub struct Search<'a> {
+    points: Vec<Proportions>,
+    demands: Demands,
+    progress: &'a ProgressBar,
+}
+
+impl<'a> Search<'a> {
+    /// All points of the triangle. `own` says how many pieces of all are looked at here.
+    pub fn new(
+        step: f64,
+        demands: Demands,
+        progress: &'a ProgressBar,
+        own: impl Fn(usize) -> usize,
+    ) -> Self {
+        let points = triangle(step);
+        let search = Self {
+            points,
+            demands,
+            progress,
+        };
+        let points = AT_ONCE * own(search.pieces());
+        progress.set_length(points.min(search.points.len()) as u64);
+        search
+    }
+
+    /// How many pieces there are.
+    #[must_use]
+    pub fn pieces(&self) -> usize {
+        self.points.len().div_ceil(AT_ONCE)
+    }
+
+    /// The designs of one piece that meet the demands.
+    #[must_use]
+    pub fn piece(&self, place: usize) -> Vec<Design> {
+        let points = self.points.chunks(AT_ONCE).nth(place).unwrap_or_default();
+        let designs = points.par_iter().filter_map(|point| {
+            self.progress.inc(1);
+            design(*point, &self.demands)
+        });
+        designs.collect()
+    }
+}
+
+/// The designs of all pieces, the best first.
+#[must_use]
+pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
+    let mut designs = pieces.concat();
     rank(&mut designs);
     designs
 }

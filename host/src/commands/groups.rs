@@ -1,50 +1,56 @@
 //! The list of commands by what they are for.
 //!
 //! Thirty commands in one list hide the five that the owner of a robot needs. So `lizard
-//! help` has them under headings, the owner's first.
+//! help` has them under headings.
 
 use std::fmt::Write as _;
 
 use clap::Command;
 
-/// The headings and what is under them, in their order. A build without a feature lacks some.
-const GROUPS: [(&str, &[&str]); 5] = [
-    (
-        "Drive the robot",
-        &[
-            "flash",
-            "console",
-            "calibrate",
-            "backup",
-            "restore",
-            "record",
-            "replay",
-        ],
-    ),
-    ("Simulate it", &["sim", "twin", "mjcf", "bench"]),
-    ("Build it", &["draw", "parts", "fit", "spring"]),
-    ("Change its gaits and measures", &["gaits", "tune", "prove"]),
-    (
-        "The paper, computed",
-        &[
-            "solve",
-            "inverse",
-            "velocity",
-            "singularity",
-            "mobility",
-            "design",
-            "charts",
-            "errata",
-            "speed",
-        ],
-    ),
+use super::KNOWN;
+
+/// What a command is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Group {
+    /// A robot that is there.
+    Drive,
+    /// The firmware on a simulated board.
+    Simulate,
+    /// Parts and pictures.
+    Build,
+    /// What robot.toml says.
+    Change,
+    /// What the paper has.
+    Paper,
+    /// The program.
+    Itself,
+}
+
+/// All groups in the order of the help, the owner's first.
+const GROUPS: [Group; 6] = [
+    Group::Drive,
+    Group::Simulate,
+    Group::Build,
+    Group::Change,
+    Group::Paper,
+    Group::Itself,
 ];
-/// What is in no group.
-const REST: &str = "The program itself";
+
+impl Group {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Drive => "Drive the robot",
+            Self::Simulate => "Simulate it",
+            Self::Build => "Build it",
+            Self::Change => "Change its gaits and measures",
+            Self::Paper => "The paper, computed",
+            Self::Itself => "The program itself",
+        }
+    }
+}
 
 /// The command with its subcommands in groups in its help.
-#[must_use]
-pub fn grouped(command: Command) -> Command {
+pub(super) fn grouped(command: Command) -> Command {
     let list = list(&command);
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}`lizard help COMMAND` says all about one of them.\n\n{}\n{{options}}{{after-help}}",
@@ -59,10 +65,7 @@ fn heading(words: &str) -> String {
 
 /// Every subcommand once, under its heading.
 fn list(command: &Command) -> String {
-    let present: Vec<&Command> = command
-        .get_subcommands()
-        .filter(|sub| !sub.is_hide_set())
-        .collect();
+    let present: Vec<&Command> = command.get_subcommands().collect();
     let widest = present.iter().map(|sub| sub.get_name().len()).max();
     let width = widest.unwrap_or(0);
     let mut text = String::new();
@@ -84,20 +87,16 @@ fn list(command: &Command) -> String {
         }
         text.push('\n');
     };
-    for (title, names) in GROUPS {
+    for group in GROUPS {
+        let names = KNOWN.iter().filter(|known| known.group == group);
         let subs: Vec<&Command> = names
-            .iter()
-            .filter_map(|name| present.iter().find(|sub| sub.get_name() == *name).copied())
+            .filter_map(|known| {
+                let name = known.name();
+                present.iter().find(|sub| sub.get_name() == name).copied()
+            })
             .collect();
-        section(title, &subs);
+        section(group.title(), &subs);
     }
-    let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
-    let rest: Vec<&Command> = present
-        .iter()
-        .copied()
-        .filter(|sub| !is_grouped(sub.get_name()))
-        .collect();
-    section(REST, &rest);
     text
 }
 
@@ -112,7 +111,6 @@ mod tests {
             sub("solve").visible_alias("fk"),
             sub("completions"),
             sub("console"),
-            sub("secret").hide(true),
         ]);
         assert_eq!(
             without_colours(&list(&command)),

@@ -1,0 +1,220 @@
+//! Every command of the program, once: its group in the help, its name, the words that mean
+//! the same, the cargo features it needs, its arguments and what runs it.
+//!
+//! A build without a feature lacks commands, and says so of each that it is asked for. So the
+//! table is read twice: as the enum of the commands that this build has, and as the list of
+//! all that there are.
+
+mod absent;
+mod groups;
+mod menu;
+
+use std::ffi::OsString;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use crate::Failure;
+use groups::Group;
+
+/// The table below, as [`Command`] and as [`KNOWN`].
+macro_rules! commands {
+    ($(
+        $group:ident {
+            $(
+                $name:ident($arguments:ty) => $run:path
+                $(, needs $($feature:literal)and+)?
+                $(, also $alias:literal)?;
+            )+
+        }
+    )+) => {
+        /// The commands that this build has.
+        #[derive(Subcommand)]
+        pub enum Command {
+            $($(
+                $(#[cfg(all($(feature = $feature),+))])?
+                $(#[command(visible_alias = $alias)])?
+                #[allow(missing_docs, reason = "the help is that of the arguments")]
+                $name($arguments),
+            )+)+
+            /// A command that this build may lack.
+            #[cfg(not(all(
+                feature = "simulator",
+                feature = "paper",
+                feature = "console",
+                feature = "parts"
+            )))]
+            #[command(external_subcommand)]
+            Other(Vec<OsString>),
+        }
+
+        impl Command {
+            fn run(self) -> Result<(), Failure> {
+                match self {
+                    $($(
+                        $(#[cfg(all($(feature = $feature),+))])?
+                        Self::$name(arguments) => $run(arguments),
+                    )+)+
+                    #[cfg(not(all(
+                        feature = "simulator",
+                        feature = "paper",
+                        feature = "console",
+                        feature = "parts"
+                    )))]
+                    Self::Other(words) => Err(absent::explain(&words)),
+                }
+            }
+        }
+
+        /// All commands that there are, in the order of the help.
+        const KNOWN: &[Known] = &[$($(
+            Known {
+                group: Group::$group,
+                variant: stringify!($name),
+                also: &[$($alias)?],
+                needs: &[$($($feature),+)?],
+            },
+        )+)+];
+    };
+}
+
+commands! {
+    Drive {
+        Flash(crate::flash::Args) => crate::flash::run, needs "console";
+        Console(crate::console::interactive::ConsoleArgs) => crate::console::interactive::console, needs "console", also "monitor";
+        Calibrate(crate::console::calibrate::Args) => crate::console::calibrate::run, needs "console";
+        Backup(crate::console::backup::BackupArgs) => crate::console::backup::backup, needs "console";
+        Restore(crate::console::backup::RestoreArgs) => crate::console::backup::restore, needs "console";
+        Record(crate::console::interactive::RecordArgs) => crate::console::interactive::record, needs "console";
+        Replay(crate::console::replay::Args) => crate::console::replay::run, needs "console" and "simulator";
+    }
+    Simulate {
+        Sim(crate::sim::Args) => crate::sim::run, needs "simulator";
+        Twin(crate::twin::Args) => crate::twin::run, needs "simulator";
+        Mjcf(crate::mjcf::Args) => crate::mjcf::run, needs "simulator" and "parts";
+        Bench(crate::bench::Args) => crate::bench::run, needs "simulator";
+    }
+    Build {
+        Draw(crate::draw::Args) => crate::draw::run;
+        Parts(crate::parts::Args) => crate::parts::run, needs "parts";
+        Fit(crate::parts::fit::Args) => crate::parts::fit::run, needs "parts";
+        Spring(crate::spring::Args) => crate::spring::run;
+    }
+    Change {
+        Gaits(crate::gaits::Args) => crate::gaits::run;
+        Tune(crate::tune::Args) => crate::tune::run, needs "simulator" and "paper";
+        Prove(crate::prove::Args) => crate::prove::run, needs "paper";
+    }
+    Paper {
+        Solve(crate::paper::solve::Args) => crate::paper::solve::run, needs "paper", also "fk";
+        Inverse(crate::paper::inverse::Args) => crate::paper::inverse::run, needs "paper", also "ik";
+        Velocity(crate::paper::velocity::Args) => crate::paper::velocity::run, needs "paper", also "jacobian";
+        Singularity(crate::paper::singularity::Args) => crate::paper::singularity::run, needs "paper";
+        Mobility(crate::paper::mobility::Args) => crate::paper::mobility::run, needs "paper";
+        Design(crate::paper::design::Args) => crate::paper::design::run, needs "paper";
+        Charts(crate::paper::charts::Args) => crate::paper::charts::run, needs "paper";
+        Errata(crate::paper::errata::Args) => crate::paper::errata::run, needs "paper";
+        Speed(crate::paper::speed::Args) => crate::paper::speed::run, needs "paper";
+    }
+    Itself {
+        Merge(crate::spread::MergeArgs) => crate::spread::merge;
+        Completions(crate::completions::CompletionsArgs) => crate::completions::completions;
+        Man(crate::completions::ManArgs) => crate::completions::man;
+    }
+}
+
+/// A command that there is, in this build or in another one.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    group: Group,
+    /// The enum's name of it.
+    variant: &'static str,
+    /// Words that mean the same.
+    also: &'static [&'static str],
+    /// The cargo features without which it is not built.
+    needs: &'static [&'static str],
+}
+
+impl Known {
+    /// As it is typed.
+    fn name(&self) -> String {
+        self.variant.to_lowercase()
+    }
+}
+
+/// Compute, check, draw and simulate the four-servo robotic lizard.
+///
+/// Angles are degrees in the chassis frame: x to the robot's right, y forward,
+/// counter-clockwise from +x, seen from above. Lengths are mm. Servos are A1 =
+/// theta1 (front left), A2 = theta4 (front right), A3 = theta8 (back right), A4 =
+/// theta5 (back left).
+///
+/// Exit codes: 0 done, 1 it could not be done, 2 the input is wrong.
+#[derive(Parser)]
+#[command(name = "lizard", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// All commands and options, the commands in groups.
+#[must_use]
+pub fn program() -> clap::Command {
+    groups::grouped(Cli::command())
+}
+
+/// Does what the command line asks for; without a command, what is chosen from a menu where
+/// there is somebody to choose.
+///
+/// # Errors
+/// Those of the command.
+pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
+    let words = match menu::chosen(&words)? {
+        menu::Choice::Typed => words,
+        menu::Choice::Chosen(words) => words,
+        menu::Choice::Nothing => return Ok(()),
+    };
+    let mut matches = program().get_matches_from(words);
+    let cli = Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
+    cli.command.run()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    #[cfg(all(
+        feature = "simulator",
+        feature = "paper",
+        feature = "console",
+        feature = "parts"
+    ))]
+    fn a_whole_build_has_every_command_by_its_name_and_its_other_words() {
+        let program = Cli::command();
+        let built: BTreeSet<String> = program
+            .get_subcommands()
+            .flat_map(|sub| std::iter::once(sub.get_name()).chain(sub.get_visible_aliases()))
+            .map(str::to_owned)
+            .collect();
+        let known: BTreeSet<String> = KNOWN
+            .iter()
+            .flat_map(|known| {
+                let also = known.also.iter().map(ToString::to_string);
+                std::iter::once(known.name()).chain(also)
+            })
+            .collect();
+        assert_eq!(built, known);
+        assert!(known.contains("fk") && known.contains("merge"), "{known:?}");
+    }
+
+    #[test]
+    fn every_feature_that_a_command_needs_has_words() {
+        for known in KNOWN {
+            for feature in known.needs {
+                assert_ne!(absent::words(feature), "", "{known:?}");
+            }
+        }
+    }
+}
