@@ -55,6 +55,30 @@ pub enum Kind {
     Battery,
 }
 
+impl Kind {
+    /// The word for it, as placements.json and the page have it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Printed => "printed",
+            Self::Servo => "servo",
+            Self::Horn => "horn",
+            Self::Screw(_) => "screw",
+            Self::HexScrew(_) => "hexagon screw",
+            Self::ServoScrew => "servo screw",
+            Self::HornScrew(_) => "horn screw",
+            Self::Nut => "nut",
+            Self::Standoff(_) => "standoff",
+            Self::Spring => "spring",
+            Self::Pad => "pad",
+            Self::Lead => "lead",
+            Self::Fitting(_) => "fitting",
+            Self::Board => "board",
+            Self::Battery => "battery",
+        }
+    }
+}
+
 /// What a body moves with. Servos are numbered in servo order, 0 to 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {

@@ -35,7 +35,7 @@ const YIELD: f64 = 0.5;
 /// The free length of a leaf: of a beam that is held at one end, the force at the other
 /// is E b t^3 / (4 L^3) for each mm.
 fn leaf_length(width: f64) -> f64 {
-    (PLA * width * LEAF.powi(3) / (4.0 * YIELD)).cbrt()
+    libm::cbrt(PLA * width * (LEAF * LEAF * LEAF) / (4.0 * YIELD))
 }
 
 pub fn add(builder: &mut Builder) {

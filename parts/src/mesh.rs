@@ -109,13 +109,13 @@ impl Maker<'_> {
         };
         let mut line = vec![first];
         if let Some((centre, radius)) = side.arc(self.solid.points[to.0]) {
-            let whole = 4.0 * edge.bulge.atan();
-            let step = (2.0 * (1.0 - CHORD / radius).clamp(-1.0, 1.0).acos()).min(ANGLE);
+            let whole = 4.0 * libm::atan(edge.bulge);
+            let step = (2.0 * libm::acos((1.0 - CHORD / radius).clamp(-1.0, 1.0))).min(ANGLE);
             let count = (whole.abs() / step).ceil() as usize;
             for i in 1..count {
                 let angle = whole * i as f64 / count as f64;
                 let arm = side.from - centre;
-                let at = centre + arm * angle.cos() + arm.left() * angle.sin();
+                let at = centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle);
                 let z = self.solid.heights[from.1];
                 self.mesh.corners.push([at.x, at.y, z]);
                 line.push(self.mesh.corners.len() - 1);

@@ -160,9 +160,10 @@ impl Loop {
             // A triangle from the origin, and the arc's segment beside its chord.
             sum = sum + (a + b) * (a.cross(b) / 6.0);
             if let Some((centre, radius)) = side.arc(to) {
-                let half = 2.0 * side.bulge.abs().atan();
-                let area = radius * radius * (half - half.sin() * half.cos());
-                let out = 2.0 / 3.0 * (radius * half.sin()).powi(3) / area;
+                let half = 2.0 * libm::atan(side.bulge.abs());
+                let area = radius * radius * (half - libm::sin(half) * libm::cos(half));
+                let reach = radius * libm::sin(half);
+                let out = 2.0 / 3.0 * (reach * reach * reach) / area;
                 let chord = (b - a) * (1.0 / (b - a).length());
                 // A left turn bulges out to the right of its chord.
                 let beyond = chord.right() * side.bulge.signum();

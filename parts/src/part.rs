@@ -58,11 +58,34 @@ impl Part {
         roof::in_air(&self.prisms)
     }
 
+    /// How the part as it is printed becomes one of its bodies, in that body's frame.
+    #[must_use]
+    pub fn lies(&self, body: &Body) -> Lies {
+        let [low, high] = body.z();
+        Lies {
+            flipped: self.turned,
+            lift: if self.turned { high } else { low },
+            home: home(body),
+        }
+    }
+
     /// Its volume, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {
         volume(&self.prisms)
     }
+}
+
+/// How a printed part is laid into its body's frame: turned over if need be, lifted, then
+/// turned and shifted in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lies {
+    /// Whether it is turned over first: x, y, z to x, -y, -z.
+    pub flipped: bool,
+    /// By how much it is lifted then, mm.
+    pub lift: f64,
+    /// Where the printed part's own frame is in the body's.
+    pub home: Placement,
 }
 
 /// The volume of some layers, mm^3.
@@ -186,7 +209,7 @@ fn lying(body: &Body) -> (Vec<Prism>, bool) {
 }
 
 /// The frame in which a part is drawn.
-pub fn home(body: &Body) -> Placement {
+fn home(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }

@@ -258,7 +258,7 @@ fn points(line: &Loop) -> Vec<Vector> {
     for (side, to) in line.ends() {
         points.push(side.from);
         if let Some((centre, _)) = side.arc(to) {
-            let whole = 4.0 * side.bulge.atan();
+            let whole = 4.0 * libm::atan(side.bulge);
             let count = (whole.abs() / CHORD).ceil() as u32;
             let arm = side.from - centre;
             for i in 1..count {

@@ -11,8 +11,8 @@ use serde::Serialize;
 
 use crate::assembly::Assembly;
 use crate::body::{Body, Kind};
-use crate::part::{Part, home};
-use crate::steps::steps;
+use crate::part::Part;
+use crate::steps::{place_in, steps};
 
 /// One body.
 #[derive(Serialize)]
@@ -69,54 +69,23 @@ struct Hole {
     outline: Vec<[f64; 2]>,
 }
 
-/// The word for a body's kind.
-fn word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Printed => "printed",
-        Kind::Servo => "servo",
-        Kind::Horn => "horn",
-        Kind::Screw(_) => "screw",
-        Kind::HexScrew(_) => "hexagon screw",
-        Kind::ServoScrew => "servo screw",
-        Kind::HornScrew(_) => "horn screw",
-        Kind::Nut => "nut",
-        Kind::Standoff(_) => "standoff",
-        Kind::Spring => "spring",
-        Kind::Pad => "pad",
-        Kind::Lead => "lead",
-        Kind::Fitting(_) => "fitting",
-        Kind::Board => "board",
-        Kind::Battery => "battery",
-    }
-}
-
 /// The table of placements at a pose.
 ///
-/// # Errors
-/// None that a robot can cause: what is written is plain.
-pub fn placements(assembly: &Assembly, pose: &Solution) -> Result<String, serde_json::Error> {
+/// # Panics
+/// Never: what is written is plain.
+#[must_use]
+pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
     let steps = steps(assembly.robot().drive().strut().is_some());
-    let place = |body: &Body| {
-        let stages = (1..).zip(&steps).flat_map(|(step, of)| {
-            (1..)
-                .zip(&of.stages)
-                .map(move |(stage, of)| (step, stage, of))
-        });
-        let mut stages = stages.filter(|(_, _, stage)| (stage.adds)(body));
-        stages
-            .next()
-            .map_or((0, 0), |(step, stage, _)| (step, stage))
-    };
     let list: Vec<Placed> = assembly
         .bodies()
         .iter()
         .map(|body| {
-            let (step, stage) = place(body);
+            let (step, stage) = place_in(&steps, body);
             let part = parts.iter().find(|part| part.bodies.contains(&body.name));
             Placed {
                 name: &body.name,
-                kind: word(body.kind),
+                kind: body.kind.word(),
                 step,
                 stage,
                 printed: part.map(|part| print(assembly, pose, body, part)),
@@ -128,7 +97,7 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> Result<String, serde_
             }
         })
         .collect();
-    Ok(serde_json::to_string_pretty(&list)? + "\n")
+    serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
 }
 
 fn pair(at: Vector) -> [f64; 2] {
@@ -137,8 +106,8 @@ fn pair(at: Vector) -> [f64; 2] {
 
 fn print(assembly: &Assembly, pose: &Solution, body: &Body, part: &Part) -> Print {
     let place = assembly.place(body.mount, pose);
-    let home = home(body);
-    let [low, high] = body.z();
+    let lies = part.lies(body);
+    let home = lies.home;
     let origin = place.map(home.at);
     let turn = place.turn * home.turn.x + place.turn.left() * home.turn.y;
     let over = |at: Vector| match part.turned {
@@ -152,8 +121,8 @@ fn print(assembly: &Assembly, pose: &Solution, body: &Body, part: &Part) -> Prin
     Print {
         file: format!("stl/{}.stl", part.file()),
         mark: part.mark.clone(),
-        flipped: part.turned,
-        lift: if part.turned { high } else { low },
+        flipped: lies.flipped,
+        lift: lies.lift,
         turn: turn.angle(),
         at: pair(origin),
         drill: drill.collect(),

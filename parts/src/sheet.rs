@@ -144,10 +144,10 @@ pub fn extent(sheet: &Sheet) -> [Vector; 2] {
             grow(side.from.x, side.from.y);
             if let Some((centre, _)) = side.arc(to) {
                 let arm = side.from - centre;
-                let whole = 4.0 * side.bulge.atan();
+                let whole = 4.0 * libm::atan(side.bulge);
                 for i in 1..points {
                     let angle = whole * f64::from(i) / f64::from(points);
-                    let at = centre + arm * angle.cos() + arm.left() * angle.sin();
+                    let at = centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle);
                     grow(at.x, at.y);
                 }
             }

@@ -338,7 +338,7 @@ pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
         return (point - side.from).length();
     };
     let (a, b) = (side.from - centre, point - centre);
-    let angle = a.cross(b).atan2(a.dot(b)) * side.bulge.signum();
+    let angle = libm::atan2(a.cross(b), a.dot(b)) * side.bulge.signum();
     // What is a little before the beginning is at it.
     if angle < -1e-6 {
         angle + std::f64::consts::TAU
@@ -357,7 +357,7 @@ impl Quarter for f64 {
         if bulge == 0.0 {
             0.0
         } else {
-            (self / 4.0).tan() * bulge.signum()
+            libm::tan(self / 4.0) * bulge.signum()
         }
     }
 }

@@ -62,6 +62,20 @@ impl Step {
     }
 }
 
+/// The step in which a body is added and the stage of that step, each from 1; zeros for a body
+/// that none adds.
+pub(crate) fn place_in(steps: &[Step], body: &Body) -> (usize, usize) {
+    let stages = (1..).zip(steps).flat_map(|(step, of)| {
+        (1..)
+            .zip(&of.stages)
+            .map(move |(stage, of)| (step, stage, of))
+    });
+    let mut stages = stages.filter(|(_, _, stage)| (stage.adds)(body));
+    stages
+        .next()
+        .map_or((0, 0), |(step, stage, _)| (step, stage))
+}
+
 fn named(body: &Body, starts: &[&str]) -> bool {
     starts.iter().any(|start| body.name.starts_with(start))
 }

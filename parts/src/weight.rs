@@ -44,7 +44,7 @@ impl Bill {
     #[must_use]
     pub fn differs(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
-        let off = (body.centre[0] - ahead).hypot(body.centre[1] - left);
+        let off = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
         (body.mass - self.grams).abs() > SHARE * self.grams || off > OFF
     }
 

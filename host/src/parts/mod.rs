@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lizard_parts::{Assembly, Bill, File, Unfit, coupon, guide, part_files, placements};
+use lizard_parts::{Assembly, Bill, File, Unfit, coupon, papers, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
@@ -114,15 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             .solve(&robot.neutral())
             .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
         let bill = Bill::of(&assembly, &assembly.parts(), &pose);
-        files.push(File::text(
-            "bill.json".to_owned(),
-            serde_json::to_string_pretty(&bill)? + "\n",
-        ));
-        files.extend(guide(&assembly, &bill, &pose)?);
-        files.push(File::text(
-            "guide/placements.json".to_owned(),
-            placements(&assembly, &pose)?,
-        ));
+        files.extend(papers(&assembly, &bill, &pose)?);
         weight = bill
             .differs(&robot.ground().body)
             .then(|| said(&bill, &robot));
