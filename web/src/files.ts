@@ -25,10 +25,14 @@ async function get(path: string): Promise<Response> {
 
 const text = async (path: string): Promise<string> => (await get(path)).text();
 
+const compiled = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get(path)).arrayBuffer());
+
 export const files = {
   robots: async (): Promise<RobotFile[]> => (await get('files/robots.json')).json() as Promise<RobotFile[]>,
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
   image: (name: string): Promise<string> => text(`files/${name}.hex`),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),
-  wasm: async (): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get('files/lizard.wasm')).arrayBuffer()),
+  wasm: (): Promise<WebAssembly.Module> => compiled('files/lizard.wasm'),
+  /** The parts, which only their panel asks for. */
+  parts: (): Promise<WebAssembly.Module> => compiled('files/parts.wasm'),
 };

@@ -21,6 +21,7 @@ import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
+import { PartsView } from './view/parts';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
 import { Setup } from './view/setup';
@@ -87,6 +88,7 @@ async function start(): Promise<void> {
   const world = new World(now, predict);
   const health = new Health(now);
   const lengths = new Lengths(now);
+  const parts = new PartsView(now);
   const calibrate = new Calibrate(now);
   let writing = false;
   const writer = new Writer(now, (busy) => {
@@ -114,6 +116,7 @@ async function start(): Promise<void> {
       setup.update();
       floor.clear();
       world.take();
+      parts.take();
       predict();
     },
     frame(frame, widths) {
@@ -256,6 +259,7 @@ async function start(): Promise<void> {
       // Where no robot could be read, there is nothing to draw.
       if (!session.description) return;
       floor.draw(session.description.plate, session.last);
+      parts.draw(session.last);
       pictures += 1;
       if (pictures % PANELS === 0) {
         scope.draw(latest);

@@ -16,6 +16,8 @@ async function opened(options) {
   // axe-core is put into the page, which its policy would not have.
   const page = await standing({ ...options, bypassCSP: true });
   for (const name of ['Lengths', 'Calibrate', 'Flash']) await page.getByText(name, { exact: true }).click();
+  await page.locator('#parts summary').click();
+  await page.getByText('Click a part for its name').waitFor();
   await advance(page, 500);
   await page.getByRole('group', { name: 'A4' }).waitFor();
   return page;

@@ -105,6 +105,8 @@ export async function page(options = {}, before = undefined) {
   opened.on('console', (message) => {
     // Said of the pages that are to have their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
+    // Without a graphics chip the browser's own painter says of itself that it is slow.
+    if (message.text().includes('GL Driver Message (OpenGL, Performance')) return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
   opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));

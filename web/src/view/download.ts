@@ -1,4 +1,4 @@
-// A robot.toml as a file for a person, with what the page's sliders set.
+// What the browser saves for a person: files, and a robot.toml with what the page's sliders set.
 import { type Floor, isRefused, type Refused, type Robot } from '../robot';
 
 /**
@@ -9,10 +9,15 @@ export function download(robot: Robot, toml: string, floor: Floor | null): Refus
   const whole = floor && robot.editFloor(toml, floor);
   const refused = whole && (isRefused(whole) ? whole : whole.refusal);
   const text = !whole || isRefused(whole) || refused ? toml : whole.text;
+  save('robot.toml', [text], 'application/toml');
+  return refused;
+}
+
+/** Has the browser save a file. */
+export function save(name: string, pieces: BlobPart[], type: string): void {
   const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([text], { type: 'application/toml' }));
-  link.download = 'robot.toml';
+  link.href = URL.createObjectURL(new Blob(pieces, { type }));
+  link.download = name;
   link.click();
   URL.revokeObjectURL(link.href);
-  return refused;
 }

@@ -1,0 +1,45 @@
+// The other end of Workshop: parts in WebAssembly, in a thread of their own.
+import { zipSync } from 'fflate';
+
+import { sentence } from '../trouble';
+import { PartsModel } from './model';
+import type { Answer, Question } from './workshop';
+
+let known: PartsModel | null = null;
+
+const say = (answer: Answer, give: Transferable[] = []) => postMessage(answer, { transfer: give });
+
+addEventListener('message', ({ data }: MessageEvent<Question>) => {
+  void answer(data).catch((error: unknown) => say({ of: data.ask, refused: sentence(error) }));
+});
+
+async function answer(question: Question): Promise<void> {
+  switch (question.ask) {
+    case 'model': {
+      known = null;
+      known = await PartsModel.read(question.module, question.toml);
+      const solids = known.solids();
+      const give = solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]);
+      say({ of: 'model', model: known.model, solids }, give);
+      break;
+    }
+    case 'pose':
+      say({ of: 'pose', places: known?.pose(question.angles, question.lags) ?? null });
+      break;
+    case 'files': {
+      const parts = await PartsModel.read(question.module, question.toml, (done, all) => {
+        say({ of: 'progress', doing: 'prove', done, all });
+      });
+      const least = parts.prove();
+      const files: Record<string, Uint8Array> = {};
+      const all = parts.model.files;
+      for (let number = 0; number < all; number++) {
+        say({ of: 'progress', doing: 'make', done: number, all });
+        for (const { path, bytes } of parts.files(number)) files[path] = bytes;
+      }
+      // The same files make the same archive: a date of its own for all of them.
+      const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' });
+      say({ of: 'files', zip, count: Object.keys(files).length, least }, [zip.buffer]);
+    }
+  }
+}

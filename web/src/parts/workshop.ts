@@ -1,0 +1,97 @@
+// The worker that knows the robot's parts: solids, places at a pose, and all files as one archive.
+import { files } from '../files';
+import type { Model, Solid } from './model';
+
+export type Question =
+  | { ask: 'model'; module: WebAssembly.Module; toml: string }
+  | { ask: 'pose'; angles: number[]; lags: number[] }
+  | { ask: 'files'; module: WebAssembly.Module; toml: string };
+
+export type Answer =
+  | { of: 'model'; model: Model; solids: Solid[] }
+  | { of: 'pose'; places: Float64Array | null }
+  | { of: 'progress'; doing: 'prove' | 'make'; done: number; all: number }
+  | { of: 'files'; zip: Uint8Array<ArrayBuffer>; count: number; least: number | null }
+  | { of: Question['ask']; refused: string };
+
+/** What of a robot's files is done. */
+export interface Progress {
+  doing: 'prove' | 'make';
+  done: number;
+  all: number;
+}
+
+/** All files, and the least distance that was proved, mm. */
+export interface Made {
+  zip: Uint8Array<ArrayBuffer>;
+  count: number;
+  least: number | null;
+}
+
+function worker(): Worker {
+  return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
+}
+
+/** Asks a worker, hears it until it has answered or refused; a refusal is thrown as its sentence. */
+function asked<T extends Answer>(of: Worker, question: Question, hear: (answer: Answer) => void = () => {}): Promise<T> {
+  return new Promise((resolve, reject) => {
+    const listen = ({ data }: MessageEvent<Answer>) => {
+      hear(data);
+      if (data.of !== question.ask) return;
+      of.removeEventListener('message', listen);
+      if ('refused' in data) reject(new Error(data.refused));
+      else resolve(data as T);
+    };
+    of.addEventListener('message', listen);
+    of.addEventListener('error', ({ message }) => reject(new Error(message || 'the worker could not be loaded')), { once: true });
+    of.postMessage(question);
+  });
+}
+
+/** A robot's solids, and where they are at a pose. */
+export class Solids {
+  private readonly worker = worker();
+  private asking = false;
+
+  private constructor() {}
+
+  /** Of a robot.toml. Throws the sentence of a robot that cannot be built. */
+  static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
+    const solids = new Solids();
+    try {
+      const question: Question = { ask: 'model', module: await files.parts(), toml };
+      const { model, solids: meshes } = await asked<{ of: 'model'; model: Model; solids: Solid[] }>(solids.worker, question);
+      return { solids, model, meshes };
+    } catch (error) {
+      solids.end();
+      throw error;
+    }
+  }
+
+  /** Where every mount is; null where a loop does not close, or while another pose is asked for. */
+  async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
+    if (this.asking) return null;
+    this.asking = true;
+    try {
+      const { places } = await asked<{ of: 'pose'; places: Float64Array | null }>(this.worker, { ask: 'pose', angles, lags });
+      return places;
+    } finally {
+      this.asking = false;
+    }
+  }
+
+  end(): void {
+    this.worker.terminate();
+  }
+}
+
+/** Proves that the parts fit, makes all files and packs them. `stop` ends it, and then nothing is answered. */
+export function make(toml: string, progress: (progress: Progress) => void): { made: Promise<Made>; stop: () => void } {
+  const maker = worker();
+  const made = files.parts().then((module) =>
+    asked<{ of: 'files' } & Made>(maker, { ask: 'files', module, toml }, (answer) => {
+      if (answer.of === 'progress' && 'doing' in answer) progress(answer);
+    }),
+  );
+  return { made: made.finally(() => maker.terminate()), stop: () => maker.terminate() };
+}

@@ -1,0 +1,218 @@
+// The panel of the parts: the robot in space, the guide step by step, and all files to print and to cut.
+// Nothing of it is loaded before the panel is opened.
+import type { Model } from '../parts/model';
+import type { Space } from '../parts/space';
+import type { Progress, Solids } from '../parts/workshop';
+import type { Frame, Place } from '../robot';
+import type { Session } from '../session';
+import { sentence } from '../trouble';
+import { element } from './canvas';
+import { save } from './download';
+import { onPaletteChange } from './palette';
+
+const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
+
+/** The guide's words as plain text: of Markdown it has bold and code alone. */
+const plain = (words: string) => words.replaceAll('**', '').replaceAll('`', '');
+
+export class PartsView {
+  private readonly panel = element<HTMLDetailsElement>('parts');
+  private readonly canvas = element<HTMLCanvasElement>('space');
+  private readonly apart = element<HTMLInputElement>('apart');
+  private readonly list = element<HTMLSelectElement>('part');
+  private readonly button = element<HTMLButtonElement>('parts-save');
+  private space: Space | null = null;
+  private solids: Solids | null = null;
+  private model: Model | null = null;
+  /** The robot.toml that is shown, or is being taken. */
+  private toml = '';
+  private step: number | null = null;
+  private picked: number | null = null;
+  /** What the last pose was asked for. */
+  private asked = '';
+  private stop: (() => void) | null = null;
+  /** Whether somebody can see it. */
+  private seen = false;
+
+  constructor(private readonly session: () => Session) {
+    this.panel.addEventListener('toggle', () => this.take());
+    new IntersectionObserver(([entry]) => (this.seen = entry?.isIntersecting ?? false)).observe(this.canvas);
+    this.apart.addEventListener('input', () => this.show());
+    this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
+    element('step-back').addEventListener('click', () => this.go(-1));
+    element('step-on').addEventListener('click', () => this.go(1));
+    element('step-all').addEventListener('click', () => this.toStep(null));
+    element('space-home').addEventListener('click', () => this.space?.home());
+    this.button.addEventListener('click', () => void this.files());
+    onPaletteChange(() => this.show());
+  }
+
+  /** Takes the session's robot, if the panel is open. */
+  take(): void {
+    const { toml } = this.session();
+    if (!this.panel.open || toml === this.toml) return;
+    this.toml = toml;
+    this.halt();
+    void this.load(toml);
+  }
+
+  private async load(toml: string): Promise<void> {
+    this.say('parts-said', 'Making the solids…');
+    this.solids?.end();
+    this.solids = null;
+    this.model = null;
+    try {
+      const [{ Solids }, { Space }] = await Promise.all([import('../parts/workshop'), import('../parts/space')]);
+      const { solids, model, meshes } = await Solids.of(toml);
+      if (toml !== this.toml) return solids.end();
+      this.solids = solids;
+      this.model = model;
+      this.asked = '';
+      this.fill(model);
+      this.space ??= this.open(Space);
+      this.space?.take(model, meshes);
+      this.toStep(this.step !== null && this.step <= model.steps.length ? this.step : null);
+      this.pick(null);
+    } catch (error) {
+      if (toml !== this.toml) return;
+      // What could not be loaded is tried again when the panel is opened again.
+      this.toml = '';
+      this.say('parts-said', `There are no parts of this robot: ${sentence(error)}`);
+    }
+  }
+
+  private open(space: typeof Space): Space | null {
+    try {
+      return new space(this.canvas, (body) => this.pick(body));
+    } catch {
+      this.canvas.hidden = true;
+      this.say('space-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in space. The files can be made all the same.');
+      return null;
+    }
+  }
+
+  private fill(model: Model): void {
+    const option = (value: string, text: string) => {
+      const made = document.createElement('option');
+      made.value = value;
+      made.textContent = text;
+      return made;
+    };
+    const bodies = model.bodies.map(({ name }, number) => ({ name, number }));
+    bodies.sort((a, b) => a.name.localeCompare(b.name));
+    this.list.replaceChildren(option('', 'none'), ...bodies.map(({ name, number }) => option(String(number), name)));
+  }
+
+  private go(by: number): void {
+    if (!this.model) return;
+    const last = this.model.steps.length;
+    this.toStep(this.step === null ? (by > 0 ? 1 : last) : Math.max(1, Math.min(last, this.step + by)));
+  }
+
+  /** A step of the guide shows its new parts apart, as the guide's picture does; without one all is together. */
+  private toStep(step: number | null): void {
+    if (!this.model) return;
+    if ((step === null) !== (this.step === null)) this.apart.value = step === null ? '0' : '100';
+    this.step = step;
+    this.asked = '';
+    const found = step === null ? undefined : this.model.steps[step - 1];
+    const count = this.model.steps.length;
+    this.say('step-title', found ? `${step} of ${count}: ${found.title}` : 'The whole robot');
+    this.say('step-words', found ? plain(found.words) : '');
+    element<HTMLButtonElement>('step-back').disabled = step === 1;
+    element<HTMLButtonElement>('step-on').disabled = step === count;
+    element<HTMLButtonElement>('step-all').disabled = step === null;
+    this.show();
+  }
+
+  private pick(number: number | null): void {
+    this.picked = number;
+    this.list.value = number === null ? '' : String(number);
+    const body = number === null ? undefined : this.model?.bodies[number];
+    const part = body?.part == null ? undefined : this.model?.parts[body.part];
+    if (!body) this.say('parts-said', this.space ? 'Click a part for its name and its file.' : '');
+    else if (!part) this.say('parts-said', `${body.name}: ${body.kind}, bought; put on in step ${body.step}.`);
+    else {
+      const often = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
+      this.say('parts-said', `${body.name}: ${often}, stl/${part.file}.stl and step/${part.file}.step; put on in step ${body.step}.`);
+    }
+    this.show();
+  }
+
+  private show(): void {
+    element('apart-out').textContent = `${this.apart.value} %`;
+    this.space?.show({ apart: Number(this.apart.value) / 100, step: this.step, picked: this.picked });
+  }
+
+  /** In every picture of the page. */
+  draw(frame: Frame | null): void {
+    const { space, solids } = this;
+    if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.seen) return;
+    const neutral = this.session().description.servos.map((servo) => servo.neutral);
+    // What is being built stands still.
+    const moving = this.step === null && frame?.scene != null;
+    const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [neutral, [0, 0, 0, 0]];
+    const asked = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
+    if (asked !== this.asked) {
+      this.asked = asked;
+      void solids.pose(angles, lags).then((places) => {
+        if (solids !== this.solids) return;
+        if (places) space.pose(places);
+        // Another pose was on its way: this one is asked for again.
+        else if (this.asked === asked) this.asked = '';
+      });
+    }
+    space.draw(moving ? frame.place : ORIGIN);
+  }
+
+  private async files(): Promise<void> {
+    if (this.stop) return this.halt();
+    const { toml, file } = this.session();
+    const bar = element<HTMLProgressElement>('parts-progress');
+    const words = { prove: 'Proving that no two parts meet', make: 'Making the files' };
+    bar.hidden = false;
+    bar.removeAttribute('value');
+    this.button.textContent = 'Stop';
+    this.stop = () => {};
+    this.say('files-said', 'Loading…');
+    let stopped = false;
+    try {
+      const { make } = await import('../parts/workshop');
+      const { made, stop } = make(toml, ({ doing, done, all }: Progress) => {
+        bar.max = all;
+        bar.value = done;
+        this.say('files-said', `${words[doing]}: ${done} of ${all}.`);
+      });
+      const halted = new Promise<null>((end) => {
+        this.stop = () => {
+          stopped = true;
+          stop();
+          end(null);
+        };
+      });
+      const all = await Promise.race([made, halted]);
+      if (!all) return;
+      save(`${file || 'robot'}-parts.zip`, [all.zip], 'application/zip');
+      const least = all.least === null ? '' : ` No two parts come nearer than ${all.least.toFixed(2)} mm at any pose that the guard accepts.`;
+      this.say('files-said', `${all.count} files.${least}`);
+    } catch (error) {
+      this.say('files-said', `No files are made: ${sentence(error)}`);
+    } finally {
+      this.stop = null;
+      bar.hidden = true;
+      this.button.textContent = 'Download all files';
+      if (stopped) this.say('files-said', 'Stopped; nothing was saved.');
+    }
+  }
+
+  /** Stops what is being made. */
+  private halt(): void {
+    this.stop?.();
+  }
+
+  private say(id: string, text: string): void {
+    const box = element(id);
+    box.textContent = text;
+    box.hidden = text === '';
+  }
+}

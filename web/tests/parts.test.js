@@ -1,0 +1,195 @@
+// The parts in the page are those of `lizard parts`: the same files, the same steps, at the robot's own pose;
+// and whoever does not open their panel pays nothing for them.
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, readdir, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { promisify } from 'node:util';
+import { gzipSync } from 'node:zlib';
+
+import { unzipSync } from 'fflate';
+
+import { advance, blank, address, close, complaints, open, standing, tidy, type, within } from './browser.js';
+
+const ROOT = new URL('../../', import.meta.url).pathname;
+/** First load of the page, compressed, bytes. */
+const FIRST_LOAD = 500_000;
+
+let folder;
+
+before(open);
+before(async () => {
+  folder = await mkdtemp(join(tmpdir(), 'parts-'));
+  const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
+  await within('lizard parts', made);
+});
+afterEach(tidy);
+after(async () => {
+  await rm(folder, { recursive: true, force: true });
+  await close();
+});
+
+const said = (page) => page.locator('#parts-said');
+
+async function opened(options) {
+  const page = await standing(options);
+  await page.locator('#parts summary').click();
+  await page.getByText('Click a part for its name').waitFor();
+  await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
+  return page;
+}
+
+/** A click on the picture, as a share of its width and height. */
+async function click(page, across, down) {
+  const { x, y, width, height } = await page.locator('#space').boundingBox();
+  await page.mouse.click(x + across * width, y + down * height);
+  return said(page).innerText();
+}
+
+/** Looks from straight above. */
+async function fromAbove(page) {
+  for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
+}
+
+/** Waits for the picture of the robot's last pose. */
+const settled = (page) => page.waitForTimeout(1000);
+
+test('whoever opens the page loads no parts, and less than half a megabyte', async () => {
+  const page = await blank();
+  const loaded = new Map();
+  page.on('response', (response) => loaded.set(response.url().replace(address(), ''), response.body()));
+  await page.goto(address());
+  await page.waitForFunction(() => window.lizard);
+  const names = [...loaded.keys()];
+  const sizes = await within('all bodies', Promise.all([...loaded.values()].map(async (body) => gzipSync(await body).length)));
+  const sum = sizes.reduce((a, b) => a + b, 0);
+  assert.ok(names.includes('files/lizard.wasm'), names.join(' '));
+  assert.ok(sum < FIRST_LOAD, `${sum} bytes`);
+  const early = names.filter((name) => /parts\.wasm|space|workshop|worker-.*parts/.test(name));
+  assert.deepEqual(early, []);
+  await page.locator('#parts summary').click();
+  await page.getByText('Click a part for its name').waitFor();
+  assert.ok(loaded.has('files/parts.wasm') && [...loaded.keys()].some((name) => name.includes('space')));
+});
+
+test('the archive has the files of lizard parts, byte for byte', async () => {
+  const page = await standing();
+  await page.locator('#parts summary').click();
+  const download = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Download all files' }).click();
+  await page.getByText(/Proving that no two parts meet: [0-9]+ of [0-9]+/).waitFor();
+  const saved = await download;
+  assert.equal(saved.suggestedFilename(), 'robot-parts.zip');
+  const archive = unzipSync(await readFile(await saved.path()));
+  const entries = await readdir(folder, { recursive: true, withFileTypes: true });
+  const paths = entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => join(parentPath, name).slice(folder.length + 1));
+  assert.deepEqual(Object.keys(archive).sort(), paths.sort());
+  for (const path of paths) assert.ok(Buffer.from(archive[path]).equals(await readFile(join(folder, path))), `${path} differs`);
+  assert.ok(paths.length > 100, `${paths.length} files`);
+  // The nearest two parts, as `lizard fit` prints them.
+  const { stdout } = await within('lizard fit', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['fit', '--robot', join(ROOT, 'robot.toml')]));
+  const least = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
+  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${least} mm`));
+});
+
+test('what is being made can be stopped, and is then not saved', async () => {
+  const page = await standing();
+  let downloads = 0;
+  page.on('download', () => (downloads += 1));
+  await page.locator('#parts summary').click();
+  await page.getByRole('button', { name: 'Download all files' }).click();
+  await page.getByText('Proving that no two parts meet').waitFor();
+  await page.locator('#parts-save').click();
+  await page.getByText('Stopped; nothing was saved.').waitFor();
+  assert.equal(await page.locator('#parts-save').innerText(), 'Download all files');
+  assert.equal(downloads, 0);
+});
+
+test('a part that is clicked says its name and its file', async () => {
+  const page = await opened();
+  await fromAbove(page);
+  assert.match(await click(page, 0.5, 0.5), /^board: board, bought; put on in step 3\.$/);
+  assert.equal(await page.locator('#part option:checked').innerText(), 'board');
+  assert.match(await click(page, 0.02, 0.98), /^Click a part/);
+  // By keys alone: the list names all parts.
+  await page.locator('#part').selectOption({ label: 'link A1' });
+  const [, file] = /stl\/(.*)\.stl/.exec(await said(page).innerText());
+  assert.ok((await readdir(join(folder, 'stl'))).includes(`${file}.stl`), file);
+});
+
+test('the guide is gone through step by step', async () => {
+  const page = await opened();
+  const guide = await readFile(join(folder, 'guide/guide.md'), 'utf8');
+  const titles = [...guide.matchAll(/^## ([0-9]+)\. (.*)$/gm)];
+  assert.equal(titles.length, 13);
+  for (const [, number, title] of titles) {
+    await page.getByRole('button', { name: 'Next step' }).click();
+    assert.equal(await page.locator('#step-title').innerText(), `${number} of 13: ${title}`);
+  }
+  assert.ok(await page.getByRole('button', { name: 'Next step' }).isDisabled());
+  await page.getByRole('button', { name: 'Whole robot' }).click();
+  await fromAbove(page);
+  assert.match(await click(page, 0.5, 0.5), /^board:/);
+  // In the first step there is no board yet: what lies below it is seen.
+  await page.getByRole('button', { name: 'Next step' }).click();
+  assert.doesNotMatch(await click(page, 0.5, 0.5), /^board:/);
+});
+
+test('the parts go where the robot goes', async () => {
+  const page = await opened();
+  await fromAbove(page);
+  const { width, height } = await page.locator('#space').boundingBox();
+  // Which points of the picture show the head's plate: from above, ahead is to the left and up.
+  const head = async () => {
+    await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
+    await settled(page);
+    const seen = [];
+    for (let across = 0.15; across < 0.5; across += 0.025) {
+      for (let down = 0.02; down < 0.5; down += (0.025 * width) / height) {
+        if (/^head plate/.test(await click(page, across, down))) seen.push([across * width, down * height]);
+      }
+    }
+    assert.ok(seen.length > 1, `${seen.length} points of the head`);
+    return [0, 1].map((axis) => seen.reduce((sum, point) => sum + point[axis], 0) / seen.length);
+  };
+  const before = await head();
+  await type(page, 'pose 150.59 53.41 318.59 221.41', 'ok pose');
+  await advance(page, 1500);
+  const bent = await head();
+  // Both cranks turn to the robot's left, which is down and to the left of the picture.
+  const aside = (before[0] - bent[0] + bent[1] - before[1]) / Math.SQRT2;
+  assert.ok(aside > 15, `${before} to ${bent}`);
+});
+
+test('a robot that cannot be built says why', async () => {
+  const page = await opened();
+  const ideal = '\n[leg.drive]\nkind = "spring"\nstiffness = 10.0\npreload = 0.0\n';
+  assert.equal(await page.evaluate((ideal) => window.lizard.change(window.lizard.toml + ideal), ideal), null);
+  await page.getByText('There are no parts of this robot: leg.drive.kind is "spring", an ideal that no part here is').waitFor();
+});
+
+test('pictures in space leave the processor time where no chip paints them', async (t) => {
+  const page = await opened();
+  const browser = await within('the processes', page.context().browser().newBrowserCDPSession());
+  const used = async () => {
+    const { processInfo } = await within('the processes', browser.send('SystemInfo.getProcessInfo'));
+    return processInfo.find(({ type }) => type === 'GPU').cpuTime;
+  };
+  const share = async () => {
+    const [begun, before] = [performance.now(), await used()];
+    await page.waitForTimeout(4000);
+    return (1000 * ((await used()) - before)) / (performance.now() - begun);
+  };
+  await type(page, 'walk', 'ok walk');
+  await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
+  await settled(page);
+  const shown = await share();
+  await page.locator('#parts').evaluate((panel) => (panel.open = false));
+  const hidden = await share();
+  t.diagnostic(`${(100 * (shown - hidden)).toFixed(0)} % of a core`);
+  assert.ok(shown - hidden < 0.8, `${shown} of a core with the robot in space, ${hidden} without`);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -1,0 +1,151 @@
+use lizard_kinematics::Vector;
+use lizard_twin::{ServoModel, Shape, Twin};
+
+use super::*;
+
+const PAPER: &str = include_str!("../../../../robots/paper.toml");
+
+fn model(drive: &str) -> Model {
+    Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\"")).expect("paper")
+}
+
+/// A point of a mount's frame in the chassis frame.
+fn mapped([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
+    let (at, turn) = (Vector::new(x, y), Vector::new(cos, sin));
+    at + turn * point.x + turn.left() * point.y
+}
+
+#[test]
+fn legs_that_lag_are_where_the_drawing_has_them() {
+    let model = model("strut");
+    let robot = model.assembly().robot().clone();
+    let neutral: [f64; 4] = robot.neutral().into();
+    let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
+    let lag = [0.0, 2.5, -3.0, 7.0];
+    let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+    twin.push_angles(angles);
+    let sweeps = [0, 1, 2, 3].map(|i| FORWARD[i] * (angles[i] - neutral[i]) - lag[i]);
+    let drawn = Shape::of(&robot, angles, sweeps).expect("closes");
+    let places = model.pose(angles, lag).expect("closes");
+    let place = |mount| places[model.mount(mount)];
+    for servo in 0..4 {
+        let (leg, plan) = (drawn.legs[servo], &model.assembly().layout().legs[servo]);
+        for (joint, mount) in leg
+            .joints
+            .into_iter()
+            .zip([Mount::Crank(servo), Mount::Follower(servo)])
+        {
+            let off = (mapped(place(mount), plan.joint) - joint).length();
+            assert!(off < 1e-9, "{mount:?} is off by {off} mm");
+        }
+        let off = (mapped(place(Mount::Foot(servo)), plan.foot) - leg.foot).length();
+        assert!(off < 1e-9, "foot {servo} is off by {off} mm");
+        let [from, to] = leg.strut;
+        let along = Vector::new((to - from).length(), 0.0);
+        let strut = place(Mount::Strut(servo));
+        let off = (mapped(strut, Vector::default()) - from).length()
+            + (mapped(strut, along) - to).length();
+        assert!(off < 1e-9, "strut {servo} is off by {off} mm");
+    }
+}
+
+#[test]
+fn without_lag_every_mount_is_where_the_assembly_has_it() {
+    let model = model("rigid");
+    let robot = model.assembly().robot();
+    let angles = [130.0, 45.0, 322.0, 219.0];
+    let pose = robot.lizard().solve(&angles.into()).expect("closes");
+    let places = model.pose(angles, [0.0; 4]).expect("closes");
+    assert_eq!(places.len(), model.mounts.len());
+    for (mount, place) in model.mounts.iter().zip(places) {
+        let Placement { at, turn } = model.assembly().place(*mount, &pose);
+        let off = [at.x, at.y, turn.x, turn.y].into_iter().zip(place);
+        let off = off.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-9, "{mount:?}: {place:?}");
+    }
+}
+
+/// The corners of each solid.
+fn corners(bytes: &[u8]) -> Vec<Vec<[f32; 3]>> {
+    let mut words = bytes
+        .chunks(4)
+        .map(|word| [word[0], word[1], word[2], word[3]]);
+    let mut solids = Vec::new();
+    while let Some(count) = words.next() {
+        let triangles = u32::from_le_bytes(words.next().expect("a count"));
+        let mut one = || f32::from_le_bytes(words.next().expect("a corner"));
+        let corners = (0..u32::from_le_bytes(count)).map(|_| [one(), one(), one()]);
+        solids.push(corners.collect());
+        for _ in 0..3 * triangles {
+            words.next().expect("a triangle's corner");
+        }
+    }
+    solids
+}
+
+#[test]
+fn a_printed_solid_is_laid_into_the_space_of_its_body() {
+    let model = model("strut");
+    let (entry, solids) = (model.entry(), corners(&model.solids().expect("closed")));
+    let most = entry.bodies.iter().map(|body| body.solid).max();
+    assert_eq!(most, Some(solids.len() - 1));
+    for (known, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
+        let m = known.place;
+        let z = solids[known.solid].iter().map(|corner| {
+            let [x, y, z] = corner.map(f64::from);
+            m[2] * x + m[6] * y + m[10] * z + m[14]
+        });
+        let (low, high) = z.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+            (low.min(z), high.max(z))
+        });
+        let [from, to] = body.z();
+        assert!(
+            (low - from).abs() < 1e-4 && (high - to).abs() < 1e-4,
+            "{}: {low} to {high}",
+            body.name
+        );
+        // Each corner lies on or within the body's own shapes, seen from above.
+        for corner in &solids[known.solid] {
+            let [x, y, _] = corner.map(f64::from);
+            let at = Vector::new(m[0] * x + m[4] * y + m[12], m[1] * x + m[5] * y + m[13]);
+            let shapes = body.prisms.iter().flat_map(|prism| &prism.add);
+            let off = shapes
+                .map(|shape| shape.distance(&lizard_parts::Shape::disc(at, 0.0)))
+                .fold(f64::INFINITY, f64::min);
+            assert!(
+                off < 1e-3,
+                "{} has a corner {off} mm outside of it",
+                body.name
+            );
+        }
+    }
+}
+
+#[test]
+fn a_printed_body_is_that_of_its_part_and_in_one_step() {
+    let model = model("strut");
+    let entry = model.entry();
+    assert_eq!(entry.steps.len(), 13);
+    assert!(
+        entry
+            .bodies
+            .iter()
+            .all(|body| (1..=13).contains(&body.step))
+    );
+    let counts = entry.parts.iter().enumerate().map(|(number, part)| {
+        let bodies = entry.bodies.iter().filter(|body| body.part == Some(number));
+        (part, bodies.count())
+    });
+    for (part, count) in counts {
+        assert_eq!(part.count, count, "{}", part.name);
+    }
+    assert!(entry.floor > 20.0, "{}", entry.floor);
+}
+
+#[test]
+fn a_robot_that_no_part_can_be_of_is_refused_with_the_sentence_of_lizard_parts() {
+    let ideal = format!("{PAPER}\n[leg.drive]\nkind = \"spring\"\nstiffness = 10.0\npreload = 0.0");
+    let refused = Model::read(&ideal).err().expect("refused");
+    assert!(refused.refused.contains("an ideal"), "{}", refused.refused);
+    assert!(Model::read("[links]").is_err());
+}
