@@ -16,6 +16,7 @@ import { Drive, short } from './view/drive';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
 import { Health } from './view/health';
+import { Keep } from './view/keep';
 import { Lengths } from './view/lengths';
 import { Log } from './view/log';
 import { MapsView } from './view/maps';
@@ -89,6 +90,7 @@ async function start(): Promise<void> {
   const health = new Health(now);
   const lengths = new Lengths(now);
   const parts = new PartsView(now);
+  const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
   let writing = false;
   const writer = new Writer(now, (busy) => {
@@ -117,10 +119,12 @@ async function start(): Promise<void> {
       floor.clear();
       world.take();
       parts.take();
+      keep.take(description);
       predict();
     },
-    frame(frame, widths) {
+    frame(frame, widths, seconds) {
       floor.walked(frame.place);
+      keep.frame(frame, widths, seconds);
       if (frame.scene) maps.at(frame.scene);
       if (widths) scope.frame(widths);
     },
@@ -135,6 +139,7 @@ async function start(): Promise<void> {
     },
     doing(gait) {
       drive.doing(gait);
+      keep.doing(gait);
       texts();
     },
     tables(tables) {
@@ -258,7 +263,8 @@ async function start(): Promise<void> {
       steer.look();
       // Where no robot could be read, there is nothing to draw.
       if (!session.description) return;
-      floor.draw(session.description.plate, session.last);
+      floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
+      keep.drawn();
       parts.draw(session.last);
       pictures += 1;
       if (pictures % PANELS === 0) {
@@ -269,6 +275,7 @@ async function start(): Promise<void> {
       if (sinceTexts >= 1000 / TEXTS) {
         sinceTexts = 0;
         texts();
+        keep.write();
         scope.write(session.last?.scene ?? null);
         margins.write(session.last?.scene ?? null);
       }

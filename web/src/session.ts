@@ -44,7 +44,8 @@ export type Tables = string | 'unknown' | null;
 export interface Listener {
   /** Another robot, or the same with other lengths. */
   robot(description: Description): void;
-  frame(frame: Frame, widths: Four<number> | null): void;
+  /** A frame that took so many seconds. */
+  frame(frame: Frame, widths: Four<number> | null, seconds: number): void;
   pulse(pin: number, rise: number, width: number): void;
   sent(line: string): void;
   came(line: string): void;
@@ -460,7 +461,7 @@ export class Session {
     this.last = frame;
     this.way.push({ time: this.time, frame });
     while (this.way[0].time < this.time - KEPT_SECONDS) this.way.shift();
-    this.listener.frame(frame, widths);
+    this.listener.frame(frame, widths, seconds);
   }
 
   /** The last whole cycle of the gait, if it has walked so long. */

@@ -19,14 +19,14 @@ const watcher = new IntersectionObserver((entries) => {
 
 /**
  * The canvas, cleared, in CSS pixels; null while it is not to be seen. An opaque one is for the caller to
- * fill, which saves blending it with what is below.
+ * fill, which saves blending it with what is below. One that is filmed is painted out of sight, too.
  */
-export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | null {
+export function surface(canvas: HTMLCanvasElement, opaque = false, unseen = false): Surface | null {
   if (!watched.has(canvas)) {
     watched.add(canvas);
     watcher.observe(canvas);
   }
-  if (away.has(canvas)) return null;
+  if (away.has(canvas) && !unseen) return null;
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;
   const scale = devicePixelRatio;
@@ -40,6 +40,16 @@ export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | nu
   pen.setTransform(scale, 0, 0, scale, 0, 0);
   if (!opaque) pen.clearRect(0, 0, width, height);
   return { pen, width, height };
+}
+
+/**
+ * Adds a circle to the path. In two halves: a pen that writes SVG while up is up turns an arc the wrong way round, of
+ * which halves know nothing.
+ */
+export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  pen.moveTo(x + radius, y);
+  pen.arc(x, y, radius, 0, Math.PI);
+  pen.arc(x, y, radius, Math.PI, 2 * Math.PI);
 }
 
 /** An element of the page, which index.html has. */

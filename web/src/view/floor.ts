@@ -1,6 +1,6 @@
 // The floor that the lizard walks on: to pan and zoom, by pointer, wheel, fingers or keys.
 import type { Frame, Place, Plate } from '../robot';
-import { element, surface } from './canvas';
+import { circle, element, surface } from './canvas';
 import { drawLizard } from './lizard';
 import { palette } from './palette';
 
@@ -14,8 +14,18 @@ const VIEW = 420;
 const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
 
+/** So far to the right of the robot's start a second one starts, mm. */
+const BESIDE = 280;
+
 /** A finger that has moved so far aside drags the floor, CSS pixels. */
 const SLOP = 12;
+
+/** The label of the scale, and where it is, CSS pixels. */
+interface Label {
+  text: string;
+  x: number;
+  y: number;
+}
 
 interface Touch {
   x: number;
@@ -29,7 +39,12 @@ export class Floor {
   /** CSS pixels in a mm; 0 until the canvas has a size. */
   private zoom = 0;
   private following = true;
-  private track: { x: number; y: number }[] = [];
+  /** The ways that were walked: the robot's, and that of the one beside it. */
+  private tracks: { x: number; y: number }[][] = [[], []];
+  /** Whether it is drawn out of sight, too: it is filmed, or its picture is taken. */
+  unseen = false;
+  /** What was drawn last: the picture is it, as points or as lines. */
+  private shown: [Plate, Frame | null, Frame | null] | null = null;
   private readonly touches = new Map<number, Touch>();
   /** Whether the one pointer that is down drags the floor. */
   private dragging = false;
@@ -69,49 +84,82 @@ export class Floor {
 
   /** Forgets the way that was walked. */
   clear(): void {
-    this.track = [];
+    this.tracks = [[], []];
     this.centre = { x: 0, y: 0 };
   }
 
-  /** Notes where the body is. */
-  walked({ x, y }: Place): void {
-    const last = this.track[this.track.length - 1];
+  /** Notes where the body is, or that of the robot beside it. */
+  walked({ x, y }: Place, beside = false): void {
+    const track = this.tracks[beside ? 1 : 0] ?? [];
+    const last = track[track.length - 1];
     if (last && Math.hypot(x - last.x, y - last.y) < TRACK_STEP) return;
-    this.track.push({ x, y });
-    if (this.track.length > LONGEST_TRACK) this.track.splice(0, LONGEST_TRACK / 4);
+    track.push({ x, y });
+    if (track.length > LONGEST_TRACK) track.splice(0, LONGEST_TRACK / 4);
   }
 
-  draw(plate: Plate, frame: Frame | null): void {
-    const area = surface(this.canvas, true);
+  draw(plate: Plate, frame: Frame | null, beside: Frame | null): void {
+    const area = surface(this.canvas, true, this.unseen);
     if (!area) return;
     const { pen, width, height } = area;
+    this.shown = [plate, frame, beside];
     if (this.zoom === 0) this.zoom = Math.min(width, height) / VIEW;
     if (this.following && frame) {
       // Gently, so that a step does not shake the floor.
-      this.centre.x += (frame.place.x - this.centre.x) * 0.08;
-      this.centre.y += (frame.place.y - this.centre.y) * 0.08;
+      const middle = beside ? [(frame.place.x + beside.place.x + BESIDE) / 2, (frame.place.y + beside.place.y) / 2] : [frame.place.x, frame.place.y];
+      this.centre.x += ((middle[0] ?? 0) - this.centre.x) * 0.08;
+      this.centre.y += ((middle[1] ?? 0) - this.centre.y) * 0.08;
     }
     // The picture's scale, for whoever cannot measure it.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
+    const label = this.paint(pen, width, height);
+    pen.fillStyle = palette().ink;
+    pen.font = '12px system-ui, sans-serif';
+    pen.fillText(label.text, label.x, label.y);
+  }
+
+  /** Has room for two robots. */
+  widen(): void {
+    this.zoom = Math.min(this.zoom, this.canvas.clientWidth / (VIEW + BESIDE));
+    this.follow(true);
+  }
+
+  /** Brings it on the screen. */
+  show(): void {
+    this.canvas.scrollIntoView({ block: 'nearest' });
+  }
+
+  /** The last picture, drawn with another pen in CSS pixels, such as one that writes SVG; the label of the scale is left to the caller. */
+  again(pen: CanvasRenderingContext2D): Label {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return this.paint(pen, width, height);
+  }
+
+  private paint(pen: CanvasRenderingContext2D, width: number, height: number): Label {
+    const [plate, frame, beside] = this.shown ?? [null, null, null];
     pen.fillStyle = palette().floor;
     pen.fillRect(0, 0, width, height);
+    pen.save();
     pen.translate(width / 2, height / 2);
     pen.scale(this.zoom, -this.zoom);
     pen.translate(-this.centre.x, -this.centre.y);
     this.grid(pen, width, height);
-    this.way(pen);
-    if (frame?.scene) {
-      const { x, y, heading } = frame.place;
+    const robots: [number, Frame | null][] = beside ? [[0, frame], [BESIDE, beside]] : [[0, frame]];
+    robots.forEach(([aside, robot], n) => {
       pen.save();
-      pen.translate(x, y);
-      pen.rotate((heading * Math.PI) / 180);
-      drawLizard(pen, plate, frame.scene, frame.slides);
+      pen.translate(aside, 0);
+      this.way(pen, this.tracks[n] ?? []);
+      if (plate && robot?.scene) {
+        const { x, y, heading } = robot.place;
+        pen.translate(x, y);
+        pen.rotate((heading * Math.PI) / 180);
+        drawLizard(pen, plate, robot.scene, robot.slides);
+      }
       pen.restore();
-    }
-    pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    });
+    pen.restore();
     // Above the buttons, where the floor is narrow.
-    this.ruler(pen, width < 520 ? height - 46 : height);
+    return this.ruler(pen, width < 520 ? height - 46 : height);
   }
 
   private grid(pen: CanvasRenderingContext2D, width: number, height: number): void {
@@ -132,16 +180,16 @@ export class Floor {
     pen.stroke();
   }
 
-  private way(pen: CanvasRenderingContext2D): void {
+  private way(pen: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
     pen.strokeStyle = palette().track;
     pen.lineWidth = 2.5 / this.zoom;
     pen.lineJoin = 'round';
     pen.beginPath();
-    this.track.forEach(({ x, y }, n) => (n === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+    track.forEach(({ x, y }, n) => (n === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
     pen.stroke();
     // The start.
     pen.beginPath();
-    pen.arc(0, 0, 4, 0, 2 * Math.PI);
+    circle(pen, 0, 0, 4);
     pen.moveTo(-9, 0);
     pen.lineTo(9, 0);
     pen.moveTo(0, -9);
@@ -149,7 +197,7 @@ export class Floor {
     pen.stroke();
   }
 
-  private ruler(pen: CanvasRenderingContext2D, height: number): void {
+  private ruler(pen: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
     const [x, y] = [14, height - 22];
     pen.strokeStyle = palette().ink;
@@ -160,9 +208,7 @@ export class Floor {
     pen.lineTo(x + length * this.zoom, y);
     pen.lineTo(x + length * this.zoom, y - 4);
     pen.stroke();
-    pen.fillStyle = palette().ink;
-    pen.font = '12px system-ui, sans-serif';
-    pen.fillText(`${length} mm`, x + 4, y - 5);
+    return { text: `${length} mm`, x: x + 4, y: y - 5 };
   }
 
   private follow(on: boolean): void {

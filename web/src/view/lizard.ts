@@ -1,5 +1,6 @@
 // The lizard from above, drawn in mm of its own frame: x to the right, y ahead.
 import type { Plate, Scene, Spot } from '../robot';
+import { circle } from './canvas';
 import { palette, servoColour } from './palette';
 
 /** Radius of a foot, and width of the plate's edge, mm. */
@@ -23,7 +24,7 @@ function bar(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot, colour: string, mm: numbe
 function disc(pen: Pen, [x, y]: Spot, mm: number, fill: string, edge?: string): void {
   pen.fillStyle = fill;
   pen.beginPath();
-  pen.arc(x, y, mm, 0, 2 * Math.PI);
+  circle(pen, x, y, mm);
   pen.fill();
   if (edge === undefined) return;
   pen.strokeStyle = edge;

@@ -28,6 +28,11 @@ export class Pace {
     this.write(percent);
   }
 
+  /** What is asked for, percent. */
+  get percent(): number {
+    return this.slider.valueAsNumber;
+  }
+
   private write(percent: number): void {
     const text = `${percent} %`;
     if (this.out.textContent === text) return;

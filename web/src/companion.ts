@@ -1,0 +1,42 @@
+// A second robot on the same floor: the firmware's core with the same numbers and another gait.
+import { isRefused, type Floor, type Frame, Robot } from './robot';
+
+/** Frames of 20 ms in which a robot that was switched on has woken and stands. */
+const WAKES = 200;
+
+export class Companion {
+  frame: Frame | null = null;
+  private line = '';
+
+  private constructor(
+    private readonly robot: Robot,
+    private readonly volts: number,
+  ) {}
+
+  /** One that stands at the start, as heavy and on the same floor as the page's robot. Throws a sentence. */
+  static async standing(module: WebAssembly.Module, toml: string, floor: Floor, servos: string, volts: number): Promise<Companion> {
+    const robot = await Robot.load(module);
+    const read = robot.read(toml);
+    if (isRefused(read)) throw new Error(read.refused);
+    robot.setFloor(floor);
+    robot.setServos(servos);
+    robot.runCore();
+    const companion = new Companion(robot, volts);
+    for (let n = 0; n < WAKES; n++) companion.step();
+    robot.restart();
+    companion.step();
+    return companion;
+  }
+
+  /** Sends a line with the next frame. */
+  send(line: string): void {
+    this.line += `${line}\n`;
+  }
+
+  /** A frame of 20 ms goes by. */
+  step(): void {
+    const said = this.robot.coreFrame(this.line, this.volts);
+    this.line = '';
+    if (said) this.frame = this.robot.pulses(said.widths) ?? this.frame;
+  }
+}

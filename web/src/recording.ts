@@ -1,0 +1,58 @@
+// A run of the robot, kept frame by frame: to be seen again, and to be read by other programs.
+import type { Four, Frame } from './robot';
+
+/** A frame of it. */
+export interface Moment {
+  /** Since the recording began, s. */
+  time: number;
+  /** What the robot did. */
+  doing: string;
+  frame: Frame;
+  /** CPU cycles; null where a board on USB does not show its pulses. */
+  widths: Four<number> | null;
+}
+
+/** No more than so many seconds are kept, so that a forgotten recording does not fill the memory. */
+export const LONGEST = 180;
+const CYCLES_PER_US = 16;
+
+export class Recording {
+  readonly moments: Moment[] = [];
+
+  /** Notes a frame that took so many seconds; whether there is room for more. */
+  note(frame: Frame, widths: Four<number> | null, doing: string, seconds: number): boolean {
+    const last = this.moments[this.moments.length - 1];
+    this.moments.push({ time: last ? last.time + seconds : 0, doing, frame, widths });
+    return this.seconds < LONGEST;
+  }
+
+  get seconds(): number {
+    return this.moments[this.moments.length - 1]?.time ?? 0;
+  }
+
+  /** The last frame that had come at a time, s. */
+  at(time: number): Moment | null {
+    const after = this.moments.findIndex((moment) => moment.time > time + 1e-9);
+    return this.moments[after < 0 ? this.moments.length - 1 : Math.max(0, after - 1)] ?? null;
+  }
+
+  /** One line for each frame; angles and lags in deg, place in mm, pulses in us. */
+  csv(): string {
+    const four = (name: (number: number) => string) => [1, 2, 3, 4].map(name);
+    const head = [
+      'time_s', 'doing', ...four((n) => `a${n}_deg`), 'right_mm', 'ahead_mm', 'heading_deg',
+      ...['lf', 'rf', 'rh', 'lh'].map((leg) => `lag_${leg}_deg`), ...four((n) => `pulse_a${n}_us`),
+    ];
+    const none = ['', '', '', ''];
+    const lines = this.moments.map(({ time, doing, frame: { scene, place, lag }, widths }) => [
+      time.toFixed(2),
+      // A gait's name is a robot file's: it may begin no formula and end no field.
+      `"${doing.replaceAll('"', '""')}"`,
+      ...(scene?.angles.map((angle) => angle.toFixed(3)) ?? none),
+      ...[place.x, place.y, place.heading].map((value) => (Number(value.toFixed(2)) + 0).toFixed(2)),
+      ...lag.map((value) => value.toFixed(3)),
+      ...(widths?.map((width) => (width / CYCLES_PER_US).toFixed(2)) ?? none),
+    ]);
+    return `${[head, ...lines].map((fields) => fields.join(',')).join('\n')}\n`;
+  }
+}

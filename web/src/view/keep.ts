@@ -1,0 +1,287 @@
+// The panel that keeps runs and pictures, and lets a second robot walk beside the first.
+import { Companion } from '../companion';
+import { LONGEST, Recording } from '../recording';
+import type { Description, Four, Frame } from '../robot';
+import type { Session } from '../session';
+import { sentence } from '../trouble';
+import { WORDS } from '../words';
+import { element } from './canvas';
+import { save } from './download';
+import { short } from './drive';
+import type { Floor } from './floor';
+import { palette } from './palette';
+
+/** Films that browsers can write, the smallest first. */
+const FILMS = [
+  ['video/webm;codecs=vp9', 'webm'],
+  ['video/webm;codecs=vp8', 'webm'],
+  ['video/webm', 'webm'],
+  ['video/mp4', 'mp4'],
+] as const;
+
+/** A frame of the core, s. */
+const FRAME = 0.02;
+
+export class Keep {
+  private readonly moment = element<HTMLInputElement>('moment');
+  private readonly mine = element<HTMLSelectElement>('mine');
+  private readonly other = element<HTMLSelectElement>('other');
+  private recording: Recording | null = null;
+  private isRecording = false;
+  /** Since when it is seen again, ms of the wall, and from which moment, s; null where it stands or is not seen. */
+  private playing: { since: number; from: number } | null = null;
+  private isSeen = false;
+  private film: MediaRecorder | null = null;
+  private companion: Companion | null = null;
+  /** The gait that the companion begins with when the robot begins with its own. */
+  private waiting: { mine: string; other: string } | null = null;
+  private owed = 0;
+  private onDrawn: (() => void) | null = null;
+
+  /** `ask` sends a line, `pace` is what the robot is to have, percent. */
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly session: () => Session,
+    private readonly floor: Floor,
+    private readonly ask: (line: string) => Promise<unknown>,
+    private readonly pace: () => number,
+  ) {
+    const on = (id: string, act: () => void) => element(id).addEventListener('click', act);
+    on('record', () => this.record(!this.isRecording));
+    on('replay', () => this.play(!this.isSeen));
+    on('csv', () => this.recording && save('run.csv', [this.recording.csv()], 'text/csv'));
+    on('png', () => this.picture(() => void this.png()));
+    on('svg', () => this.picture(() => void this.svg()));
+    on('film', () => this.toggleFilm());
+    on('both', () => void this.both());
+    on('alone', () => this.alone());
+    this.moment.addEventListener('input', () => {
+      this.isSeen = true;
+      this.playing = null;
+      this.buttons();
+    });
+    element<HTMLButtonElement>('film').disabled = !this.format;
+    this.buttons();
+  }
+
+  /** Another robot: what was kept of the one before is let go. */
+  take({ gaits }: Description): void {
+    this.record(false);
+    this.recording = null;
+    this.isSeen = false;
+    this.alone();
+    const chosen = [this.mine.value, this.other.value];
+    for (const list of [this.mine, this.other]) {
+      list.replaceChildren(
+        ...gaits.map(({ command }) => {
+          const option = document.createElement('option');
+          option.value = option.textContent = command;
+          return option;
+        }),
+      );
+    }
+    const known = gaits.map(({ command }) => command);
+    const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
+    this.mine.value = known.find((gait) => gait === chosen[0]) ?? moving[moving.length > 1 ? 1 : 0] ?? '';
+    this.other.value = known.find((gait) => gait === chosen[1]) ?? moving[0] ?? '';
+    this.say('');
+    this.buttons();
+  }
+
+  /** The robot has moved on. */
+  frame(frame: Frame, widths: Four<number> | null, seconds: number): void {
+    if (this.isRecording && this.recording && !this.recording.note(frame, widths, this.session().gait, seconds)) {
+      this.record(false);
+      this.say(`The recording is full: ${LONGEST} s.`);
+    }
+    if (!this.companion || this.waiting) return;
+    for (this.owed += seconds; this.owed > FRAME / 2; this.owed -= FRAME) this.companion.step();
+    const place = this.companion.frame?.place;
+    if (place) this.floor.walked(place, true);
+  }
+
+  /** What the robot does now: when it begins, so does the one beside it. */
+  doing(gait: string): void {
+    const { companion, waiting } = this;
+    if (!companion) return;
+    if (waiting && gait === waiting.mine) {
+      companion.send(waiting.other);
+      this.waiting = null;
+    } else if (!waiting && gait === WORDS.stop) companion.send(WORDS.stop);
+  }
+
+  /** What the floor is to show of the robot. */
+  shown(now: Frame | null): Frame | null {
+    const { recording } = this;
+    if (!this.isSeen || !recording) return now;
+    if (this.playing) {
+      const time = this.playing.from + (performance.now() - this.playing.since) / 1000;
+      this.moment.value = String(time);
+      if (time >= recording.seconds) this.playing = null;
+    }
+    return recording.at(this.moment.valueAsNumber)?.frame ?? now;
+  }
+
+  /** The second robot. */
+  get beside(): Frame | null {
+    return this.companion?.frame ?? null;
+  }
+
+  /** A picture was drawn on the floor. */
+  drawn(): void {
+    this.onDrawn?.();
+    this.onDrawn = null;
+    this.floor.unseen = this.film !== null;
+  }
+
+  /** Writes the numbers; some times a second. */
+  write(): void {
+    const { recording, companion } = this;
+    if (recording) {
+      if (this.isRecording) this.moment.max = String(recording.seconds);
+      const time = this.isRecording && !this.isSeen ? recording.seconds : this.moment.valueAsNumber;
+      const of = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
+      element('moment-out').textContent = `${time.toFixed(1)}${of} s`;
+    }
+    if (!companion?.frame || this.waiting) return;
+    const { last, robot } = this.session();
+    const start = { x: 0, y: 0, heading: 0 };
+    const way = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
+    this.say(`${this.mine.value}: ${way(last)}. Beside it, ${this.other.value}: ${way(companion.frame)}.`);
+  }
+
+  private record(on: boolean): void {
+    if (on === this.isRecording) return;
+    this.isRecording = on;
+    if (on) {
+      this.recording = new Recording();
+      this.isSeen = false;
+      this.playing = null;
+    } else if (this.recording) {
+      this.moment.max = String(this.recording.seconds);
+      this.moment.value = '0';
+      this.say(`${this.recording.seconds.toFixed(1)} s are kept.`);
+    }
+    this.buttons();
+  }
+
+  private play(on: boolean): void {
+    this.isSeen = on;
+    const { recording } = this;
+    const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME ? this.moment.valueAsNumber : 0;
+    this.playing = on ? { since: performance.now(), from } : null;
+    if (on) this.floor.show();
+    this.buttons();
+  }
+
+  /** Takes a picture of what is drawn next, in sight or not. */
+  private picture(take: () => void): void {
+    this.onDrawn = take;
+    this.floor.unseen = true;
+  }
+
+  private get format(): (typeof FILMS)[number] | undefined {
+    return typeof MediaRecorder === 'undefined' ? undefined : FILMS.find(([type]) => MediaRecorder.isTypeSupported(type));
+  }
+
+  private toggleFilm(): void {
+    const { format } = this;
+    if (this.film) this.film.stop();
+    else if (format) {
+      const [type, ending] = format;
+      const pieces: Blob[] = [];
+      const film = new MediaRecorder(element<HTMLCanvasElement>('floor').captureStream(), { mimeType: type });
+      film.addEventListener('dataavailable', ({ data }) => pieces.push(data));
+      film.addEventListener('stop', () => {
+        this.film = null;
+        this.buttons();
+        for (const track of film.stream.getTracks()) track.stop();
+        save(`run.${ending}`, pieces, type);
+      });
+      film.addEventListener('error', () => this.say('The browser could not write the film.'));
+      film.start(1000);
+      this.film = film;
+    }
+    this.buttons();
+  }
+
+  private async png(): Promise<void> {
+    const canvas = element<HTMLCanvasElement>('floor');
+    const blob = await new Promise<Blob | null>((made) => canvas.toBlob(made));
+    if (blob) save('floor.png', [blob], 'image/png');
+    else this.say('The browser could not write the picture.');
+  }
+
+  private async svg(): Promise<void> {
+    try {
+      const { Context } = await import('svgcanvas');
+      const { clientWidth, clientHeight } = element('floor');
+      const pen = new Context(clientWidth, clientHeight);
+      const label = this.floor.again(pen as unknown as CanvasRenderingContext2D);
+      // The package would measure text with a style that the page's policy does not have.
+      const text = pen.getSvg().appendChild(document.createElementNS('http://www.w3.org/2000/svg', 'text'));
+      const { ink } = palette();
+      const attributes = { x: label.x, y: label.y, fill: ink, 'font-size': 12, 'font-family': 'sans-serif' };
+      for (const [name, value] of Object.entries(attributes)) text.setAttribute(name, String(value));
+      text.textContent = label.text;
+      save('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
+    } catch (error) {
+      this.say(`No picture is made: ${sentence(error)}`);
+    }
+  }
+
+  /** Both start at the same place of their own, and with the same frame. */
+  private async both(): Promise<void> {
+    const session = this.session();
+    const { toml, floor, servos, volts } = session;
+    this.alone();
+    this.say('The second robot is switched on…');
+    try {
+      const companion = await Companion.standing(this.module, toml, floor, servos, volts);
+      if (toml !== this.session().toml) return;
+      await this.ask(WORDS.stop);
+      session.home();
+      this.floor.clear();
+      companion.send(`${WORDS.speed} ${this.pace()}`);
+      companion.step();
+      this.companion = companion;
+      this.owed = 0;
+      this.waiting = { mine: this.mine.value, other: this.other.value };
+      this.buttons();
+      this.floor.widen();
+      this.floor.show();
+      await this.ask(this.mine.value);
+    } catch (error) {
+      this.say(`There is no second robot: ${sentence(error)}`);
+    }
+  }
+
+  private alone(): void {
+    if (this.companion) this.say('');
+    this.companion = null;
+    this.waiting = null;
+    this.buttons();
+  }
+
+  private buttons(): void {
+    const { recording, isRecording, isSeen, film } = this;
+    const has = recording !== null && recording.moments.length > 0 && !isRecording;
+    const set = (id: string, text: string, pressed: boolean, enabled = true) => {
+      const button = element<HTMLButtonElement>(id);
+      if (button.textContent !== text) button.textContent = text;
+      button.setAttribute('aria-pressed', String(pressed));
+      button.disabled = !enabled;
+    };
+    set('record', isRecording ? 'Stop recording' : 'Record', isRecording);
+    set('replay', isSeen ? 'Back to the robot' : 'See it again', isSeen, has);
+    set('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
+    element<HTMLButtonElement>('csv').disabled = !has;
+    this.moment.disabled = !has;
+    element<HTMLButtonElement>('alone').disabled = this.companion === null;
+  }
+
+  private say(text: string): void {
+    const box = element('keep-said');
+    if (box.textContent !== text) box.textContent = text;
+  }
+}

@@ -1,0 +1,120 @@
+// A run is kept as it was, and two robots walk on one floor.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, afterEach, before, test } from 'node:test';
+
+import { advance, close, complaints, open, standing, tidy, type } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+async function opened(options) {
+  const page = await standing(options);
+  await page.locator('#keep summary').click();
+  return page;
+}
+
+const button = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
+
+/** What a button saves. */
+async function saved(page, name) {
+  const download = page.waitForEvent('download');
+  await button(page, name).click();
+  const file = await download;
+  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
+}
+
+/** The table's lines, by the names of its columns. */
+function table(csv) {
+  const [head, ...lines] = csv.trim().split('\n').map((line) => line.split(','));
+  return lines.map((fields) => Object.fromEntries(head.map((name, n) => [name, fields[n]])));
+}
+
+test('the table of a run has its poses, places and pulses, frame by frame', async () => {
+  const page = await opened();
+  await type(page, 'walk', 'ok walk');
+  await button(page, 'Record').click();
+  await advance(page, 3000);
+  await button(page, 'Stop recording').click();
+  const seen = await page.evaluate(() => {
+    const { scene, place } = window.lizard.last;
+    return { angles: scene.angles, place };
+  });
+  const { name, bytes } = await saved(page, 'Table (CSV)');
+  assert.equal(name, 'run.csv');
+  const rows = table(bytes.toString());
+  assert.ok(Math.abs(rows.length - 150) <= 60, `${rows.length} frames`);
+  rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
+  assert.ok(rows.every(({ doing }) => doing === '"walk"'));
+  // The pulses ask for the angles, by the servo's line in robot.toml: 10 us for a degree about 1500 us.
+  const servo = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
+  const off = rows.map((row) => Math.abs(servo(row) - Number(row.a1_deg)));
+  assert.ok(Math.max(...off) < 8, `A1 is ${Math.max(...off)} deg from what its pulse asks for`);
+  assert.ok(Number(rows[rows.length - 1].ahead_mm) > Number(rows[0].ahead_mm) + 10, 'it went ahead');
+  const last = rows.findIndex((row) => Math.abs(Number(row.a2_deg) - seen.angles[1]) < 0.001);
+  assert.ok(last > 0, 'a pose of the session is in it');
+});
+
+test('a run is seen again from any moment, while the robot goes on', async () => {
+  const page = await opened();
+  await type(page, 'walk', 'ok walk');
+  await button(page, 'Record').click();
+  await advance(page, 2000);
+  await button(page, 'Stop recording').click();
+  await page.getByText(/s are kept\.$/).waitFor();
+  await advance(page, 4000);
+  await page.getByLabel('Moment').fill('1');
+  await page.getByText(/^1\.0 of [0-9.]+ s$/).waitFor();
+  assert.equal(await button(page, 'Back to the robot').getAttribute('aria-pressed'), 'true');
+  await button(page, 'Back to the robot').click();
+  await button(page, 'See it again').click();
+  await page.waitForFunction(() => Number(document.querySelector('#moment').value) > 1.1);
+  // Another robot has nothing to do with that run.
+  await page.locator('#robot').selectOption('large');
+  await page.waitForFunction(() => window.lizard.file === 'large');
+  assert.ok(await button(page, 'See it again').isDisabled());
+});
+
+test('pictures of the floor are points or lines, and a film moves', async () => {
+  const page = await opened();
+  await type(page, 'walk', 'ok walk');
+  const png = await saved(page, 'Picture (PNG)');
+  assert.equal(png.bytes.subarray(1, 4).toString(), 'PNG');
+  assert.ok(png.bytes.length > 5000, `${png.bytes.length} bytes`);
+  const svg = await saved(page, 'Picture (SVG)');
+  const shapes = await page.evaluate((text) => {
+    const parsed = new DOMParser().parseFromString(text, 'image/svg+xml');
+    return parsed.querySelector('parsererror') ? 0 : parsed.querySelectorAll('path').length;
+  }, svg.bytes.toString());
+  assert.ok(shapes > 50, `${shapes} shapes`);
+  assert.match(svg.bytes.toString(), />100 mm<|>50 mm</, 'its scale');
+  await button(page, 'Film').click();
+  await page.waitForTimeout(2500);
+  const film = await saved(page, 'Stop the film');
+  assert.match(film.name, /^run\.(webm|mp4)$/);
+  assert.ok(film.bytes.length > 2000, `${film.bytes.length} bytes`);
+});
+
+test('two robots walk side by side, each as far as its gait leads alone', async () => {
+  const page = await opened();
+  await page.getByLabel('This one').selectOption('back');
+  await page.getByLabel('Beside it').selectOption('walk');
+  await button(page, 'Start both').click();
+  await page.waitForFunction(() => window.lizard.gait === 'stand' || window.lizard.gait === 'stop' || window.lizard.gait === 'back');
+  for (let n = 0; n < 20; n++) await advance(page, 500);
+  const said = page.locator('#keep-said');
+  await page.getByText(/^back: -[0-9.]+ mm.*Beside it, walk: [0-9.]+ mm/).waitFor();
+  const [, back, walk] = /^back: -([0-9.]+) mm.*walk: ([0-9.]+) mm/.exec(await said.innerText()).map(Number);
+  // The gait back is walk, backwards: it leads as far.
+  assert.ok(walk > 40 && Math.abs(walk - back) < 0.25 * walk, `${walk} mm ahead, ${back} mm back`);
+  await page.locator('.stop').click();
+  await advance(page, 3000);
+  const stood = await said.innerText();
+  await advance(page, 1000);
+  assert.equal(await said.innerText(), stood, 'both have stopped');
+  await button(page, 'Alone again').click();
+  assert.equal(await said.innerText(), '');
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
