@@ -15,6 +15,7 @@ import { download } from './view/download';
 import { Drive, short } from './view/drive';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
+import { GaitsView } from './view/gaits';
 import { Health } from './view/health';
 import { Keep } from './view/keep';
 import { Lengths } from './view/lengths';
@@ -90,6 +91,7 @@ async function start(): Promise<void> {
   const health = new Health(now);
   const lengths = new Lengths(now);
   const parts = new PartsView(now);
+  const gaits = new GaitsView(module, now, (line) => drive.ask(line));
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
   let writing = false;
@@ -119,6 +121,7 @@ async function start(): Promise<void> {
       floor.clear();
       world.take();
       parts.take();
+      gaits.take();
       keep.take(description);
       predict();
     },

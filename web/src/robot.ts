@@ -170,6 +170,40 @@ export interface Said {
   text: string;
 }
 
+/** A gait as four bars: numbers in servo order, LF, RF, RH, LH. */
+export interface Bars {
+  name: string;
+  /** Whether legs move one after the other and hold in between. */
+  held: boolean;
+  /** s */
+  period: number;
+  /** The stance's share of the cycle. */
+  duty: number;
+  /** deg */
+  amplitude: number;
+  /** Where in the cycle each stance begins, 0 to 1; of legs that hold only the order counts. */
+  start: Four<number>;
+  /** Each leg's share of the amplitude. */
+  gain: Four<number>;
+}
+
+/** What becomes of a gait on the page's robot. */
+export interface Trial extends Outlook {
+  /** For robot.toml. */
+  table: string;
+  margin: string;
+  least: number;
+  limit: number;
+  servo: string;
+  /** deg/s */
+  speed: number;
+}
+
+/** Why a gait will not do, and the nearest values of which each alone would. */
+export interface NoTrial extends Refused {
+  instead: { what: 'amplitude' | 'period'; value: number }[];
+}
+
 /** What wasm/src/abi.rs exports. */
 interface Exports {
   memory: WebAssembly.Memory;
@@ -187,6 +221,9 @@ interface Exports {
   lizard_set_servos(): void;
   lizard_predict(gait: number): void;
   lizard_map(end: number): void;
+  lizard_bars(gait: number): void;
+  lizard_trial(): void;
+  lizard_put_gait(): void;
   lizard_run_core(): void;
   lizard_core_frame(volts: number): void;
 }
@@ -273,6 +310,26 @@ export class Robot {
   /** Of the head (0) or the tail (1). */
   map(end: number): SingularityMap | null {
     this.wasm.lizard_map(end);
+    return this.answer();
+  }
+
+  /** A gait as bars; null for one along a path, one that stands and one that is turned round. */
+  bars(gait: number): Bars | null {
+    this.wasm.lizard_bars(gait);
+    return this.answer();
+  }
+
+  /** Tries a gait on the robot of a robot.toml that was read; takes tenths of a second. */
+  trial(toml: string, bars: Bars): Trial | NoTrial {
+    this.give(`${JSON.stringify(bars)}\n${toml}`);
+    this.wasm.lizard_trial();
+    return this.answer();
+  }
+
+  /** A robot.toml with this gait, in place of the one of its name. */
+  putGait(toml: string, bars: Bars): string {
+    this.give(`${JSON.stringify(bars)}\n${toml}`);
+    this.wasm.lizard_put_gait();
     return this.answer();
   }
 

@@ -140,6 +140,32 @@ pub extern "C" fn lizard_predict(gait: usize) {
     answer(|page, _| page.predict(gait));
 }
 
+/// [`Page::bars`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_bars(gait: usize) {
+    answer(|page, _| page.bars(gait));
+}
+
+/// [`Bars::put_into`](crate::Bars::put_into): the input is as that of [`Page::trial`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_put_gait() {
+    answer(|_, input| {
+        let (bars, text) = input.split_once('\n')?;
+        let bars: crate::Bars = serde_json::from_str(bars).ok()?;
+        Some(bars.put_into(text))
+    });
+}
+
+/// [`Page::trial`]: the input is the bars as JSON on one line, and then the text of the robot.toml.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_trial() {
+    answer(|page, input| {
+        let (bars, text) = input.split_once('\n')?;
+        page.trial(text, &serde_json::from_str(bars).ok()?)
+            .map(either)
+    });
+}
+
 /// [`Page::map`].
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_map(end: usize) {

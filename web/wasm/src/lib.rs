@@ -16,6 +16,7 @@ mod map;
 mod page;
 mod place;
 mod scene;
+mod trial;
 
 pub use core_run::{CoreRun, Said};
 pub use description::{
@@ -27,3 +28,4 @@ pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page, Refused};
 pub use place::Place;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};
+pub use trial::{Bars, Instead, NoTrial, Trial};

@@ -15,6 +15,7 @@ use crate::floor::Floor;
 use crate::map::Map;
 use crate::place::Place;
 use crate::scene::Scene;
+use crate::trial::{Bars, NoTrial, Trial, trial};
 
 /// CPU cycles in a microsecond.
 const CYCLES_PER_US: f64 = 16.0;
@@ -28,6 +29,17 @@ pub struct Refused {
     pub line: Option<usize>,
     /// The key to blame, such as `links.l2`; may be empty.
     pub key: String,
+}
+
+impl Refused {
+    /// Of what is wrong with a robot.toml.
+    pub(crate) fn of(error: &lizard_robot::Error) -> Self {
+        Self {
+            refused: error.to_string(),
+            line: error.line,
+            key: error.key.clone(),
+        }
+    }
 }
 
 /// A frame of the robot on the floor.
@@ -219,6 +231,19 @@ impl Page {
         Some(Outlook::of(twin, gait))
     }
 
+    /// A gait as four bars, where it can be taken apart so.
+    pub fn bars(&self, gait: usize) -> Option<Bars> {
+        Bars::of(self.robot()?.gaits().get(gait)?)
+    }
+
+    /// Tries a gait on the page's robot, whose text this is; none without a robot.
+    ///
+    /// # Errors
+    /// What the gait would break, and what would not.
+    pub fn trial(&self, text: &str, bars: &Bars) -> Option<Result<Trial, NoTrial>> {
+        Some(trial(text, bars, self.twin.as_ref()?))
+    }
+
     /// The map of singularities of the head (0) or the tail (1).
     pub fn map(&self, end: usize) -> Option<Map> {
         Some(Map::of(self.robot()?, *End::ALL.get(end)?))
@@ -266,11 +291,7 @@ fn unwritten(error: NoSuchLength) -> Refused {
 }
 
 fn refused(error: &lizard_robot::Error) -> Refused {
-    Refused {
-        refused: error.to_string(),
-        line: error.line,
-        key: error.key.clone(),
-    }
+    Refused::of(error)
 }
 
 #[cfg(test)]

@@ -1,0 +1,22 @@
+// The other end of Trials: the robot in WebAssembly once more, which tries gaits.
+import { Robot } from '../robot';
+import type { Answer, Question } from './trials';
+
+let robot: Promise<Robot>;
+/** The robot.toml that was read last. */
+let known = '';
+
+addEventListener('message', ({ data }: MessageEvent<WebAssembly.Module | Question>) => {
+  if (data instanceof WebAssembly.Module) robot = Robot.load(data);
+  else void answer(data);
+});
+
+async function answer({ toml, floor, servos, bars }: Question): Promise<void> {
+  const page = await robot;
+  if (toml !== known) page.read(toml);
+  known = toml;
+  page.setFloor(floor);
+  page.setServos(servos);
+  const said: Answer = { bars, trial: page.trial(toml, bars) };
+  postMessage(said);
+}

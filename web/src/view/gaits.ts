@@ -1,0 +1,267 @@
+// The panel in which gaits are made: each leg is a bar on a circle, which is the cycle.
+import { Trials } from '../gaits/trials';
+import { tryGait } from '../gaits/try';
+import { type Bars, type Description, type Four, isRefused, type NoTrial, type Trial } from '../robot';
+import type { Session } from '../session';
+import { element } from './canvas';
+
+const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
+/** The leg across. */
+const OPPOSITE = [1, 0, 3, 2] as const;
+/** Radii of the four rings, and width of a bar, in the picture's units. */
+const RINGS = [104, 82, 60, 38] as const;
+const WIDE = 16;
+/** What a held leg's bar is long, a share of the cycle. */
+const HELD = 0.25;
+const SVG = 'http://www.w3.org/2000/svg';
+
+type Plain = 'period' | 'duty' | 'amplitude';
+
+/** Ranges of the numbers as robot.toml has them. */
+const NUMBERS: Record<Plain, { min: number; max: number; step: number }> = {
+  period: { min: 0.1, max: 10, step: 0.01 },
+  duty: { min: 0.05, max: 0.95, step: 0.005 },
+  amplitude: { min: 0.5, max: 60, step: 0.1 },
+};
+
+const round = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
+const wrapped = (phase: number) => ((phase % 1) + 1) % 1;
+
+export class GaitsView {
+  private readonly panel = element<HTMLDetailsElement>('gait-editor');
+  private readonly from = element<HTMLSelectElement>('gait-from');
+  private readonly name = element<HTMLInputElement>('gait-name');
+  private readonly held = element<HTMLSelectElement>('gait-kind');
+  private readonly circle = element<HTMLElement>('gait-circle') as unknown as SVGSVGElement;
+  private readonly start: HTMLInputElement[] = [];
+  private readonly gain: HTMLInputElement[] = [];
+  private readonly bars: SVGPathElement[] = [];
+  private readonly ends: SVGCircleElement[] = [];
+  private trials: Trials | null = null;
+  private gait: Bars | null = null;
+  private trial: Trial | null = null;
+  private toml = '';
+
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly session: () => Session,
+    private readonly ask: (line: string) => Promise<unknown>,
+  ) {
+    this.panel.addEventListener('toggle', () => this.take());
+    this.from.addEventListener('change', () => this.choose());
+    this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
+    this.held.addEventListener('change', () => this.change({ held: this.held.value === 'held' }));
+    for (const plain of Object.keys(NUMBERS) as Plain[]) {
+      const input = element<HTMLInputElement>(`gait-${plain}`);
+      Object.assign(input, Object.fromEntries(Object.entries(NUMBERS[plain]).map(([name, value]) => [name, String(value)])));
+      input.addEventListener('input', () => Number.isFinite(input.valueAsNumber) && this.change({ [plain]: input.valueAsNumber }));
+    }
+    LEGS.forEach((_, leg) => this.leg(leg));
+    element('gait-mirror').addEventListener('click', () => this.mirror());
+    element('gait-try').addEventListener('click', () => void this.tryIt());
+    element('gait-copy').addEventListener('click', () => void this.copy());
+  }
+
+  /** Takes the session's robot, if the panel is open; a gait that is being made stays. */
+  take(): void {
+    if (!this.panel.open) return;
+    const { description, toml } = this.session();
+    if (toml === this.toml) return;
+    this.toml = toml;
+    this.fill(description);
+    if (this.gait && this.from.value !== '') this.predict();
+    else this.choose();
+  }
+
+  private fill({ gaits }: Description): void {
+    const chosen = this.from.value;
+    const { robot } = this.session();
+    const some = gaits.flatMap(({ name }, number) => (robot.bars(number) ? [{ name, number }] : []));
+    this.from.replaceChildren(
+      ...some.map(({ name, number }) => {
+        const option = document.createElement('option');
+        option.value = String(number);
+        option.textContent = name;
+        return option;
+      }),
+    );
+    if (some.some(({ number }) => String(number) === chosen)) this.from.value = chosen;
+  }
+
+  /** Begins with a gait of the robot. */
+  private choose(): void {
+    const bars = this.from.value === '' ? null : this.session().robot.bars(Number(this.from.value));
+    if (!bars) return this.say('This robot has no gait of four bars to begin with.');
+    this.gait = { ...bars, name: this.name.value || 'mine' };
+    this.show();
+    this.predict();
+  }
+
+  private change(part: Partial<Bars>): void {
+    if (!this.gait) return;
+    this.gait = { ...this.gait, ...part };
+    this.show();
+    this.predict();
+  }
+
+  private setLeg(key: 'start' | 'gain', leg: number, value: number): void {
+    if (!this.gait) return;
+    const values = [...this.gait[key]] as Four<number>;
+    values[leg] = value;
+    this.change({ [key]: values });
+  }
+
+  private mirror(): void {
+    if (!this.gait) return;
+    const { start, gain } = this.gait;
+    const other = (values: Four<number>) => OPPOSITE.map((leg) => values[leg]) as Four<number>;
+    this.change({ start: other(start), gain: other(gain) });
+  }
+
+  /** The bar, its end and the two numbers of a leg. */
+  private leg(leg: number): void {
+    const bar = this.circle.appendChild(document.createElementNS(SVG, 'path'));
+    const end = this.circle.appendChild(document.createElementNS(SVG, 'circle'));
+    bar.classList.add('bar', `a${leg + 1}`);
+    end.classList.add('end', `a${leg + 1}`);
+    end.setAttribute('r', '6');
+    this.bars.push(bar);
+    this.ends.push(end);
+    this.drag(bar, (by, begun) => this.setLeg('start', leg, round(wrapped((begun.start[leg] ?? 0) + by), 0.005)));
+    this.drag(end, (by, begun) => this.change({ duty: round(Math.min(0.95, Math.max(0.05, begun.duty + by)), 0.005) }));
+    const row = element('gait-legs').appendChild(document.createElement('tr'));
+    const head = row.appendChild(document.createElement('th'));
+    head.scope = 'row';
+    head.textContent = LEGS[leg] ?? '';
+    for (const [key, label, list] of [['start', 'starts at', this.start], ['gain', 'share', this.gain]] as const) {
+      const input = row.appendChild(document.createElement('td')).appendChild(document.createElement('input'));
+      Object.assign(input, { type: 'number', step: key === 'start' ? '0.005' : '0.05', min: key === 'start' ? '0' : '-2', max: key === 'start' ? '1' : '2' });
+      input.setAttribute('aria-label', `${LEGS[leg]} ${label}`);
+      input.addEventListener('input', () => Number.isFinite(input.valueAsNumber) && this.setLeg(key, leg, input.valueAsNumber));
+      list.push(input);
+    }
+  }
+
+  /** Calls back with how far a pointer has gone round since it went down, in cycles. */
+  private drag(mark: SVGElement, move: (by: number, begun: Bars) => void): void {
+    let last = 0;
+    let by = 0;
+    let begun: Bars | null = null;
+    const phase = ({ clientX, clientY }: PointerEvent) => {
+      const { left, top, width, height } = this.circle.getBoundingClientRect();
+      return Math.atan2(clientX - left - width / 2, top + height / 2 - clientY) / (2 * Math.PI);
+    };
+    mark.addEventListener('pointerdown', (event) => {
+      mark.setPointerCapture(event.pointerId);
+      [last, by, begun] = [phase(event), 0, this.gait];
+    });
+    mark.addEventListener('pointermove', (event) => {
+      if (!begun || !mark.hasPointerCapture(event.pointerId)) return;
+      const now = phase(event);
+      // The short way round.
+      by += wrapped(now - last + 0.5) - 0.5;
+      last = now;
+      move(by, begun);
+    });
+    for (const end of ['pointerup', 'pointercancel']) mark.addEventListener(end, () => (begun = null));
+  }
+
+  private show(): void {
+    const { gait } = this;
+    if (!gait) return;
+    const put = (input: HTMLInputElement, value: number) => {
+      // What is being typed is not written over.
+      if (document.activeElement !== input) input.value = String(round(value, 0.001));
+    };
+    for (const plain of Object.keys(NUMBERS) as Plain[]) put(element<HTMLInputElement>(`gait-${plain}`), gait[plain]);
+    element<HTMLInputElement>('gait-duty').disabled = gait.held;
+    if (document.activeElement !== this.name) this.name.value = gait.name;
+    this.held.value = gait.held ? 'held' : 'wave';
+    const long = gait.held ? HELD : gait.duty;
+    LEGS.forEach((_, leg) => {
+      const [start, radius] = [gait.start[leg] ?? 0, RINGS[leg] ?? 0];
+      const [begin, end] = [this.start[leg], this.gain[leg]];
+      if (begin && end) {
+        put(begin, start);
+        put(end, gait.gain[leg] ?? 1);
+      }
+      this.bars[leg]?.setAttribute('d', arc(radius, start, long));
+      const [x, y] = at(radius, start + long);
+      this.ends[leg]?.setAttribute('cx', String(x));
+      this.ends[leg]?.setAttribute('cy', String(y));
+      const handle = this.ends[leg];
+      if (handle) handle.style.display = gait.held ? 'none' : '';
+    });
+  }
+
+  private predict(): void {
+    const { toml, floor, servos } = this.session();
+    if (!this.gait || toml === '') return;
+    this.trials ??= new Trials(this.module, ({ bars, trial }) => this.answered(bars, trial));
+    this.trials.ask({ toml, floor, servos, bars: this.gait });
+  }
+
+  private answered(bars: Bars, trial: Trial | NoTrial): void {
+    const refused = isRefused(trial) ? trial : null;
+    this.trial = refused ? null : (trial as Trial);
+    element<HTMLButtonElement>('gait-try').disabled = element<HTMLButtonElement>('gait-copy').disabled = refused !== null;
+    const put = (id: string, text: string) => (element(id).textContent = text);
+    const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
+    const { trial: well } = this;
+    put('gait-way', well ? number(well.forward, ' mm') : '–');
+    put('gait-speed', well?.forward != null ? number(well.forward / bars.period, ' mm/s') : '–');
+    put('gait-turn', well ? number(well.turn, '°') : '–');
+    put('gait-least', well ? `${well.least.toFixed(3)} of ${well.limit} (${well.margin.replaceAll('_', ' ')})` : '–');
+    put('gait-fastest', well ? `${well.servo}, ${well.speed.toFixed(0)} °/s` : '–');
+    put('gait-table', well?.table ?? '');
+    element('gait-no').hidden = refused === null;
+    put('gait-refusal', refused?.refused ?? '');
+    element('gait-instead').replaceChildren(
+      ...(refused?.instead ?? []).map(({ what, value }) => {
+        const button = document.createElement('button');
+        button.type = 'button';
+        button.textContent = what === 'amplitude' ? `Amplitude ${value}° would do` : `A cycle of ${value} s would do`;
+        button.addEventListener('click', () => this.change({ [what]: value }));
+        return button;
+      }),
+    );
+    this.say('');
+  }
+
+  private async tryIt(): Promise<void> {
+    const { gait } = this;
+    if (!gait) return;
+    this.say('The robot begins anew with this gait…');
+    const refused = await tryGait(this.session(), gait, this.ask);
+    this.say(refused?.refused ?? `It walks ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
+  }
+
+  private async copy(): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(this.trial?.table ?? '');
+      this.say('The table for robot.toml is copied.');
+    } catch {
+      this.say('The browser does not let the page copy; mark the table and copy it by hand.');
+    }
+  }
+
+  private say(text: string): void {
+    element('gait-said').textContent = text;
+  }
+}
+
+/** A point of a ring at a phase: 0 is at the top, and time runs clockwise. */
+function at(radius: number, phase: number): [number, number] {
+  const angle = 2 * Math.PI * phase;
+  return [radius * Math.sin(angle), -radius * Math.cos(angle)];
+}
+
+function arc(radius: number, start: number, long: number): string {
+  const half = WIDE / 2;
+  const [inner, outer] = [radius - half, radius + half];
+  const large = long > 0.5 ? 1 : 0;
+  const [a, b] = [at(outer, start), at(outer, start + long)];
+  const [c, d] = [at(inner, start + long), at(inner, start)];
+  const turn = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${large} ${sweep} ${x} ${y}`;
+  return `M ${a[0]} ${a[1]} ${turn(outer, 1, b)} L ${c[0]} ${c[1]} ${turn(inner, 0, d)} Z`;
+}

@@ -1,0 +1,107 @@
+// A gait is made by dragging bars: what is predicted comes true, and what would break a limit is refused with what would do.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { advance, close, complaints, open, standing, tidy } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+async function opened(options) {
+  const page = await standing(options);
+  await page.locator('#gait-editor summary').click();
+  await predicted(page);
+  return page;
+}
+
+const text = (page, id) => page.locator(`#gait-${id}`).innerText();
+/** Waits until what is shown has an answer. */
+const predicted = (page) => page.waitForFunction(() => /mm$|undecided/.test(document.querySelector('#gait-way').textContent));
+const changes = (page, id, before) => page.waitForFunction(([id, before]) => document.querySelector(`#gait-${id}`).textContent !== before, [id, before]);
+
+/** Drags from a point of the circle to another: ring 0 to 3 from outside, phases 0 to 1. */
+async function drag(page, ring, from, to) {
+  await page.locator('#gait-circle').scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await page.locator('#gait-circle').boundingBox();
+  const radius = ([104, 82, 60, 38][ring] * Math.min(width, height)) / 240;
+  const at = (phase) => [x + width / 2 + radius * Math.sin(2 * Math.PI * phase), y + height / 2 - radius * Math.cos(2 * Math.PI * phase)];
+  await page.mouse.move(...at(from));
+  await page.mouse.down();
+  for (let step = 1; step <= 10; step++) await page.mouse.move(...at(from + ((to - from) * step) / 10));
+  await page.mouse.up();
+}
+
+test('a gait to begin with is predicted as its button of Drive is', async () => {
+  const page = await opened();
+  const button = page.locator('#gaits button[data-command="walk"] small');
+  await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
+  assert.equal(await text(page, 'way'), await button.innerText());
+  assert.match(await text(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
+});
+
+test('a bar and its end are dragged, and the numbers follow', async () => {
+  const page = await opened();
+  const before = await text(page, 'way');
+  // walk has LF from 0.25 to 0.25 + 0.75.
+  await drag(page, 0, 0.5, 0.6);
+  assert.ok(Math.abs(Number(await page.getByLabel('LF starts at').inputValue()) - 0.35) < 0.011);
+  await changes(page, 'way', before);
+  await drag(page, 1, 0.5, 0.42);
+  assert.ok(Math.abs(Number(await page.locator('#gait-duty').inputValue()) - 0.67) < 0.011);
+  // By the numbers alone the same is done.
+  await page.getByLabel('LF starts at').fill('0.25');
+  await page.locator('#gait-duty').fill('0.75');
+  await page.waitForFunction((way) => document.querySelector('#gait-way').textContent === way, before);
+});
+
+test('what would break a limit is refused, and a button has the nearest value that would do', async () => {
+  const page = await opened();
+  await page.locator('#gait-amplitude').fill('40');
+  const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
+  await button.waitFor();
+  assert.match(await text(page, 'refusal'), /margin leg_lf [0-9.]+ is below 0\.300/);
+  assert.ok(await page.locator('#gait-try').isDisabled());
+  const value = Number(/Amplitude ([0-9.]+)°/.exec(await button.innerText())[1]);
+  await button.click();
+  await predicted(page);
+  assert.equal(Number(await page.locator('#gait-amplitude').inputValue()), value);
+  assert.ok(await page.locator('#gait-no').isHidden());
+  // It is the nearest: a tenth of a degree more is refused again.
+  await page.locator('#gait-amplitude').fill(String(value + 0.1));
+  await button.waitFor();
+});
+
+test('a gait that is tried walks as far as was predicted, and stands in robot.toml', async () => {
+  const page = await opened();
+  const before = await text(page, 'way');
+  await page.locator('#gait-name').fill('stride');
+  await page.locator('#gait-amplitude').fill('16');
+  await changes(page, 'way', before);
+  const way = Number(/^([0-9.]+) mm$/.exec(await text(page, 'way'))[1]);
+  await page.locator('#gait-try').click();
+  await page.waitForFunction(() => window.lizard.link.name === 'core in the page');
+  await advance(page, 3000);
+  await page.waitForFunction(() => window.lizard.gait === 'stride');
+  await advance(page, 5000);
+  const went = await page.evaluate(() => window.lizard.measured().forward);
+  assert.ok(Math.abs(went - way) < 0.03 * way, `${went} mm of ${way}`);
+  const toml = await page.evaluate(() => window.lizard.toml);
+  assert.ok(toml.includes(await text(page, 'table')), toml.slice(-400));
+  // The robot of before is one click away.
+  await page.locator('.lengths summary').click();
+  await page.getByRole('button', { name: 'Lengths of the file' }).click();
+  await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
+});
+
+test('left and right are exchanged', async () => {
+  const page = await opened();
+  await page.locator('#gait-from').selectOption({ label: 'arc-left' });
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) > 1);
+  const turn = Number.parseFloat(await text(page, 'turn'));
+  await page.getByRole('button', { name: 'Exchange left and right' }).click();
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) < -1);
+  assert.ok(Math.abs(turn + Number.parseFloat(await text(page, 'turn'))) < 0.2);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
