@@ -24,6 +24,7 @@ import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
 import { PartsView } from './view/parts';
+import { RobotText } from './view/robot-text';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
 import { Setup } from './view/setup';
@@ -91,6 +92,7 @@ async function start(): Promise<void> {
   const health = new Health(now);
   const lengths = new Lengths(now);
   const parts = new PartsView(now);
+  const text = new RobotText(now);
   const gaits = new GaitsView(module, now, (line) => drive.ask(line));
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
@@ -122,6 +124,7 @@ async function start(): Promise<void> {
       world.take();
       parts.take();
       gaits.take();
+      text.take();
       keep.take(description);
       predict();
     },
@@ -248,6 +251,7 @@ async function start(): Promise<void> {
     const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
     troubles.say('robot', said, remedy);
   }
+  await text.fromAddress();
   window.lizard = session;
   // After what the first step needs has come.
   void keepOffline((take) => {

@@ -1,0 +1,38 @@
+// A robot as an address: the text of its robot.toml, compressed, behind the page's own address, where no server sees it.
+
+const KEY = '#robot=';
+/** A robot.toml is some kilobytes; what is far longer is none. */
+const LONGEST = 200_000;
+
+async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
+  const piped = new Blob([bytes]).stream().pipeThrough(stream);
+  const reader = piped.getReader();
+  const pieces: BlobPart[] = [];
+  let length = 0;
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    length += part.value.length;
+    if (length > LONGEST) throw new Error('the robot in this address is longer than any');
+    pieces.push(part.value);
+  }
+  return new Uint8Array(await new Blob(pieces).arrayBuffer());
+}
+
+/** The address of a robot. */
+export async function linkTo(toml: string): Promise<string> {
+  const packed = await through(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
+  const letters = btoa(String.fromCharCode(...packed));
+  // As base64url, which an address takes as it is.
+  return `${location.href.split('#')[0]}${KEY}${letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
+}
+
+/** The robot.toml that an address has behind its #; null where it has none. Throws a sentence. */
+export async function linked(hash: string): Promise<string | null> {
+  if (!hash.startsWith(KEY)) return null;
+  try {
+    const letters = atob(hash.slice(KEY.length).replaceAll('-', '+').replaceAll('_', '/'));
+    const packed = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+    return new TextDecoder('utf-8', { fatal: true }).decode(await through(packed, new DecompressionStream('deflate-raw')));
+  } catch {
+    throw new Error('The address has no whole robot behind its #; was it copied to its end?');
+  }
+}

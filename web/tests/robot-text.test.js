@@ -1,0 +1,114 @@
+// The robot as text: what is wrong is said with its line, and a file, a drop and a link are the same robot.
+import assert from 'node:assert/strict';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+
+import { address, close, complaints, open, page as load, standing, tidy } from './browser.js';
+
+const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
+let folder;
+
+before(open);
+before(async () => (folder = await mkdtemp(join(tmpdir(), 'robot-'))));
+afterEach(tidy);
+after(async () => {
+  await rm(folder, { recursive: true, force: true });
+  await close();
+});
+
+const box = (page) => page.locator('#robot-text');
+const toml = (page) => page.evaluate(() => window.lizard.toml);
+const takes = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
+
+async function opened(options) {
+  const page = await standing(options);
+  await page.locator('#robot-editor summary').click();
+  return page;
+}
+
+test('a text that is wrong is refused with its line, and the robot of before stays', async () => {
+  const page = await opened();
+  const before = await toml(page);
+  assert.equal(await box(page).inputValue(), before);
+  const wrong = before.replace('l1 = 30.0', 'l1 = "long"');
+  const line = wrong.split('\n').findIndex((text) => text.startsWith('l1 = ')) + 1;
+  await box(page).fill(wrong);
+  await page.locator('#robot-take').click();
+  await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
+  assert.match(await page.locator('#robot-refusal').innerText(), new RegExp(`^robot\\.toml:${line}: links\\.l1`));
+  const marked = () => box(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
+  assert.match(await marked(), /^l1 = "long"/);
+  assert.equal(await toml(page), before);
+  assert.equal(await box(page).inputValue(), wrong, 'nothing that was typed is lost');
+});
+
+test('a text that is right becomes the robot, and is undone step by step', async () => {
+  const page = await opened();
+  const first = await toml(page);
+  const second = first.replace('amplitude = 15.0', 'amplitude = 14.0');
+  const third = second.replace('period = 1.25', 'period = 1.5');
+  for (const text of [second, third]) {
+    await box(page).fill(text);
+    await box(page).press('Control+Enter');
+    await takes(page, text);
+  }
+  assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
+  for (const text of [second, first]) {
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await takes(page, text);
+  }
+  assert.ok(await page.getByRole('button', { name: 'Undo' }).isDisabled());
+});
+
+test('a file is opened, or dropped anywhere on the page', async () => {
+  const page = await opened();
+  const large = await readFile(LARGE, 'utf8');
+  await page.locator('#robot-open').setInputFiles(LARGE);
+  await takes(page, large);
+  const other = large.replace(/^/, '# dropped\n');
+  await page.evaluate((text) => {
+    const dropped = new DataTransfer();
+    dropped.items.add(new File([text], 'robot.toml'));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: dropped, bubbles: true, cancelable: true }));
+  }, other);
+  await takes(page, other);
+  const picture = join(folder, 'x.toml');
+  await writeFile(picture, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
+  await page.locator('#robot-open').setInputFiles(picture);
+  await page.getByText('x.toml is no robot.toml.').waitFor();
+  assert.equal(await toml(page), other);
+});
+
+test('a link is a robot, also over a reload', async () => {
+  const page = await opened();
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  const large = await readFile(LARGE, 'utf8');
+  await page.locator('#robot-open').setInputFiles(LARGE);
+  await takes(page, large);
+  await page.getByRole('button', { name: 'Copy a link' }).click();
+  await page.getByText('The link is copied').waitFor();
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 8000, `${link.length} letters`);
+  const other = await load();
+  assert.notEqual(await toml(other), large);
+  await other.goto(link);
+  await takes(other, large);
+  await other.reload();
+  await takes(other, large);
+  // Half of a link is no robot, and says so.
+  await other.goto(link.slice(0, -200));
+  await other.getByText('The address has no whole robot behind its #').waitFor();
+});
+
+test('a hostile file runs no script', async () => {
+  const page = await opened();
+  const hostile = `${await toml(page)}\n[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n`;
+  await box(page).fill(hostile);
+  await page.locator('#robot-take').click();
+  await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostile);
+  assert.equal(await page.locator('img').count(), 0);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
