@@ -21,9 +21,9 @@ const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest wait for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
-/// Frames without motion after which the robot stands still: a motion that has just
-/// begun is seen within these.
-const STILL: u64 = 4;
+/// Frames without motion after which the robot stands still. The gait `stand` brakes for
+/// seven before another motion begins, and that one begins slowly.
+const STILL: u64 = 12;
 /// Between two looks at the robot.
 const LOOK: Duration = Duration::from_millis(25);
 

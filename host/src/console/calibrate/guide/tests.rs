@@ -1,6 +1,7 @@
 use super::*;
 use crate::console::calibration::Direction;
-use crate::console::double::robot;
+use crate::console::double::{PAPER, robot};
+use lizard_core::virtual_board::Running;
 
 fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     let mut done = false;
@@ -136,6 +137,36 @@ fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
         status.contains("pose=148.59,41.41,318.59,221.41"),
         "{status}"
     );
+}
+
+#[test]
+fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
+    // The slowest that a robot may be, and the smallest turn of a key.
+    let slow = PAPER.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
+    assert_ne!(slow, PAPER);
+    for (text, way) in [
+        (PAPER, 10.0),
+        (PAPER, 0.1),
+        (slow.as_str(), 10.0),
+        (slow.as_str(), 0.1),
+    ] {
+        let robot = lizard_robot::Robot::parse(text).expect("it is right");
+        let mut running = Running::power_on(robot.firmware().clone());
+        running.run(200);
+        let before = running.status("pose");
+        let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
+        let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + way);
+        assert!(running.say(&line).starts_with("ok pose"), "{line}");
+        let unseen = (0..100).take_while(|_| {
+            running.run(1);
+            running.status("pose") == before
+        });
+        let unseen = unseen.count() as u64;
+        assert!(
+            unseen + 2 < STILL,
+            "{way} deg: {unseen} frames show nothing"
+        );
+    }
 }
 
 #[test]
