@@ -1,12 +1,13 @@
-//! Turns robot.toml, or the file that LIZARD_ROBOT names, into the numbers that
-//! the firmware carries. A value or a
-//! gait that will not do ends the build with the sentence that says why; what
-//! the check of the gaits found is left in `gaits.txt` beside the firmware.
+//! Turns robot.toml, or the file that LIZARD_ROBOT names, into the section of flash
+//! that says to the firmware what robot it is in. A value or a gait that will not do
+//! ends the build with the sentence that says why; what the check of the gaits found is
+//! left in `gaits.txt` beside the firmware.
 
 use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::{env, fs};
 
+use lizard_core::section::START;
 use lizard_robot::{Report, Robot};
 
 fn main() {
@@ -21,15 +22,19 @@ fn main() {
     // Cargo sets OUT_DIR for every build script.
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out = PathBuf::from(out);
-    write(&out.join("robot.rs"), &robot.firmware().source());
+    write(&out.join("robot.bin"), &robot.section());
+    // Where the section is in flash, as lizard_core::section::START has it.
+    println!("cargo::rustc-link-arg-bins=-Wl,--section-start=.robot={START:#x}");
+    // No instruction names it, so it would be left out.
+    println!("cargo::rustc-link-arg-bins=-Wl,--undefined=ROBOT");
     // OUT_DIR is build/<package>/out in the folder that the firmware goes to.
     if let Some(beside) = out.ancestors().nth(3) {
-        write(&beside.join("gaits.txt"), &Report::of(&robot).to_string());
+        write(&beside.join("gaits.txt"), Report::of(&robot).to_string().as_bytes());
     }
 }
 
-fn write(path: &Path, text: &str) {
-    if let Err(error) = fs::write(path, text) {
+fn write(path: &Path, bytes: &[u8]) {
+    if let Err(error) = fs::write(path, bytes) {
         stop(&format!("{}: {error}", path.display()));
     }
 }

@@ -4,6 +4,7 @@
 #![no_main]
 #![feature(abi_avr_interrupt, asm_experimental_arch)]
 
+use lizard_avr::Region;
 use lizard_core::step::{Main, Step};
 use panic_halt as _;
 
@@ -15,7 +16,7 @@ use board::{Uno, sleep};
 /// All that main knows. At a fixed address, which the compiler then puts into the
 /// instructions: on the stack, every access would have to work out its own, and the
 /// program would be a tenth larger.
-static mut MAIN: Main<robot::Lizard> = Main::new(robot::Lizard);
+static mut MAIN: Main = Main::new();
 
 #[avr_device::entry]
 fn main() -> ! {
@@ -23,7 +24,7 @@ fn main() -> ! {
     let place = &raw mut MAIN;
     // SAFETY: this function is entered once, and nobody else names `MAIN`.
     let main = unsafe { &mut *place };
-    main.begin(&mut uno);
+    main.begin(Region::EMPTY, &mut uno);
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {
             sleep::until_tick_or_byte(ticks);

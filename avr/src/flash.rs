@@ -14,10 +14,11 @@
 use core::marker::PhantomData;
 #[cfg(target_arch = "avr")]
 use core::mem::{MaybeUninit, transmute_copy};
+use core::ptr::NonNull;
 
 /// Where a constant lies in flash; on any other machine, an ordinary reference.
 pub struct Flash<'a, T: ?Sized> {
-    at: *const T,
+    at: NonNull<T>,
     lifetime: PhantomData<&'a T>,
 }
 
@@ -39,12 +40,14 @@ impl<T: ?Sized> Flash<'_, T> {
     /// Made by [`flash!`](crate::flash!) alone.
     ///
     /// # Safety
-    /// A value of `T` must be at `at` for the lifetime, aligned and never written: in
-    /// the flash of an AVR, and in ordinary memory elsewhere.
+    /// A value of `T` must be at `at` for the lifetime and never written, aligned or not:
+    /// in the flash of an AVR, and in ordinary memory elsewhere.
     #[doc(hidden)]
     pub const unsafe fn new(at: *const T) -> Self {
         Self {
-            at,
+            // SAFETY: there is a value at `at`, and none is at address 0: in flash that
+            // is where the interrupt vectors are.
+            at: unsafe { NonNull::new_unchecked(at.cast_mut()) },
             lifetime: PhantomData,
         }
     }
@@ -66,7 +69,7 @@ impl<T: Copy> Flash<'_, T> {
     #[inline]
     pub fn load(self) -> T {
         // SAFETY: `new` vouches for a value at `self.at`, and it is `Copy`.
-        unsafe { self.at.read() }
+        unsafe { self.at.as_ptr().read_unaligned() }
     }
 
     /// Fetches the constant.
@@ -77,17 +80,21 @@ impl<T: Copy> Flash<'_, T> {
         if size_of::<T>() == 1 {
             // SAFETY: `new` vouches for the byte at `self.at`; any copy of a
             // `Copy` value of that size is such a value.
-            return unsafe { transmute_copy(&fetch_byte(self.at.cast())) };
+            return unsafe { transmute_copy(&fetch_byte(self.at.as_ptr().cast())) };
         }
         if size_of::<T>() == 2 {
             // SAFETY: as above, with two bytes.
-            return unsafe { transmute_copy(&fetch_word(self.at.cast())) };
+            return unsafe { transmute_copy(&fetch_word(self.at.as_ptr().cast())) };
         }
         let mut copy = MaybeUninit::<T>::uninit();
         // SAFETY: `new` vouches for `size_of::<T>()` readable bytes, `copy`
         // has room for as many, and a bitwise copy of a `Copy` value is one.
         unsafe {
-            fetch(self.at.cast(), copy.as_mut_ptr().cast(), size_of::<T>());
+            fetch(
+                self.at.as_ptr().cast(),
+                copy.as_mut_ptr().cast(),
+                size_of::<T>(),
+            );
             copy.assume_init()
         }
     }
@@ -98,7 +105,7 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
     #[inline]
     pub const fn as_slice(self) -> Flash<'a, [T]> {
         // SAFETY: the same elements, of the same lifetime.
-        unsafe { Flash::new(self.at as *const [T]) }
+        unsafe { Flash::new(self.at.as_ptr() as *const [T]) }
     }
 
     /// The element at `index`, still in flash; past the end, the last one.
@@ -107,7 +114,7 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
         const { assert!(N > 0) };
         let index = if index < N { index } else { N - 1 };
         // SAFETY: `index` is below the length of the array at `self.at`.
-        unsafe { Flash::new(self.at.cast::<T>().add(index)) }
+        unsafe { Flash::new(self.at.as_ptr().cast::<T>().add(index)) }
     }
 }
 
@@ -134,7 +141,145 @@ impl<'a, T> Flash<'a, [T]> {
         let last = self.len() - 1;
         let index = if index < last { index } else { last };
         // SAFETY: `index` is below the length of the slice at `self.at`.
-        Some(unsafe { Flash::new(self.at.cast::<T>().add(index)) })
+        Some(unsafe { Flash::new(self.at.as_ptr().cast::<T>().add(index)) })
+    }
+}
+
+impl<'a, T> Flash<'a, [T]> {
+    /// Nothing.
+    pub const EMPTY: Self = Self {
+        at: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
+        lifetime: PhantomData,
+    };
+
+    /// `length` elements from `start` on, if there are so many.
+    #[inline]
+    pub const fn part(self, start: usize, length: usize) -> Option<Flash<'a, [T]>> {
+        if start > self.len() || length > self.len() - start {
+            return None;
+        }
+        // SAFETY: the elements are among those of the slice at `self.at`.
+        let first = unsafe { self.at.as_ptr().cast::<T>().add(start) };
+        let part = core::ptr::slice_from_raw_parts(first, length);
+        // SAFETY: as above, of the same lifetime.
+        Some(unsafe { Flash::new(part) })
+    }
+}
+
+impl<'a> Flash<'a, [u8]> {
+    /// The same bytes as values of a type of which any bytes are one; what is left over
+    /// at the end is not among them.
+    #[inline]
+    pub const fn of<T: Plain>(self) -> Flash<'a, [T]> {
+        let values = core::ptr::slice_from_raw_parts(
+            self.at.as_ptr().cast_const().cast::<T>(),
+            self.len() / const { nonzero(size_of::<T>()) },
+        );
+        // SAFETY: so many values fit in the bytes, any bytes are a value of a `Plain`
+        // type, and `new` does not ask for alignment.
+        unsafe { Flash::new(values) }
+    }
+
+    /// The value whose bytes begin at `at`; where it is not wholly there, one of zeros.
+    #[inline]
+    pub fn read<T: Plain>(self, at: usize) -> T {
+        match self.part(at, size_of::<T>()) {
+            Some(part) => {
+                // SAFETY: as many bytes as a value has, and any are one.
+                unsafe { Flash::new(part.at.as_ptr().cast_const().cast::<T>()) }.load()
+            }
+            // SAFETY: so are zeros.
+            None => unsafe { core::mem::zeroed() },
+        }
+    }
+}
+
+const fn nonzero(size: usize) -> usize {
+    assert!(size > 0);
+    size
+}
+
+/// A type of which any bytes are a value, low bytes first and without padding: the same
+/// in the flash of an AVR and in the memory of a host. See [`plain!`](crate::plain!).
+///
+/// # Safety
+/// Every pattern of `size_of::<Self>()` bytes is a value, and no byte is padding.
+pub unsafe trait Plain: Copy {
+    /// Its bytes.
+    #[inline]
+    fn bytes(&self) -> &[u8] {
+        // SAFETY: no byte of it is padding.
+        unsafe { core::slice::from_raw_parts((&raw const *self).cast(), size_of::<Self>()) }
+    }
+}
+// SAFETY: integers.
+unsafe impl Plain for u8 {}
+// SAFETY: as above.
+unsafe impl Plain for i8 {}
+// SAFETY: as above.
+unsafe impl Plain for u16 {}
+// SAFETY: as above.
+unsafe impl Plain for i16 {}
+// SAFETY: as above.
+unsafe impl Plain for u32 {}
+// SAFETY: as above.
+unsafe impl Plain for i32 {}
+// SAFETY: an array has no padding between its elements.
+unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
+
+// The AVR and all hosts in use have the low byte first.
+const _: () = assert!(cfg!(target_endian = "little"));
+
+/// Declares a type that can be read from flash: a struct whose fields are such types, in
+/// an order that leaves no padding, which is checked when it is compiled.
+///
+/// ```
+/// lizard_avr::plain! {
+///     /// A point.
+///     #[derive(Debug, PartialEq)]
+///     pub struct Point {
+///         /// To the right.
+///         pub x: i16,
+///         /// Ahead.
+///         pub y: i16,
+///     }
+/// }
+/// let bytes = [0, 1, 2, 0, 255];
+/// let flash = lizard_avr::Flash::from(&bytes[..]);
+/// assert_eq!(flash.read::<Point>(0), Point { x: 256, y: 2 });
+/// ```
+#[macro_export]
+macro_rules! plain {
+    (
+        $(#[$meta:meta])*
+        $vis:vis struct $name:ident {
+            $($(#[$field_meta:meta])* $field_vis:vis $field:ident: $type:ty),* $(,)?
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy)]
+        #[repr(C)]
+        $vis struct $name {
+            $($(#[$field_meta])* $field_vis $field: $type),*
+        }
+        $crate::plain!($name: $($type),*);
+    };
+    ($name:ty: $($type:ty),*) => {
+        // SAFETY: all fields are `Plain`, and there is nothing between them.
+        #[allow(unsafe_code)]
+        unsafe impl $crate::Plain for $name {}
+        const _: () = {
+            const fn plain<T: $crate::Plain>() -> usize {
+                size_of::<T>()
+            }
+            assert!(size_of::<$name>() == 0 $(+ plain::<$type>())*, "padding");
+        };
+    };
+}
+
+impl<T: ?Sized> core::fmt::Debug for Flash<'_, T> {
+    fn fmt(&self, f: &mut core::fmt::Formatter) -> core::fmt::Result {
+        f.write_str("in flash")
     }
 }
 

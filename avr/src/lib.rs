@@ -13,6 +13,8 @@
 
 mod flash;
 mod multiply;
+mod region;
 
-pub use flash::Flash;
+pub use flash::{Flash, Plain};
 pub use multiply::{mul, mul_unsigned};
+pub use region::{Region, SPACE, START};

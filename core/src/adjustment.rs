@@ -24,14 +24,16 @@ pub struct Adjustment {
     pub max: Sweep,
 }
 
-/// The sweeps that a robot's gaits need of a servo; the neutral angle, 0, is
-/// among them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reach {
-    /// The farthest clockwise.
-    pub min: Sweep,
-    /// The farthest counter-clockwise.
-    pub max: Sweep,
+lizard_avr::plain! {
+    /// The sweeps that a robot's gaits need of a servo; the neutral angle, 0, is
+    /// among them.
+    #[derive(Debug, Default, PartialEq, Eq)]
+    pub struct Reach {
+        /// The farthest clockwise.
+        pub min: Sweep,
+        /// The farthest counter-clockwise.
+        pub max: Sweep,
+    }
 }
 
 impl Reach {
@@ -154,7 +156,7 @@ mod tests {
 
         #[test]
         fn an_untouched_servo_is_that_of_robot_toml(robot in Sample::random()) {
-            for servo in &robot.calibration {
+            for servo in &robot.calibration() {
                 prop_assert_eq!(&Adjustment::of(servo).apply(servo), servo);
             }
         }
@@ -164,7 +166,7 @@ mod tests {
             robot in Sample::random(),
             set in adjusted(),
         ) {
-            for (factory, float) in robot.calibration.iter().zip(robot.measures.servos) {
+            for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
                 let servo = set.apply(factory);
                 for sweep in servo.min.0..=servo.max.0 {
                     let us = f64::from(servo.width(Sweep(sweep)).0) / 16.0;
@@ -180,7 +182,7 @@ mod tests {
             robot in Sample::random(),
             set in adjusted(),
         ) {
-            for factory in &robot.calibration {
+            for factory in &robot.calibration() {
                 let servo = set.apply(factory);
                 let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
                 let pulses = ends[0].min(ends[1])..=ends[0].max(ends[1]);
@@ -207,7 +209,7 @@ mod tests {
         ) {
             let mut set = set;
             set.set_scale(scale);
-            for (factory, float) in robot.calibration.iter().zip(robot.measures.servos) {
+            for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
                 let servo = set.apply(factory);
                 let turned = (f64::from(set.trim.0) + f64::from(sweep)) / STEPS_PER_DEGREE;
                 let sense = if set.is_direct() { 1.0 } else { -1.0 };

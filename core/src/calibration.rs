@@ -9,18 +9,20 @@ use lizard_avr::{mul, mul_unsigned};
 
 use crate::units::{Sweep, Width};
 
-/// One servo's pulses and travel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Calibration {
-    /// The pulse width at the neutral angle.
-    pub neutral: Width,
-    /// CPU cycles for each 1/65536 turn, Q14; negative for a servo whose
-    /// longer pulse turns it clockwise.
-    pub gain: i16,
-    /// The travel's clockwise end.
-    pub min: Sweep,
-    /// The travel's counter-clockwise end.
-    pub max: Sweep,
+lizard_avr::plain! {
+    /// One servo's pulses and travel.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Calibration {
+        /// The pulse width at the neutral angle.
+        pub neutral: Width,
+        /// CPU cycles for each 1/65536 turn, Q14; negative for a servo whose
+        /// longer pulse turns it clockwise.
+        pub gain: i16,
+        /// The travel's clockwise end.
+        pub min: Sweep,
+        /// The travel's counter-clockwise end.
+        pub max: Sweep,
+    }
 }
 
 impl Calibration {
@@ -73,7 +75,7 @@ mod tests {
 
         #[test]
         fn a_pulse_is_within_a_cycle_of_the_line_in_all_of_the_travel(robot in Sample::random()) {
-            for (servo, float) in robot.calibration.iter().zip(robot.measures.servos) {
+            for (servo, float) in robot.calibration().iter().zip(robot.measures.servos) {
                 for sweep in servo.min.0..=servo.max.0 {
                     let turned = f64::from(sweep) / STEPS_PER_DEGREE;
                     let us = float.neutral_us + float.us_per_degree * turned;
@@ -88,7 +90,7 @@ mod tests {
 
         #[test]
         fn a_servo_reaches_both_ends_of_its_travel_and_not_a_step_more(robot in Sample::random()) {
-            for servo in &robot.calibration {
+            for servo in &robot.calibration() {
                 for sweep in i16::MIN..=i16::MAX {
                     let within = (servo.min.0..=servo.max.0).contains(&sweep);
                     prop_assert_eq!(servo.reaches(Sweep(sweep)), within);

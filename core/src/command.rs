@@ -123,7 +123,7 @@ const fn form(word: Word) -> Option<usize> {
 /// # Errors
 /// What keeps the line from being a command.
 #[inline(never)]
-pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
+pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     let mut words = Words(line);
     let Some(word) = Word::find(words.next()) else {
         return Ok(Command::Order(Order::Gait(gait(line, robot)?)));
@@ -158,7 +158,7 @@ pub fn parse<R: Robot>(line: &[u8], robot: &R) -> Result<Command, Misread> {
 }
 
 /// What follows the word `boot`.
-fn boot<R: Robot>(rest: &[u8], robot: &R) -> Result<Boot, Misread> {
+fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
     if Word::find(rest) == Some(Word::Rest) {
         return Ok(Boot::Rest);
     }
@@ -247,10 +247,10 @@ impl<'a> Words<'a> {
 
 /// A gait's name, or what is wrong with it. Any blanks between words will do.
 #[inline(never)]
-fn gait<R: Robot>(line: &[u8], robot: &R) -> Result<GaitId, Misread> {
+fn gait(line: &[u8], robot: &Robot) -> Result<GaitId, Misread> {
     let line = line.trim_ascii_start();
     let mut misread = Misread::Unknown;
-    for id in GaitId::all(robot.gaits().len()) {
+    for id in GaitId::all(robot.gait_count()) {
         match compare(line, robot.name(id)) {
             Some(Misread::Unknown) => {}
             Some(other) => misread = other,

@@ -15,7 +15,6 @@ use crate::gait::GaitId;
 use crate::line::{Ended, Line};
 use crate::order::Taken;
 use crate::refusal::{self, Refusal};
-use crate::robot::Robot;
 use crate::safety::Notice;
 use crate::text::Text;
 
@@ -85,14 +84,14 @@ impl Console {
 
     /// True while a line waits to be written. No byte is to be passed on
     /// meanwhile: the answer may still need the line it answers.
-    pub const fn has_output<R: Robot>(&self, control: &Control<R>) -> bool {
+    pub const fn has_output(&self, control: &Control) -> bool {
         self.next_output(control).is_some()
     }
 
     /// Takes a byte from the serial line and executes the line that it ends.
     // Out of line, as the next: half a kilobyte of flash.
     #[inline(never)]
-    pub fn receive<R: Robot>(&mut self, byte: u8, control: &mut Control<R>) {
+    pub fn receive(&mut self, byte: u8, control: &mut Control) {
         control.byte_came();
         let Some(ended) = self.line.push(byte) else {
             return;
@@ -109,8 +108,16 @@ impl Console {
     /// Does what the line says. No answer yet where the memory has to do something
     /// first: then [`Console::done`] has to follow.
     #[inline(never)]
-    fn obey<R: Robot>(&mut self, control: &mut Control<R>) -> Result<Option<Answer>, Refusal> {
-        let command = command::parse(self.line.text(), control.motion().robot());
+    fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Refusal> {
+        let robot = control.motion().robot();
+        let command = command::parse(self.line.text(), robot);
+        let reads = matches!(
+            command,
+            Ok(Command::Help | Command::Status | Command::Watch(_))
+        );
+        if robot.is_none() && !reads {
+            return Err(Refusal::NoRobot);
+        }
         Ok(match command.map_err(Refusal::Misread)? {
             Command::Help => Some(Answer::Gaits(GaitId::STAND)),
             Command::Status => Some(Answer::Status),
@@ -142,21 +149,20 @@ impl Console {
     /// # Errors
     /// Those of `out`.
     #[inline(never)]
-    pub fn write_line<R, W>(
+    pub fn write_line<W>(
         &mut self,
-        control: &mut Control<R>,
+        control: &mut Control,
         out: &mut W,
         counters: Counters,
     ) -> Result<(), W::Error>
     where
-        R: Robot,
         W: uWrite + ?Sized,
     {
         match self.next_output(control) {
             None => return Ok(()),
             Some(Output::Banner) => {
                 self.banner = false;
-                print::banner(out, control.motion().robot().hash())?;
+                print::banner(out, control.motion().robot())?;
             }
             Some(Output::Answer(answer)) => {
                 self.answer = print::answer(out, answer, &self.line, control, counters)?;
@@ -186,7 +192,7 @@ impl Console {
     }
 
     /// What is to be written next: the one order of everything that may wait.
-    const fn next_output<R: Robot>(&self, control: &Control<R>) -> Option<Output> {
+    const fn next_output(&self, control: &Control) -> Option<Output> {
         if self.banner {
             Some(Output::Banner)
         } else if let Some(answer) = self.answer {

@@ -5,6 +5,8 @@
 //! watches what may go wrong, and does something for the memory in between. Nothing
 //! here knows of lines or answers.
 
+use lizard_avr::Region;
+
 use crate::fault::Fault;
 use crate::gait::GaitId;
 use crate::hazard::Hazard;
@@ -17,6 +19,7 @@ use crate::refusal::Refusal;
 use crate::restart::{Cause, Restart};
 use crate::robot::Robot;
 use crate::safety::{Health, Notice, Reaction, Safety};
+use crate::section::Damage;
 use crate::settings::{Boot, Settings};
 use crate::supervisor::{self, BROWN_OUTS, Before, Beginning, Event, Response, State};
 use crate::supply::Voltage;
@@ -31,9 +34,11 @@ const STEADY: u32 = 1500;
 
 /// The robot.
 #[derive(Clone, Debug)]
-pub struct Control<R> {
-    motion: Motion<R>,
+pub struct Control {
+    motion: Motion,
     settings: Settings,
+    /// Why there is no robot.
+    damage: Option<Damage>,
     /// What was found of them at power-on.
     found: Outcome,
     safety: Safety,
@@ -53,12 +58,19 @@ pub struct Control<R> {
     held: Option<Hazard>,
 }
 
-impl<R: Robot> Control<R> {
-    /// A robot of which nothing is known; [`Control::begin`] has to follow.
-    pub const fn new(robot: R) -> Self {
+impl Default for Control {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Control {
+    /// No robot yet; [`Control::begin`] has to follow.
+    pub const fn new() -> Self {
         Self {
             settings: Settings::NONE,
-            motion: Motion::unbegun(robot),
+            motion: Motion::unbegun(Robot::NONE),
+            damage: None,
             found: Outcome::Latest,
             safety: Safety::new(),
             cause: Cause::Power,
@@ -71,12 +83,18 @@ impl<R: Robot> Control<R> {
         }
     }
 
-    /// Takes over what the memory keeps: settings, and the pose of the last rest; and
-    /// what is known of the program before, if there was one.
+    /// Takes the robot at the beginning of `flash`, if it is whole; then takes over what
+    /// the memory keeps: settings, and the pose of the last rest; and what is known of the
+    /// program before, if there was one. Without a robot there are no pulses, ever.
     #[inline(never)]
-    pub fn begin<M: Memory>(&mut self, memory: &M, restart: &Restart) {
+    pub fn begin<M: Memory>(&mut self, flash: Region<'static>, memory: &M, restart: &Restart) {
         self.cause = restart.cause;
         self.restarts = restart.count;
+        if let Err(damage) = self.motion.take_robot(flash) {
+            self.damage = Some(damage);
+            self.safety.fail(Fault::Robot);
+            return;
+        }
         self.may_be_supply = restart.may_be_supply;
         self.found = record::load(self.motion.robot(), memory, &mut self.settings);
         if self.found != Outcome::Latest {
@@ -121,13 +139,18 @@ impl<R: Robot> Control<R> {
     }
 
     /// The robot's motion.
-    pub const fn motion(&self) -> &Motion<R> {
+    pub const fn motion(&self) -> &Motion {
         &self.motion
     }
 
     /// What is set.
     pub const fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// Why there is no robot, where there is none.
+    pub const fn damage(&self) -> Option<Damage> {
+        self.damage
     }
 
     /// What was found of the settings at power-on.
@@ -267,6 +290,9 @@ impl<R: Robot> Control<R> {
     /// Why it is refused; then nothing has changed.
     #[inline(never)]
     pub fn execute(&mut self, order: &Order) -> Result<Taken, Refusal> {
+        if self.motion.robot().is_none() {
+            return Err(Refusal::NoRobot);
+        }
         match order {
             Order::Gait(gait) => {
                 self.may(match *gait {

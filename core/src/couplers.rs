@@ -17,15 +17,17 @@
 //! without. The rise is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over
 //! `s` is read from there on, where it falls, and stays at the largest rise below.
 
+use core::mem::offset_of;
+
 use lizard_avr::Flash;
 
 use crate::curve::{Curve, ENTRIES, OCTAVES, Table, argument};
 
 /// The tables of a pair of couplers. Q10.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Tables<'a> {
     /// The rise over `s`, made by [`rise`].
-    pub rise: Flash<'a, Table>,
+    pub rise: Option<Flash<'a, Table>>,
     /// The rise over `R - s`, made by [`stretched`]; for a loop whose crank tips
     /// part so far that [`Couplers::is_near_stretched`].
     pub stretched: Option<Flash<'a, Table>>,
@@ -36,52 +38,60 @@ pub struct Tables<'a> {
     pub skew: Option<Flash<'a, Table>>,
 }
 
-/// Two couplers of one loop.
-#[derive(Clone, Copy)]
-pub struct Couplers<'a> {
-    left: i16,
-    right: i16,
-    rise: Curve<'a>,
-    stretched: Option<Curve<'a>>,
-    folded: Option<Curve<'a>>,
-    skew: Option<Curve<'a>>,
+impl Tables<'_> {
+    /// None at all: nothing is known of such couplers.
+    pub const NONE: Self = Self {
+        rise: None,
+        stretched: None,
+        folded: None,
+        skew: None,
+    };
 }
 
-/// How the couplers lean at one distance of the crank tips, Q10.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lean {
-    /// Twice the height of the end point over the distance of the crank tips.
-    pub rise: i16,
-    /// Twice the foot of that height over the distance, less one.
-    pub skew: i16,
+lizard_avr::plain! {
+    /// The lengths of two couplers of one loop, in its steps, and what follows from them.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Coupling {
+        left: i16,
+        right: i16,
+        /// `R` in steps of `s`, a quarter of the bars' squared ones.
+        reach_sq: u32,
+        /// `N`, likewise.
+        least_sq: u32,
+        /// Leading zeros of both.
+        reach_zeros: u16,
+        least_zeros: u16,
+    }
 }
 
-impl<'a> Couplers<'a> {
-    /// Couplers of these lengths, in the steps of their loop, with the tables that
-    /// belong to them.
-    ///
-    /// # Panics
-    /// In the compiler, where unequal couplers lack a table.
-    pub const fn new(left: i16, right: i16, tables: Tables<'a>) -> Self {
-        let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
-        assert!(left == right || tables.skew.is_some());
-        assert!(!Self::differ_much(left, right) || tables.folded.is_some());
+impl Coupling {
+    /// Where the fields are, bytes from the beginning.
+    pub(crate) const LEFT: usize = offset_of!(Self, left);
+    pub(crate) const RIGHT: usize = offset_of!(Self, right);
+    pub(crate) const REACH_SQ: usize = offset_of!(Self, reach_sq);
+    pub(crate) const LEAST_SQ: usize = offset_of!(Self, least_sq);
+    pub(crate) const REACH_ZEROS: usize = offset_of!(Self, reach_zeros);
+    pub(crate) const LEAST_ZEROS: usize = offset_of!(Self, least_zeros);
+
+    /// None: they never meet.
+    pub const NONE: Self = Self {
+        left: 0,
+        right: 0,
+        reach_sq: 0,
+        least_sq: 0,
+        reach_zeros: 32,
+        least_zeros: 32,
+    };
+
+    /// Couplers of these lengths.
+    pub const fn new(left: i16, right: i16) -> Self {
         Self {
             left,
             right,
-            rise: Curve::new(tables.rise, reach_sq),
-            stretched: match tables.stretched {
-                Some(table) => Some(Curve::new(table, reach_sq / 4)),
-                None => None,
-            },
-            folded: match tables.folded {
-                Some(table) => Some(Curve::new(table, least_sq)),
-                None => None,
-            },
-            skew: match tables.skew {
-                Some(table) => Some(Curve::new(table, reach_sq)),
-                None => None,
-            },
+            reach_sq: reach_sq(left, right),
+            least_sq: least_sq(left, right),
+            reach_zeros: reach_sq(left, right).leading_zeros() as u16,
+            least_zeros: least_sq(left, right).leading_zeros() as u16,
         }
     }
 
@@ -95,18 +105,46 @@ impl<'a> Couplers<'a> {
         self.right
     }
 
+    /// See [`Couplers::differ_much`].
+    pub const fn differs_much(&self) -> bool {
+        2 * self.least_sq > self.reach_sq >> OCTAVES
+    }
+}
+
+/// Two couplers of one loop, and the tables that belong to them.
+#[derive(Clone, Copy)]
+pub struct Couplers<'a> {
+    lengths: Coupling,
+    tables: Tables<'a>,
+}
+
+/// How the couplers lean at one distance of the crank tips, Q10.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lean {
+    /// Twice the height of the end point over the distance of the crank tips.
+    pub rise: i16,
+    /// Twice the foot of that height over the distance, less one.
+    pub skew: i16,
+}
+
+impl<'a> Couplers<'a> {
+    /// Couplers of these lengths, in the steps of their loop, with the tables that
+    /// belong to them; of what a table that is not there would tell, nothing is known.
+    pub const fn new(lengths: Coupling, tables: Tables<'a>) -> Self {
+        Self { lengths, tables }
+    }
+
     /// True for couplers whose difference alone keeps the crank tips so far apart
     /// that the margins are known next to it: there the rise is read from the table
     /// of folded couplers. Of others, [`Couplers::at`] knows nothing so near.
     pub const fn differ_much(left: i16, right: i16) -> bool {
-        2 * least_sq(left, right) > reach_sq(left, right) >> OCTAVES
+        Coupling::new(left, right).differs_much()
     }
 
     /// True where the squared distance of the crank tips is beyond three quarters
     /// of `R`: there the rise is read from the table of stretched couplers.
     pub const fn is_near_stretched(left: i16, right: i16, tips_sq: u32) -> bool {
-        let reach_sq = reach_sq(left, right);
-        tips_sq > reach_sq - reach_sq / 4
+        is_near_stretched(reach_sq(left, right), tips_sq)
     }
 
     /// The lean at a squared distance of the crank tips in steps of 1/4 of the
@@ -115,30 +153,41 @@ impl<'a> Couplers<'a> {
     /// a tenth, the least limit that a robot may have.
     #[inline(always)]
     pub fn at(&self, tips_sq: u32) -> Option<Lean> {
-        let (left, right) = (self.left, self.right);
-        let reach_sq = reach_sq(left, right);
+        let Self { lengths, tables } = self;
+        let (reach_sq, least_sq) = (lengths.reach_sq, lengths.least_sq);
         if tips_sq >= reach_sq {
             return None;
         }
-        let rise = match (self.stretched, self.folded) {
-            (Some(stretched), _) if Self::is_near_stretched(left, right, tips_sq) => {
-                stretched.at(reach_sq - tips_sq)?
+        let rise = match (tables.stretched, tables.folded) {
+            (Some(stretched), _) if is_near_stretched(reach_sq, tips_sq) => {
+                Curve::of_octave(stretched, lengths.reach_zeros + 2).at(reach_sq - tips_sq)?
             }
-            (_, Some(folded)) if tips_sq < 2 * least_sq(left, right) => {
-                folded.at(tips_sq.checked_sub(least_sq(left, right))?)?
+            (_, Some(folded)) if tips_sq < 2 * least_sq => {
+                Curve::of_octave(folded, lengths.least_zeros).at(tips_sq.checked_sub(least_sq)?)?
             }
-            _ => self.rise.falling(tips_sq)?,
+            _ => Curve::of_octave(tables.rise?, lengths.reach_zeros).falling(tips_sq)?,
         };
-        let skew = match self.skew {
-            Some(skew) if left < right => -skew.falling(tips_sq)?,
-            Some(skew) => skew.falling(tips_sq)?,
+        let skew = match tables.skew {
+            Some(skew) => {
+                let size = Curve::of_octave(skew, lengths.reach_zeros).falling(tips_sq)?;
+                if lengths.left < lengths.right {
+                    -size
+                } else {
+                    size
+                }
+            }
             None => 0,
         };
         Some(Lean { rise, skew })
     }
 }
 
-/// The rise over `s` for couplers of these lengths; made by the compiler.
+/// See [`Couplers::is_near_stretched`].
+const fn is_near_stretched(reach_sq: u32, tips_sq: u32) -> bool {
+    tips_sq > reach_sq - reach_sq / 4
+}
+
+/// The rise over `s` for couplers of these lengths; made by a host.
 pub const fn rise(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
     let mut table = [0; ENTRIES];
@@ -156,7 +205,7 @@ pub const fn rise(left: i16, right: i16) -> Table {
     table
 }
 
-/// The rise over `R - s`; made by the compiler.
+/// The rise over `R - s`; made by a host.
 pub const fn stretched(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
     let mut table = [0; ENTRIES];
@@ -171,7 +220,7 @@ pub const fn stretched(left: i16, right: i16) -> Table {
     table
 }
 
-/// The rise over `s - N`; made by the compiler.
+/// The rise over `s - N`; made by a host.
 pub const fn folded(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
     let mut table = [0; ENTRIES];
@@ -184,7 +233,7 @@ pub const fn folded(left: i16, right: i16) -> Table {
     table
 }
 
-/// The size of the skew over `s`; made by the compiler.
+/// The size of the skew over `s`; made by a host.
 pub const fn skew(left: i16, right: i16) -> Table {
     let reach_sq = reach_sq(left, right);
     // a^2 - b^2 in the steps of `s`, a quarter of the bars' squared ones.

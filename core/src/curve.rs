@@ -24,55 +24,56 @@ pub type Table = [i16; ENTRIES];
 #[derive(Clone, Copy)]
 pub struct Curve<'a> {
     table: Flash<'a, Table>,
-    largest: u32,
+    /// Leading zeros of an argument in the first octave.
+    lowest: u8,
 }
 
 impl<'a> Curve<'a> {
     /// The function in `table`, whose arguments go up to `largest`.
     pub const fn new(table: Flash<'a, Table>, largest: u32) -> Self {
-        Self { table, largest }
+        Self::of_octave(table, largest.leading_zeros() as u16)
     }
 
-    /// The value of a function that never rises; None below the table's first
-    /// octave, where the argument is less than 1/1024 of the largest.
-    #[inline(always)]
+    /// The same, for a largest argument with so many leading zeros.
+    pub const fn of_octave(table: Flash<'a, Table>, zeros: u16) -> Self {
+        Self {
+            table,
+            lowest: (zeros + OCTAVES as u16) as u8,
+        }
+    }
+
+    /// The value of a function that never rises, rounded up; None below the table's first
+    /// octave, where the argument is less than 1/1024 of the largest one's octave.
     pub fn falling(&self, argument: u32) -> Option<i16> {
-        let (here, next, part) = self.around(argument)?;
-        let fall = mul_unsigned(here.wrapping_sub(next) as u16, part) >> 16;
-        Some(here.wrapping_sub(fall as i16))
+        self.read(argument, 0)
     }
 
-    /// The value of any function, likewise.
-    #[inline(always)]
+    /// The value of any function, rounded to nearest, likewise.
     pub fn at(&self, argument: u32) -> Option<i16> {
-        let (here, next, part) = self.around(argument)?;
-        let change = (mul_unsigned(next.abs_diff(here), part) + 0x8000) >> 16;
+        self.read(argument, 0x8000)
+    }
+
+    /// The value; `round` is what is added before the lower half of a change is left out.
+    #[inline(never)]
+    fn read(&self, argument: u32, round: u16) -> Option<i16> {
+        let mut mantissa = argument;
+        let mut octave = self.lowest;
+        while mantissa < 1 << 31 {
+            mantissa <<= 1;
+            octave = octave.checked_sub(1)?;
+        }
+        // Bits below the leading one: four for the step, sixteen for the way in it.
+        let step = (mantissa >> 24) as u8 >> 3 & (STEPS as u8 - 1);
+        let part = ((mantissa << 5) >> 16) as u16;
+        let index = usize::from(octave) * STEPS + usize::from(step);
+        let here = self.table.at(index).load();
+        let next = self.table.at(index + 1).load();
+        let change = (mul_unsigned(next.abs_diff(here), part) + u32::from(round)) >> 16;
         Some(if next < here {
             here.wrapping_sub(change as i16)
         } else {
             here.wrapping_add(change as i16)
         })
-    }
-
-    /// The entries on either side of an argument, and how far it is on its way from
-    /// one to the other, 1/65536.
-    #[inline(always)]
-    fn around(&self, argument: u32) -> Option<(i16, i16, u16)> {
-        if argument < self.largest >> OCTAVES || argument == 0 {
-            return None;
-        }
-        let mut mantissa = argument;
-        let mut zeros = 0;
-        while mantissa < 1 << 31 {
-            mantissa <<= 1;
-            zeros += 1;
-        }
-        let octave = lowest(self.largest).wrapping_sub(zeros);
-        let step = (mantissa >> 27) as u8 & (STEPS as u8 - 1);
-        let index = usize::from(octave) * STEPS + usize::from(step);
-        let here = self.table.at(index).load();
-        let next = self.table.at(index + 1).load();
-        Some((here, next, (mantissa >> 11) as u16))
     }
 }
 
@@ -172,7 +173,10 @@ mod tests {
         let table = [7; ENTRIES];
         for largest in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
             let curve = Curve::new(Flash::from(&table), largest);
-            let least = largest >> OCTAVES;
+            // The table begins with the whole octave of its smallest argument.
+            let least: u32 = (largest >> OCTAVES)
+                .checked_ilog2()
+                .map_or(0, |octave| 1 << octave);
             assert_eq!(curve.at(0), None);
             assert_eq!(curve.at(least.saturating_sub(1)), None);
             assert_eq!(curve.at(least.max(1)), Some(7));

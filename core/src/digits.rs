@@ -27,9 +27,8 @@ where
 ///
 /// # Errors
 /// Those of `out`.
-pub fn angles<R, W>(out: &mut W, pose: &Pose, robot: &R) -> Result<(), W::Error>
+pub fn angles<W>(out: &mut W, pose: &Pose, robot: &Robot) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     for servo in Servo::ALL {

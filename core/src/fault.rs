@@ -25,6 +25,8 @@ pub enum Fault {
     Stack,
     /// The supply broke down several times in a row.
     BrownOut,
+    /// There is no robot in the flash.
+    Robot,
 }
 
 impl Fault {
@@ -43,6 +45,7 @@ impl Fault {
             Self::Late => Text::FaultLate,
             Self::Stack => Text::FaultStack,
             Self::BrownOut => Text::FaultBrownOut,
+            Self::Robot => Text::FaultRobot,
         }
     }
 
@@ -56,6 +59,7 @@ impl Fault {
             Self::Late => Text::WhyLate,
             Self::Stack => Text::WhyStack,
             Self::BrownOut => Text::WhyBrownOut,
+            Self::Robot => Text::WhyRobot,
         }
     }
 }

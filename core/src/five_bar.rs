@@ -22,11 +22,13 @@
 //! sin(2 theta11) = 0, are not used: both hold in the neutral pose, where the
 //! robot stands safely, and miss the real singularity.
 
+use core::mem::offset_of;
+
 use lizard_avr::{mul, mul_unsigned};
 
-use crate::couplers::{Couplers, Lean};
+use crate::couplers::{Couplers, Coupling, Lean, Tables};
 use crate::trig::Direction;
-use crate::units::Sine;
+use crate::units::{Scale, Sine};
 
 /// The longest that a loop's bars may be, in steps: l0 + l1 + l4, and each coupler.
 pub const LONGEST: f64 = 127.0 * 256.0;
@@ -34,24 +36,58 @@ pub const LONGEST: f64 = 127.0 * 256.0;
 /// The shortest coupler, in steps.
 pub const SHORTEST_COUPLER: i16 = 4097;
 
-/// One loop: its bars, and what the compiler can compute from them. A length is
-/// counted in steps of which the loop's [`crate::units::Scale`] says how many are a
-/// millimetre; margins do not depend on it.
-#[derive(Clone, Copy)]
+lizard_avr::plain! {
+    /// The bars of one loop, and what follows from them. A length is counted in steps of
+    /// which `scale` says how many are a millimetre; margins do not depend on it.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Bars {
+        couplers: Coupling,
+        base: i16,
+        left: i16,
+        right: i16,
+        /// One over `4 a b`, in the scale that the shifts leave.
+        per_area: u16,
+        /// `2^27` over each coupler.
+        per_left: i16,
+        per_right: i16,
+        /// Takes a squared distance of the crank tips to fifteen bits.
+        square_shift: u16,
+        /// Takes rise times that to sixteen bits.
+        area_shift: u16,
+        scale: Scale,
+        /// Nothing: it fills up what the fields above leave of four bytes.
+        rest: u16,
+    }
+}
+
+lizard_avr::plain! {
+    /// The least and the greatest value that a number may have, without a sign.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Range {
+        /// Where it is, bytes from the beginning of its structure.
+        pub at: u16,
+        /// The least.
+        pub least: u16,
+        /// The greatest.
+        pub most: u16,
+    }
+}
+
+impl Range {
+    const fn of(at: usize, [least, most]: [u16; 2]) -> Self {
+        Self {
+            at: at as u16,
+            least,
+            most,
+        }
+    }
+}
+
+/// One loop: its bars and the curves of its couplers.
+#[derive(Clone, Copy, Debug)]
 pub struct FiveBar<'a> {
-    base: i16,
-    left: i16,
-    right: i16,
-    couplers: Couplers<'a>,
-    /// Takes a squared distance of the crank tips to fifteen bits.
-    square_shift: u8,
-    /// Takes rise times that to sixteen bits.
-    area_shift: u8,
-    /// One over `4 a b`, in the scale that the shifts leave.
-    per_area: u16,
-    /// `2^27` over each coupler.
-    per_left: i16,
-    per_right: i16,
+    bars: Bars,
+    tables: Tables<'a>,
 }
 
 /// The margins of one end.
@@ -66,18 +102,32 @@ pub struct EndMargins {
     pub type1_right: Sine,
 }
 
-impl<'a> FiveBar<'a> {
+impl Bars {
+    /// No loop: it never closes.
+    pub const NONE: Self = Self {
+        base: 0,
+        left: 0,
+        right: 0,
+        couplers: Coupling::NONE,
+        square_shift: 1,
+        area_shift: 0,
+        per_area: 0,
+        per_left: 0,
+        per_right: 0,
+        scale: Scale { bits: 0 },
+        rest: 0,
+    };
+
     /// A loop with these bars, in steps: the distance between the shafts, the left
     /// and the right crank, which are at most [`LONGEST`] together; and two
     /// couplers.
     ///
     /// # Panics
-    /// In the compiler, where a coupler is shorter than [`SHORTEST_COUPLER`].
-    pub const fn new(base: i16, left: i16, right: i16, couplers: Couplers<'a>) -> Self {
-        let (a, b) = (couplers.left(), couplers.right());
+    /// Where a coupler is shorter than [`SHORTEST_COUPLER`].
+    pub const fn new([base, left, right]: [i16; 3], [a, b]: [i16; 2], scale: Scale) -> Self {
         assert!(a >= SHORTEST_COUPLER && b >= SHORTEST_COUPLER);
         let half_sum = (a as u32 + b as u32) / 2;
-        let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u8;
+        let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u16;
         let mut area = (a as u64 * b as u64) >> square_shift;
         let mut area_shift = 9;
         while area < 1 << 14 {
@@ -88,7 +138,7 @@ impl<'a> FiveBar<'a> {
             base,
             left,
             right,
-            couplers,
+            couplers: Coupling::new(a, b),
             square_shift,
             area_shift,
             per_area: if area > 1 << 14 {
@@ -98,34 +148,91 @@ impl<'a> FiveBar<'a> {
             },
             per_left: ((1 << 27) / a as i32) as i16,
             per_right: ((1 << 27) / b as i32) as i16,
+            scale,
+            rest: 0,
         }
+    }
+
+    /// What the numbers have to be so that they can be worked with; what follows from the
+    /// bars is not computed anew.
+    pub const RANGES: [Range; 12] = {
+        const LENGTH: [u16; 2] = [0, i16::MAX as u16];
+        const COUPLER: [u16; 2] = [SHORTEST_COUPLER as u16, i16::MAX as u16];
+        const AT: usize = offset_of!(Bars, couplers);
+        [
+            Range::of(offset_of!(Bars, base), LENGTH),
+            Range::of(offset_of!(Bars, left), LENGTH),
+            Range::of(offset_of!(Bars, right), LENGTH),
+            Range::of(offset_of!(Bars, square_shift), [1, 17]),
+            Range::of(offset_of!(Bars, area_shift), [0, 9]),
+            Range::of(offset_of!(Bars, scale), [0, Scale::FINEST.bits]),
+            Range::of(AT + Coupling::LEFT, COUPLER),
+            Range::of(AT + Coupling::RIGHT, COUPLER),
+            // The high halves of the squared lengths.
+            Range::of(AT + Coupling::REACH_SQ + 2, [1, 0x3fff]),
+            Range::of(AT + Coupling::LEAST_SQ + 2, [0, 0x3fff]),
+            Range::of(AT + Coupling::REACH_ZEROS, [0, 32]),
+            Range::of(AT + Coupling::LEAST_ZEROS, [0, 32]),
+        ]
+    };
+
+    /// Where the lengths of the couplers are, bytes from the beginning.
+    pub const COUPLERS: [u16; 2] = [
+        (offset_of!(Bars, couplers) + Coupling::LEFT) as u16,
+        (offset_of!(Bars, couplers) + Coupling::RIGHT) as u16,
+    ];
+
+    /// The step of the lengths.
+    pub const fn scale(&self) -> Scale {
+        self.scale
+    }
+
+    /// The couplers.
+    pub const fn couplers(&self) -> Coupling {
+        self.couplers
+    }
+}
+
+impl<'a> FiveBar<'a> {
+    /// No loop: it never closes.
+    pub const NONE: Self = Self::new(Bars::NONE, Tables::NONE);
+
+    /// A loop with these bars, and the curves of its couplers.
+    pub const fn new(bars: Bars, tables: Tables<'a>) -> Self {
+        Self { bars, tables }
+    }
+
+    /// Its bars.
+    pub const fn bars(&self) -> &Bars {
+        &self.bars
     }
 
     /// The margins with the cranks in these directions of the end's own frame. All
     /// zero where the loop cannot close, or is so near to that that its type-2 margin
     /// is below a tenth and the tables have no value.
-    // Inlined into its one caller, where a firmware's bars are constants.
-    #[inline(always)]
-    pub fn margins(&self, left: Direction, right: Direction) -> EndMargins {
+    #[inline(never)]
+    pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
+        let bars = &self.bars;
         // Half the step of the bars, so that the distance of the crank tips fits
         // and the shift is one of whole bytes.
         let tips = Tips {
-            along: (self.base >> 1) + upper(mul(self.right, right.cos) - mul(self.left, left.cos)),
-            across: upper(mul(self.right, right.sin) - mul(self.left, left.sin)),
+            along: (bars.base >> 1) + upper(mul(bars.right, right.cos) - mul(bars.left, left.cos)),
+            across: upper(mul(bars.right, right.sin) - mul(bars.left, left.sin)),
         };
         let tips_sq = (mul(tips.along, tips.along) + mul(tips.across, tips.across)) as u32;
-        let Some(Lean { rise, skew }) = self.couplers.at(tips_sq) else {
+        let Some(Lean { rise, skew }) = Couplers::new(bars.couplers, self.tables).at(tips_sq)
+        else {
             return EndMargins::default();
         };
         // To nearest: where the margin is small, so are the bits that are left.
-        let square = (tips_sq + (1 << (self.square_shift - 1))) >> self.square_shift;
+        let square = (tips_sq + (1 << (bars.square_shift - 1))) >> bars.square_shift;
         let square = square.min(0x7fff) as i16;
-        let area = (mul(rise, square) >> self.area_shift) as u16;
-        let size = saturate((mul_unsigned(area, self.per_area) >> 15) as i32);
+        let area = (mul(rise, square) >> bars.area_shift) as u16;
+        let size = saturate((mul_unsigned(area, bars.per_area) >> 15) as i32);
         EndMargins {
             type2: Sine(if tips.along > 0 { size } else { -size }),
-            type1_left: tips.elbow(left, -rise, skew, self.per_left),
-            type1_right: tips.elbow(right, rise, -skew, self.per_right),
+            type1_left: tips.elbow(left, -rise, skew, bars.per_left),
+            type1_right: tips.elbow(right, rise, -skew, bars.per_right),
         }
     }
 }
@@ -141,7 +248,7 @@ impl Tips {
     /// The type-1 margin of a crank: `(1 + skew) cross + rise dot` over twice its
     /// coupler.
     #[inline(never)]
-    fn elbow(self, crank: Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
+    fn elbow(self, crank: &Direction, rise: i16, skew: i16, per_coupler: i16) -> Sine {
         let cross = upper((mul(self.along, crank.sin) - mul(self.across, crank.cos)) << 1);
         let dot = upper((mul(self.along, crank.cos) + mul(self.across, crank.sin)) << 1);
         // The sum is at most twice the coupler; what its parts exceed 16 bits by
@@ -203,7 +310,7 @@ mod tests {
 
     fn margins(bars: &Loop, left: Angle, right: Angle) -> EndMargins {
         let [left, right] = [left, right].map(Direction::of);
-        bars.five_bar().margins(left, right)
+        bars.five_bar().margins(&left, &right)
     }
 
     proptest! {

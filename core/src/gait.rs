@@ -41,7 +41,7 @@ impl<'a> Name<'a> {
         Self {
             names,
             at: gait.name_start,
-            left: gait.name_length,
+            left: gait.name_length as u8,
         }
     }
 
@@ -62,29 +62,33 @@ impl Iterator for Name<'_> {
     }
 }
 
-/// What one servo does in a gait.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Channel {
-    /// Which waveform.
-    pub wave: u8,
-    /// How far the servo's reading is ahead of the phase, 1/65536 cycle.
-    pub offset: u16,
-    /// Factor of the waveform, Q14, counter-clockwise positive.
-    pub gain: i16,
+lizard_avr::plain! {
+    /// What one servo does in a gait.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Channel {
+        /// Which waveform.
+        pub wave: u16,
+        /// How far the servo's reading is ahead of the phase, 1/65536 cycle.
+        pub offset: u16,
+        /// Factor of the waveform, Q14, counter-clockwise positive.
+        pub gain: i16,
+    }
 }
 
-/// One gait.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Gait {
-    /// Where its name begins in [`crate::robot::Robot::names`].
-    pub name_start: u16,
-    /// The name's length, at most [`LONGEST_NAME`].
-    pub name_length: u8,
-    /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
-    /// table is read backwards.
-    pub increment: i32,
-    /// The four servos.
-    pub channels: [Channel; 4],
+lizard_avr::plain! {
+    /// One gait.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Gait {
+        /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
+        /// table is read backwards.
+        pub increment: i32,
+        /// The four servos.
+        pub channels: [Channel; 4],
+        /// Where its name begins among the names of its robot.
+        pub name_start: u16,
+        /// The name's length, at most [`LONGEST_NAME`].
+        pub name_length: u16,
+    }
 }
 
 /// A gait by its place in robot.toml. Place 0 is `stand`.
@@ -160,7 +164,6 @@ impl Channel {
 
 #[cfg(test)]
 mod tests {
-    use crate::robot::Robot as _;
     use std::vec::Vec;
 
     use proptest::prelude::*;
@@ -247,7 +250,7 @@ mod tests {
     #[test]
     fn an_offset_reads_ahead_and_a_negative_gain_turns_the_sense() {
         let robot = Sample::odd();
-        let table = Flash::from(&robot.waves[1]);
+        let table = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
             let ahead = Channel {
                 offset: 0x1800,
@@ -268,11 +271,11 @@ mod tests {
     #[test]
     fn a_pose_reads_every_servos_own_channel_of_its_own_waveform() {
         let robot = Sample::odd();
-        for gait in &robot.gaits {
+        for gait in &robot.content.gaits {
             for phase in (0..CYCLE).step_by(99_991) {
                 let pose = gait.pose(robot.waves(), phase);
                 for (sweep, channel) in pose.0.iter().zip(&gait.channels) {
-                    let table = Flash::from(&robot.waves[usize::from(channel.wave)]);
+                    let table = Flash::from(&robot.content.waves[usize::from(channel.wave)]);
                     assert_eq!(*sweep, channel.sweep(table, (phase >> 8) as u16));
                 }
             }
@@ -298,12 +301,12 @@ mod tests {
     #[test]
     fn names_and_numbers_of_gaits_go_together() {
         let robot = Sample::odd();
-        let ids: Vec<GaitId> = GaitId::all(robot.gaits().len()).collect();
+        let ids: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
         assert_eq!(ids.len(), GAITS.len());
         assert_eq!(ids[0], GaitId::STAND);
         for (place, id) in ids.iter().enumerate() {
             assert_eq!(id.index(), place);
-            assert_eq!(id.next(robot.gaits().len()), ids.get(place + 1).copied());
+            assert_eq!(id.next(robot.gait_count()), ids.get(place + 1).copied());
             let name = robot.name(*id);
             assert_eq!(usize::from(name.length()), GAITS[place].len());
             assert!(name.eq(GAITS[place].bytes()));

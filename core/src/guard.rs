@@ -10,7 +10,6 @@
 
 use lizard_avr::flash;
 
-use crate::five_bar::EndMargins;
 use crate::hazard::{Hazard, Margin};
 use crate::part::{End, Servo, Side};
 use crate::pose::Pose;
@@ -21,6 +20,10 @@ use crate::units::Sine;
 
 /// The ten margins in the order in which they are checked.
 const MARGINS: usize = 10;
+
+/// Where the type-1 margins begin, and those of the legs.
+const TYPE1: usize = 2;
+const LEGS: usize = 6;
 
 flash! {
     const ORDER: [Margin; MARGINS] = [
@@ -37,6 +40,16 @@ flash! {
     ];
 }
 
+/// The first limit that a pose breaks. A pose in certified cells needs no measuring: in
+/// them the measures below break none, which is proved when the section is made.
+#[inline(never)]
+pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
+    if robot.is_certified(pose) {
+        return None;
+    }
+    Clearance::of(robot, pose).hazard(robot)
+}
+
 /// Every margin of one pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clearance {
@@ -50,36 +63,39 @@ pub struct Clearance {
 
 impl Clearance {
     /// Measures a pose.
-    pub fn of<R: Robot>(robot: &R, pose: &Pose) -> Self {
-        let [a1, a2, a3, a4] = pose.angles(&robot.neutral()).map(Direction::of);
-        let (rear_right, rear_left) = (a3.in_tail_frame(), a4.in_tail_frame());
-        let cranks = [[a1, a2], [rear_left, rear_right]];
-        let mut ends = [EndMargins::default(); 2];
-        for (margins, (end, [left, right])) in ends.iter_mut().zip(End::ALL.into_iter().zip(cranks))
-        {
-            *margins = robot.end(end).margins(left, right);
+    #[inline(never)]
+    pub fn of(robot: &Robot, pose: &Pose) -> Self {
+        let mut cranks = [Direction { sin: 0, cos: 0 }; 4];
+        let mut clearance = Self {
+            margins: [Sine(0); MARGINS],
+            sliders_sq: [0; 2],
+        };
+        for place in 0..cranks.len() {
+            let servo = Servo::at(place);
+            let mut crank = Direction::of(robot.neutral_of(servo).swept(pose.0[place]));
+            if servo.is_rear() {
+                crank.sin = -crank.sin;
+            }
+            cranks[place] = crank;
+            clearance.margins[LEGS + place] = Sine(crank.sin);
         }
-        let [head, tail] = ends;
-        let left = robot.side(Side::Left);
-        let right = robot.side(Side::Right).mirrored();
-        Self {
-            margins: [
-                head.type2,
-                tail.type2,
-                head.type1_left,
-                head.type1_right,
-                tail.type1_right,
-                tail.type1_left,
-                Sine(a1.sin),
-                Sine(a2.sin),
-                Sine(rear_right.sin),
-                Sine(rear_left.sin),
-            ],
-            sliders_sq: [
-                left.length_sq(a1, rear_left),
-                right.length_sq(a2.mirrored(), rear_right.mirrored()),
-            ],
+        for end in End::ALL {
+            clearance.measure_end(robot, end, &cranks);
         }
+        for side in Side::ALL {
+            clearance.sliders_sq[side as usize] = length_sq(robot, side, &cranks);
+        }
+        clearance
+    }
+
+    // Out of line, as the next: a loop over two would be copied out.
+    #[inline(never)]
+    fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
+        let [left, right] = end.servos();
+        let margins = robot.end(end).margins(left.of(cranks), right.of(cranks));
+        self.margins[end as usize] = margins.type2;
+        self.margins[TYPE1 + left.index()] = margins.type1_left;
+        self.margins[TYPE1 + right.index()] = margins.type1_right;
     }
 
     /// The smallest of the ten margins.
@@ -92,12 +108,13 @@ impl Clearance {
     }
 
     /// The first limit that this pose breaks: margins, then strokes left and right.
-    pub fn hazard<R: Robot>(&self, robot: &R) -> Option<Hazard> {
+    #[inline(never)]
+    pub fn hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();
         for (place, value) in self.margins.iter().enumerate() {
             let least = match place {
-                0..2 => limits.type2,
-                2..6 => limits.type1,
+                ..TYPE1 => limits.type2,
+                ..LEGS => limits.type1,
                 _ => limits.leg,
             };
             if *value < least {
@@ -107,15 +124,28 @@ impl Clearance {
                 });
             }
         }
-        for (side, length_sq) in Side::ALL.into_iter().zip(self.sliders_sq) {
-            let slider = robot.side(side);
-            if !slider.allows(length_sq) {
+        for side in Side::ALL {
+            let length_sq = self.sliders_sq[side as usize];
+            if !robot.side(side).allows(length_sq) {
                 let length = root(length_sq);
                 return Some(Hazard::Stroke { side, length });
             }
         }
         None
     }
+}
+
+/// The squared length of a side's slider.
+#[inline(never)]
+fn length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
+    let [mut front, mut rear] = side.servos().map(|servo| *servo.of(cranks));
+    let mut slider = robot.side(side);
+    if matches!(side, Side::Right) {
+        slider = slider.mirrored();
+        front = front.mirrored();
+        rear = rear.mirrored();
+    }
+    slider.length_sq(&front, &rear)
 }
 
 #[cfg(test)]
@@ -156,7 +186,9 @@ mod tests {
             let end = |place: usize, end, angles| {
                 bounds::End::of(&lizard.end(end), &robot.ends[place], angles)
             };
-            let side = |place: usize, side| bounds::slider(&lizard.side(side), &robot.sides[place]);
+            let side = |place: usize, side| {
+                bounds::slider(&lizard.side(side), &robot.content.sides[place])
+            };
             Self {
                 ends: [
                     end(0, kinematics::End::Head, [a1, a2]),
@@ -191,7 +223,8 @@ mod tests {
             return None;
         }
         // Limits are rounded up to a step, strokes inwards.
-        let step = 1.0 / per_mm(robot.sides[0].scale).min(per_mm(robot.sides[1].scale));
+        let step =
+            1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
         let by = |sign: f64| kinematics::Limits {
             type2: robot.measures.limits.type2 + sign * (bounds.most(|end| end.type2) + Q15),
             type1: robot.measures.limits.type1 + sign * (bounds.most(bounds::End::type1) + Q15),
@@ -248,7 +281,7 @@ mod tests {
             }
             for (place, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
                 let length = f64::from(got.sliders_sq[place]).sqrt();
-                let off = length / per_mm(robot.sides[place].scale) - exact;
+                let off = length / per_mm(robot.content.sides[place].scale) - exact;
                 let most = bounds.sliders[place];
                 prop_assert!(off.abs() <= most, "slider {place} is off by {off} of {most}");
             }
@@ -328,7 +361,7 @@ mod tests {
     #[test]
     fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
         let (robot, clear) = clear();
-        for (place, (margin, limit)) in margins(&robot.limits).into_iter().enumerate() {
+        for (place, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
             let mut at = clear;
             at.margins[place] = limit;
             assert_eq!(at.hazard(&robot), None, "{margin:?}");
@@ -342,7 +375,7 @@ mod tests {
     fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
         let (robot, clear) = clear();
         for (place, side) in Side::ALL.into_iter().enumerate() {
-            let Slider { min, max, .. } = robot.sides[place];
+            let Slider { min, max, .. } = robot.content.sides[place];
             for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)]
             {
                 let mut at = clear;
@@ -362,7 +395,7 @@ mod tests {
             expected.push(Hazard::Stroke { side, length: 10 });
             assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
         }
-        for (place, (margin, _)) in margins(&robot.limits).into_iter().enumerate().rev() {
+        for (place, (margin, _)) in margins(&robot.limits()).into_iter().enumerate().rev() {
             let value = Sine(-1);
             clearance.margins[place] = value;
             expected.push(Hazard::Margin { margin, value });
@@ -385,7 +418,7 @@ mod tests {
         let robot = Sample::odd();
         for servo in 0..4 {
             // Beyond the x axis of the chassis: where the end's own y is negative.
-            let neutral = f64::from(robot.neutral[servo].0) * 360.0 / 65536.0;
+            let neutral = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
             let axis = if (90.0..270.0).contains(&neutral) {
                 180.0
             } else {

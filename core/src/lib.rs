@@ -57,8 +57,8 @@
 //!
 //! Everything here is integer arithmetic and runs unchanged on the
 //! microcontroller and on the host, where the tests compare it with floating
-//! point. The numbers of a robot come through the trait [`robot::Robot`], the
-//! board through the trait [`step::Board`]; this crate can name neither a
+//! point. The numbers of a robot come from its section of flash ([`section`],
+//! [`robot::Robot`]), the board through the trait [`step::Board`]; this crate can name neither a
 //! register nor a file.
 
 #![no_std]
@@ -68,7 +68,11 @@ extern crate std;
 
 pub mod adjustment;
 pub mod answer;
+#[cfg(any(test, feature = "host"))]
+pub mod bounds;
 pub mod calibration;
+pub mod cells;
+mod checksum;
 pub mod command;
 pub mod console;
 pub mod control;
@@ -97,6 +101,7 @@ pub mod root;
 pub mod safety;
 #[cfg(test)]
 mod sample;
+pub mod section;
 pub mod settings;
 pub mod slider;
 pub mod step;

@@ -5,7 +5,7 @@
 //! back after the last one: between the two the record is no record. A CRC finds
 //! what else may happen to it in the years.
 
-use crc::{CRC_16_IBM_3740, Crc, NoTable};
+use crate::checksum::Checksum;
 
 /// Bytes that outlast power.
 pub trait Memory {
@@ -39,8 +39,6 @@ pub const WHOLE: u8 = 0xa5;
 
 /// That byte while it is not; also what an erased memory holds.
 pub const ERASED: u8 = 0xff;
-
-const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_3740);
 
 /// The address of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +87,7 @@ impl Address {
         self.fetch(memory, &mut content);
         let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT as u16 + n));
         let mark = memory.read(self.0);
-        if mark == WHOLE && crc == CRC.checksum(&content).to_le_bytes() {
+        if mark == WHOLE && crc == Checksum::of(&content).0.to_le_bytes() {
             Found::Whole
         } else if mark == ERASED && content.iter().chain(&crc).all(|byte| *byte == ERASED) {
             Found::Blank
@@ -146,7 +144,7 @@ impl Writing {
         } else if step == LENGTH {
             (0, WHOLE)
         } else {
-            let crc = || CRC.checksum(content).to_le_bytes()[usize::from(self.step & 1 ^ 1)];
+            let crc = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
             let byte = content.get(usize::from(self.step - 1));
             (step, byte.copied().unwrap_or_else(crc))
         };

@@ -33,15 +33,18 @@
 //! the reason is kept for the console. Time is a call: the 50 Hz tick is the
 //! only clock, so pace cannot depend on how busy the processor is.
 
+use lizard_avr::Region;
+
 use crate::calibration::Calibration;
 use crate::gait::GaitId;
-use crate::guard::Clearance;
+use crate::guard;
 use crate::hazard::Hazard;
 use crate::part::Servo;
 use crate::point_to_point::PointToPoint;
 use crate::pose::{Pose, Pulses};
 use crate::restart::Stance;
 use crate::robot::Robot;
+use crate::section::Damage;
 
 pub use state::Activity;
 use state::{State, Target};
@@ -60,8 +63,8 @@ pub const AWAKE: u8 = 4 * WAKE_APART;
 
 /// The robot's motion.
 #[derive(Clone, Debug)]
-pub struct Motion<R> {
-    robot: R,
+pub struct Motion {
+    robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
     /// What follows once the present motion stands still. None while it rests.
@@ -78,9 +81,9 @@ pub struct Motion<R> {
     frames: u32,
 }
 
-impl<R: Robot> Motion<R> {
+impl Motion {
     /// The robot at power-on: waking, then standing.
-    pub fn new(robot: R) -> Self {
+    pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unbegun(robot);
         motion.begin();
         for servo in Servo::ALL {
@@ -91,7 +94,7 @@ impl<R: Robot> Motion<R> {
 
     /// A robot without pulses, of which nothing is known; [`Motion::begin`] and the
     /// calibration of every servo have to follow.
-    pub const fn unbegun(robot: R) -> Self {
+    pub const fn unbegun(robot: Robot<'static>) -> Self {
         Self {
             calibration: [Calibration::NONE; 4],
             state: State::Resting,
@@ -106,6 +109,16 @@ impl<R: Robot> Motion<R> {
         }
     }
 
+    /// Takes the robot at the beginning of `flash` in the place of none; the calibration
+    /// of every servo has to follow.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
+        self.robot = Robot::open(flash)?;
+        Ok(())
+    }
+
     /// Wakes the servos, to stand.
     pub fn begin(&mut self) {
         self.stance.resting = false;
@@ -113,7 +126,7 @@ impl<R: Robot> Motion<R> {
     }
 
     /// The robot that moves.
-    pub const fn robot(&self) -> &R {
+    pub const fn robot(&self) -> &Robot<'static> {
         &self.robot
     }
 
@@ -356,9 +369,8 @@ impl<R: Robot> Motion<R> {
     }
 
     /// What is wrong with a pose.
-    #[inline(never)]
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
-        Clearance::of(&self.robot, pose).hazard(&self.robot)
+        guard::hazard(&self.robot, pose)
     }
 
     fn head_for(&mut self, target: Target) {

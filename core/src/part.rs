@@ -46,6 +46,11 @@ impl Servo {
         }
     }
 
+    /// Whether its crank is one of the tail's.
+    pub const fn is_rear(self) -> bool {
+        matches!(self, Self::A3 | Self::A4)
+    }
+
     /// Its place in an array of four.
     pub const fn index(self) -> usize {
         self as usize
@@ -63,11 +68,27 @@ impl Servo {
 }
 
 impl End {
+    /// The servos of its left crank and of its right one, in its own frame.
+    pub const fn servos(self) -> [Servo; 2] {
+        match self {
+            Self::Head => [Servo::A1, Servo::A2],
+            Self::Tail => [Servo::A4, Servo::A3],
+        }
+    }
+
     /// Both, the head first.
     pub const ALL: [Self; 2] = [Self::Head, Self::Tail];
 }
 
 impl Side {
+    /// The servos of its front crank and of its rear one.
+    pub const fn servos(self) -> [Servo; 2] {
+        match self {
+            Self::Left => [Servo::A1, Servo::A4],
+            Self::Right => [Servo::A2, Servo::A3],
+        }
+    }
+
     /// Both, the left one first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 }

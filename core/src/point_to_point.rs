@@ -15,13 +15,15 @@ const SHORTEST: u16 = 8;
 /// All of a move's time, Q15.
 const END: u16 = 1 << 15;
 
-/// How fast the servos may turn in a move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Slew {
-    /// The most in a frame, 1/65536 turn.
-    pub per_frame: u16,
-    /// Frames for each 1/65536 turn of the longest way, Q16, rounded up.
-    frames_per_way: u16,
+lizard_avr::plain! {
+    /// How fast the servos may turn in a move.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Slew {
+        /// The most in a frame, 1/65536 turn.
+        pub per_frame: u16,
+        /// Frames for each 1/65536 turn of the longest way, Q16, rounded up.
+        frames_per_way: u16,
+    }
 }
 
 impl Slew {
@@ -32,7 +34,7 @@ impl Slew {
     /// A limit in 1/65536 turn a frame.
     ///
     /// # Panics
-    /// In the compiler, where it is below [`Slew::SLOWEST`].
+    /// Where it is below [`Slew::SLOWEST`].
     pub const fn new(per_frame: u16) -> Self {
         assert!(per_frame >= Self::SLOWEST);
         Self {

@@ -74,7 +74,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::robot::Robot as _;
     use crate::sample::Sample;
 
     fn posed() -> impl Strategy<Value = (Sample, Pose)> {
@@ -99,7 +98,7 @@ mod tests {
         ) {
             for (place, beyond) in beyond.into_iter().enumerate() {
                 if beyond {
-                    pose.0[place] = Sweep(robot.calibration[place].max.0 + 1);
+                    pose.0[place] = Sweep(robot.calibration()[place].max.0 + 1);
                 }
             }
             let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
@@ -110,7 +109,7 @@ mod tests {
         fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in posed()) {
             let pulses = pose.pulses(&robot.calibration());
             for place in 0..4 {
-                let width = robot.calibration[place].width(pose.0[place]);
+                let width = robot.calibration()[place].width(pose.0[place]);
                 prop_assert_eq!(pulses.0[place], width);
             }
         }

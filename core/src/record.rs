@@ -71,7 +71,7 @@ impl Copies {
 
 /// Reads the settings saved last into `settings`, where they are for this robot.
 #[inline(never)]
-pub fn read<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
+pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
         return match copies.found {
@@ -92,7 +92,7 @@ pub fn read<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings)
 /// Reads the settings to use into `settings`: those saved last, if the gaits can be
 /// walked with them. If not, robot.toml's.
 #[inline(never)]
-pub fn load<R: Robot, M: Memory>(robot: &R, memory: &M, settings: &mut Settings) -> Outcome {
+pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let mut outcome = read(robot, memory, settings);
     if matches!(outcome, Outcome::Latest | Outcome::Other) {
         if settings.unfit(robot).is_none() {
@@ -124,7 +124,7 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
 }
 
 /// Where the robot rested last, if it has not moved since.
-pub fn rested<R: Robot, M: Memory>(robot: &R, memory: &M) -> Option<Pose> {
+pub fn rested<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
     RESTED.fetch(memory, &mut bytes);
     let kept = Settings::from_bytes(bytes);

@@ -41,6 +41,8 @@ pub enum Refusal {
     NotKept,
     /// Code 9: the memory holds no settings to load.
     NothingSaved,
+    /// Code 10: there is no robot in the flash.
+    NoRobot,
 }
 
 impl Refusal {
@@ -59,6 +61,7 @@ impl Refusal {
             Self::Resting => 7,
             Self::Supply => 8,
             Self::NotKept | Self::NothingSaved => 9,
+            Self::NoRobot => 10,
         }
     }
 
@@ -66,9 +69,8 @@ impl Refusal {
     ///
     /// # Errors
     /// Those of `out`.
-    pub fn print<R, W>(&self, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
+    pub fn print<W>(&self, motion: &Motion, out: &mut W) -> Result<(), W::Error>
     where
-        R: Robot,
         W: uWrite + ?Sized,
     {
         match self {
@@ -91,14 +93,14 @@ impl Refusal {
             Self::Supply => Text::LowSupply.print(out),
             Self::NotKept => Text::NotKept.print(out),
             Self::NothingSaved => Text::NothingSaved.print(out),
+            Self::NoRobot => Text::NoRobot.print(out),
         }
     }
 }
 
 #[inline(never)]
-fn print_misread<R, W>(misread: Misread, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
+fn print_misread<W>(misread: Misread, motion: &Motion, out: &mut W) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     let text = match misread {
@@ -112,9 +114,8 @@ where
 }
 
 /// `A2 reaches 311.41..131.41`.
-fn print_travel<R, W>(servo: Servo, motion: &Motion<R>, out: &mut W) -> Result<(), W::Error>
+fn print_travel<W>(servo: Servo, motion: &Motion, out: &mut W) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     print_servo(servo, out)?;
@@ -123,14 +124,8 @@ where
     print_range(servo, &Reach { min, max }, motion, out)
 }
 
-fn print_range<R, W>(
-    servo: Servo,
-    reach: &Reach,
-    motion: &Motion<R>,
-    out: &mut W,
-) -> Result<(), W::Error>
+fn print_range<W>(servo: Servo, reach: &Reach, motion: &Motion, out: &mut W) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     let neutral = motion.robot().neutral_of(servo);
@@ -143,9 +138,8 @@ where
 /// # Errors
 /// Those of `out`.
 #[inline(never)]
-pub fn print_hazard<R, W>(hazard: Hazard, robot: &R, out: &mut W) -> Result<(), W::Error>
+pub fn print_hazard<W>(hazard: Hazard, robot: &Robot, out: &mut W) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     match hazard {
@@ -196,15 +190,14 @@ where
 
 /// Prints the travel from nominal of a slider's length, after `text`.
 #[inline(never)]
-fn print_stroke<R, W>(
+fn print_stroke<W>(
     text: Text,
     length: u16,
     side: Side,
-    robot: &R,
+    robot: &Robot,
     out: &mut W,
 ) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     text.print(out)?;
@@ -227,7 +220,7 @@ mod tests {
 
     /// A refusal as the console of the odd robot prints it, with its code.
     fn told(refusal: Refusal) -> String {
-        let motion = Motion::new(Sample::odd());
+        let motion = Motion::new(*Sample::odd());
         let mut text = format!("{} ", refusal.code());
         let Ok(()) = refusal.print(&motion, &mut text);
         text
@@ -294,7 +287,7 @@ mod tests {
         let stroke = |side, length| Hazard::Stroke { side, length };
         let robot = Sample::odd();
         // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
-        assert_eq!(robot.sides.map(|side| side.scale.bits), [8, 8]);
+        assert_eq!(robot.content.sides.map(|side| side.scale.bits), [8, 8]);
         for (hazard, sentence) in [
             (
                 margin(Margin::Type2(End::Head), 1000),

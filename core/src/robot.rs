@@ -1,190 +1,267 @@
-//! What the core has to know of a robot.
+//! What the core has to know of a robot, read from its section of flash.
 //!
-//! Everything in this crate is generic over a [`Robot`]. The firmware's is a type
-//! without size whose numbers are constants: the compiler folds them into the code,
-//! and tables stay in flash. A host's is made at run time from a robot.toml, so
-//! that the same code can be proved for a robot that no firmware was built for yet.
+//! The same core walks any lizard: bars, limits, servos and gaits come from a section
+//! ([`crate::section`]) that lies in the flash of a microcontroller or in the memory of
+//! a host. Where its parts are is worked out once, when the section is opened; a number
+//! is fetched when it is asked for.
 
-use lizard_avr::Flash;
+use core::fmt;
+use core::mem::offset_of;
+
+use lizard_avr::{Flash, Plain, Region};
 
 use crate::adjustment::Reach;
 use crate::calibration::Calibration;
-use crate::five_bar::FiveBar;
+use crate::couplers::Tables;
+use crate::five_bar::{Bars, FiveBar};
 use crate::gait::{Gait, GaitId, Name, Wave};
 use crate::limits::Limits;
 use crate::part::{End, Servo, Side};
 use crate::point_to_point::Slew;
+use crate::pose::Pose;
+use crate::section::{self, CURVES, Damage, Header, MapHead, NUMBERS, Numbers, Part, Place};
 use crate::slider::Slider;
 use crate::supply::Supplies;
 use crate::units::Angle;
 
-/// A four-servo lizard: its geometry, limits and gaits. Whoever makes one has
-/// checked that its numbers fit and that every gait keeps the limits.
-pub trait Robot {
+mod check;
+
+/// A four-servo lizard: its geometry, limits and gaits.
+#[derive(Clone, Copy)]
+pub struct Robot<'a> {
+    section: Region<'a>,
+    is_there: bool,
+}
+
+// Its numbers are the same in every state of a program that shows itself.
+impl fmt::Debug for Robot<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_there { "Robot" } else { "no robot" })
+    }
+}
+
+impl<'a> Robot<'a> {
+    /// No robot: it has no gait, and may not be moved.
+    pub const NONE: Self = Self {
+        section: Region::EMPTY,
+        is_there: false,
+    };
+
+    /// The robot whose section is at the beginning of `flash`.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline(never)]
+    pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
+        let length = section::find(flash)?;
+        let robot = Self {
+            section: flash,
+            is_there: true,
+        };
+        match robot.is_possible(length) {
+            true => Ok(robot),
+            false => Err(Damage::Impossible),
+        }
+    }
+
+    /// The robot of a section that was just made, whose numbers nobody has checked yet:
+    /// for whoever is about to.
+    #[cfg(any(test, feature = "host"))]
+    pub fn unchecked(flash: Region<'a>) -> Option<Self> {
+        section::find(flash).ok()?;
+        Some(Self {
+            section: flash,
+            is_there: true,
+        })
+    }
+
+    /// Whether there is no robot.
+    pub const fn is_none(&self) -> bool {
+        !self.is_there
+    }
+
+    /// The flash at whose beginning its section is.
+    pub const fn section(&self) -> Region<'a> {
+        self.section
+    }
+
+    /// What is `offset` bytes behind the beginning of the numbers.
+    #[inline(always)]
+    fn number<T: Plain>(&self, offset: usize) -> T {
+        self.section.read(NUMBERS + offset as u16)
+    }
+
+    /// Its name, byte by byte.
+    pub fn label(&self) -> impl Iterator<Item = u8> + use<'a> {
+        let section = self.section;
+        let name = offset_of!(Header, name) as u16;
+        (name..name + section::LONGEST_NAME as u16)
+            .map(move |at| section.read(at))
+            .take_while(|byte| *byte != 0)
+    }
+
+    /// A number by which two sets of numbers are told apart.
+    pub fn hash(&self) -> u32 {
+        self.section.read(offset_of!(Header, hash) as u16)
+    }
+
+    /// The same of the servos alone: their pins, pulses and neutral angles.
+    pub fn servo_hash(&self) -> u32 {
+        self.section.read(offset_of!(Header, servo_hash) as u16)
+    }
+
+    /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    pub fn pins(&self) -> [u8; 4] {
+        self.number(offset_of!(Numbers, pins))
+    }
+
+    /// Arduino number of the pin where the servos' rail is measured, 14 to 19.
+    pub fn rail_pin(&self) -> Option<u8> {
+        match self.number::<u16>(offset_of!(Numbers, rail)) {
+            0 => None,
+            pin => Some(pin as u8),
+        }
+    }
+
     /// The five-bar of an end, in that end's own frame.
-    fn end(&self, end: End) -> FiveBar<'_>;
+    pub fn end(&self, end: End) -> FiveBar<'a> {
+        let bars = offset_of!(Numbers, ends) + end as usize * size_of::<Bars>();
+        FiveBar::new(self.number(bars), self.tables(end))
+    }
+
+    /// The curves of an end's couplers.
+    fn tables(&self, end: End) -> Tables<'a> {
+        let curves = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
+        let table = |curve: usize| match self.number(curves + curve * size_of::<u16>()) {
+            0 => None,
+            at => self.section.values(at, 1).get(0),
+        };
+        Tables {
+            rise: table(0),
+            stretched: table(1),
+            folded: table(2),
+            skew: table(3),
+        }
+    }
 
     /// The five-bar with a slider of a side, as it is in the chassis frame.
-    fn side(&self, side: Side) -> Slider;
+    pub fn side(&self, side: Side) -> Slider {
+        self.number(offset_of!(Numbers, sides) + side as usize * size_of::<Slider>())
+    }
 
     /// The smallest margins allowed.
-    fn limits(&self) -> Limits;
+    pub fn limits(&self) -> Limits {
+        self.number(offset_of!(Numbers, limits))
+    }
 
     /// How fast servos may turn in a point-to-point move.
-    fn slew(&self) -> Slew;
+    pub fn slew(&self) -> Slew {
+        self.number(offset_of!(Numbers, slew))
+    }
 
     /// The servos' angles in the neutral pose.
-    fn neutral(&self) -> [Angle; 4];
+    pub fn neutral(&self) -> [Angle; 4] {
+        self.number(offset_of!(Numbers, neutral))
+    }
 
     /// One servo of [`Robot::neutral`].
-    fn neutral_of(&self, servo: Servo) -> Angle {
-        *servo.of(&self.neutral())
+    #[inline(never)]
+    pub fn neutral_of(&self, servo: Servo) -> Angle {
+        self.number(offset_of!(Numbers, neutral) + servo.index() * size_of::<Angle>())
     }
 
     /// The servos' pulses and travel, as robot.toml has them.
-    fn calibration(&self) -> [Calibration; 4];
-
-    /// The gaits; the first is `stand`, which holds the neutral pose.
-    fn gaits(&self) -> Flash<'_, [Gait]>;
-
-    /// The gaits' names, one after the other.
-    fn names(&self) -> Flash<'_, [u8]>;
-
-    /// The waveforms that gaits share.
-    fn waves(&self) -> Flash<'_, [Wave]>;
+    pub fn calibration(&self) -> [Calibration; 4] {
+        self.number(offset_of!(Numbers, calibration))
+    }
 
     /// One servo of [`Robot::calibration`].
-    fn servo(&self, servo: Servo) -> Calibration {
-        *servo.of(&self.calibration())
+    #[inline(never)]
+    pub fn servo(&self, servo: Servo) -> Calibration {
+        self.number(offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>())
     }
 
     /// The sweeps that the gaits and the neutral pose need of a servo.
-    fn reach(&self, servo: Servo) -> Reach;
+    #[inline(never)]
+    pub fn reach(&self, servo: Servo) -> Reach {
+        self.number(offset_of!(Numbers, reach) + servo.index() * size_of::<Reach>())
+    }
 
     /// The supplies that are measured, and what their voltages mean.
-    fn supplies(&self) -> Supplies;
+    pub fn supplies(&self) -> Supplies {
+        self.number(offset_of!(Numbers, supplies))
+    }
 
-    /// A number by which two sets of numbers are told apart.
-    fn hash(&self) -> u32;
+    /// How many gaits it has; the first is `stand`, which holds the neutral pose.
+    pub fn gait_count(&self) -> usize {
+        match self.is_there {
+            true => usize::from(self.place(Part::Gaits).count),
+            false => 0,
+        }
+    }
 
-    /// The same of the servos alone: their pins, pulses and neutral angles.
-    fn servo_hash(&self) -> u32;
+    /// Where a part is, and how many it has.
+    fn place(&self, part: Part) -> Place {
+        self.number(offset_of!(Numbers, parts) + part as usize * size_of::<Place>())
+    }
 
-    /// A gait, fetched from flash.
-    fn gait(&self, id: GaitId) -> Gait {
-        let gait = self.gaits().get(id.index());
-        gait.map_or(Gait::STILL, Flash::load)
+    /// All of a part.
+    #[inline(always)]
+    fn part<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
+        let Place { at, count } = self.place(part);
+        self.section.values(at, count)
+    }
+
+    /// The waveforms that gaits share.
+    pub fn waves(&self) -> Flash<'a, [Wave]> {
+        self.part(Part::Waves)
+    }
+
+    /// A gait.
+    #[inline(never)]
+    pub fn gait(&self, id: GaitId) -> Gait {
+        self.part(Part::Gaits)
+            .get(id.index())
+            .map_or(Gait::STILL, Flash::load)
     }
 
     /// A gait's name.
-    fn name(&self, id: GaitId) -> Name<'_> {
-        Name::of(&self.gait(id), self.names())
+    #[inline(never)]
+    pub fn name(&self, id: GaitId) -> Name<'a> {
+        Name::of(&self.gait(id), self.part(Part::Names))
+    }
+
+    /// Whether a pose is in certified cells, in which the guard accepts every pose:
+    /// head, tail, left and right have a map each. False says nothing.
+    pub fn is_certified(&self, pose: &Pose) -> bool {
+        let maps = self.part::<[i8; 2]>(Part::Rows);
+        let mut begin = 0;
+        let mut pair = 0;
+        while pair < 4 {
+            let MapHead { first, rows } =
+                self.number(offset_of!(Numbers, maps) + pair * size_of::<MapHead>());
+            let [row, column] = PAIRS.at(pair).load();
+            let row = ((pose.0[usize::from(row & 3)].0 >> 8) as i8).wrapping_sub(first) as u8;
+            let column = pose.0[usize::from(column & 3)].0;
+            if row >= rows {
+                return false;
+            }
+            let Some(cells) = maps.get(begin + usize::from(row)) else {
+                return false;
+            };
+            let [least, most] = cells.load();
+            let column = column >> 7;
+            if column < i16::from(least) || column > i16::from(most) {
+                return false;
+            }
+            begin += usize::from(rows);
+            pair += 1;
+        }
+        true
     }
 }
 
-impl<R: Robot + ?Sized> Robot for &R {
-    fn end(&self, end: End) -> FiveBar<'_> {
-        (**self).end(end)
-    }
-
-    fn side(&self, side: Side) -> Slider {
-        (**self).side(side)
-    }
-
-    fn limits(&self) -> Limits {
-        (**self).limits()
-    }
-
-    fn slew(&self) -> Slew {
-        (**self).slew()
-    }
-
-    fn neutral(&self) -> [Angle; 4] {
-        (**self).neutral()
-    }
-
-    fn neutral_of(&self, servo: Servo) -> Angle {
-        (**self).neutral_of(servo)
-    }
-
-    fn calibration(&self) -> [Calibration; 4] {
-        (**self).calibration()
-    }
-
-    fn gaits(&self) -> Flash<'_, [Gait]> {
-        (**self).gaits()
-    }
-
-    fn names(&self) -> Flash<'_, [u8]> {
-        (**self).names()
-    }
-
-    fn waves(&self) -> Flash<'_, [Wave]> {
-        (**self).waves()
-    }
-
-    fn servo(&self, servo: Servo) -> Calibration {
-        (**self).servo(servo)
-    }
-
-    fn reach(&self, servo: Servo) -> Reach {
-        (**self).reach(servo)
-    }
-
-    fn supplies(&self) -> Supplies {
-        (**self).supplies()
-    }
-
-    fn hash(&self) -> u32 {
-        (**self).hash()
-    }
-
-    fn servo_hash(&self) -> u32 {
-        (**self).servo_hash()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::vec::Vec;
-
-    use super::*;
-    use crate::sample::{GAITS, Sample};
-
-    /// What a robot's gaits are called, by the trait alone.
-    fn names<R: Robot>(robot: R) -> Vec<Vec<u8>> {
-        GaitId::all(robot.gaits().len())
-            .map(|id| robot.name(id).collect())
-            .collect()
-    }
-
-    #[test]
-    fn a_reference_to_a_robot_is_that_robot() {
-        let robot = Sample::odd();
-        let reference = &robot;
-        assert_eq!(names(reference), GAITS.map(|name| name.as_bytes().to_vec()));
-        for (place, side) in Side::ALL.into_iter().enumerate() {
-            assert_eq!((&reference).side(side), robot.sides[place]);
-        }
-        assert_eq!((&reference).limits(), robot.limits);
-        assert_eq!((&reference).slew(), robot.slew);
-        assert_eq!((&reference).neutral(), robot.neutral);
-        assert_eq!((&reference).calibration(), robot.calibration);
-        for servo in Servo::ALL {
-            assert_eq!((&reference).reach(servo), *servo.of(&robot.reach));
-            assert_eq!((&reference).servo(servo), *servo.of(&robot.calibration));
-            assert_eq!((&reference).neutral_of(servo), *servo.of(&robot.neutral));
-        }
-        assert_eq!((&reference).supplies(), robot.supplies);
-        assert_eq!((&reference).hash(), robot.hash);
-        assert_eq!((&reference).servo_hash(), robot.servo_hash);
-    }
-
-    #[test]
-    fn a_gait_is_fetched_by_its_place() {
-        let robot = Sample::odd();
-        for (id, gait) in GaitId::all(robot.gaits().len()).zip(&robot.gaits) {
-            assert_eq!(robot.gait(id), *gait);
-        }
-    }
+lizard_avr::flash! {
+    /// The servos of the maps: that of the rows, that of the columns.
+    const PAIRS: [[u8; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 }

@@ -9,27 +9,30 @@
 pub mod bounds;
 mod measures;
 
+use core::mem::offset_of;
+use core::ops::Deref;
+use std::string::ToString;
 use std::vec::Vec;
 
-use lizard_avr::Flash;
+use lizard_avr::{Flash, Region};
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
 
 use crate::adjustment::Reach;
-use crate::calibration::Calibration;
-use crate::couplers::{self, Couplers};
+use crate::checksum::Checksum;
+use crate::couplers::{self, Couplers, Coupling};
 use crate::curve::Table;
 use crate::five_bar::{self, FiveBar};
 use crate::gait::{Channel, Gait, GaitId, SAMPLES, Wave};
 use crate::guard::Clearance;
 use crate::limits::Limits;
-use crate::part::{End, Servo, Side};
 use crate::point_to_point::Slew;
 use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::safety::Health;
+use crate::section::{self, Content, Header, Map};
 use crate::slider::{self, Slider};
-use crate::supply::{Rail, Reading, Supplies, Thresholds};
+use crate::supply::{Reading, Supplies, Thresholds};
 use crate::units::{Angle, Scale, Sine, Sweep};
 
 pub use measures::Measures;
@@ -68,33 +71,29 @@ const SUPPLIES: Supplies = Supplies {
         stop: 4300,
         rest: 4100,
     },
-    rail: Some(Rail {
-        reference: 3378,
-        thresholds: Thresholds {
-            slow: 4700,
-            stop: 4400,
-            rest: 3900,
-        },
-    }),
+    rail_reference: 3378,
+    rail: Thresholds {
+        slow: 4700,
+        stop: 4400,
+        rest: 3900,
+    },
 };
 
 /// A robot in integers, and what it was made from.
 #[derive(Clone, Debug)]
 pub struct Sample {
     pub measures: Measures,
+    pub content: Content,
     pub ends: [Loop; 2],
-    pub sides: [Slider; 2],
-    pub limits: Limits,
-    pub slew: Slew,
-    pub neutral: [Angle; 4],
-    pub calibration: [Calibration; 4],
-    pub gaits: Vec<Gait>,
-    pub names: Vec<u8>,
-    pub waves: Vec<Wave>,
-    pub reach: [Reach; 4],
-    pub supplies: Supplies,
-    pub hash: u32,
-    pub servo_hash: u32,
+    robot: Robot<'static>,
+}
+
+impl Deref for Sample {
+    type Target = Robot<'static>;
+
+    fn deref(&self) -> &Robot<'static> {
+        &self.robot
+    }
 }
 
 /// The bars of one end, with every table that they need.
@@ -131,13 +130,16 @@ impl Bars {
     }
 
     pub fn couplers(&self) -> Couplers<'_> {
-        let tables = couplers::Tables {
-            rise: Flash::from(&self.rise),
+        Couplers::new(Coupling::new(self.left, self.right), self.tables())
+    }
+
+    fn tables(&self) -> couplers::Tables<'_> {
+        couplers::Tables {
+            rise: Some(Flash::from(&self.rise)),
             stretched: Some(Flash::from(&self.stretched)),
             folded: self.folded.as_ref().map(Flash::from),
             skew: self.skew.as_ref().map(Flash::from),
-        };
-        Couplers::new(self.left, self.right, tables)
+        }
     }
 }
 
@@ -163,9 +165,22 @@ impl Loop {
         })
     }
 
-    pub fn five_bar(&self) -> FiveBar<'_> {
+    /// As a section has them.
+    fn content(&self) -> section::Loop {
         let [base, left, right] = self.bars;
-        FiveBar::new(base, left, right, self.couplers.couplers())
+        section::Loop {
+            scale: self.scale,
+            base,
+            cranks: [left, right],
+            couplers: [self.couplers.left, self.couplers.right],
+            near_stretched: true,
+        }
+    }
+
+    pub fn five_bar(&self) -> FiveBar<'_> {
+        let Bars { left, right, .. } = self.couplers;
+        let bars = five_bar::Bars::new(self.bars, [left, right], self.scale);
+        FiveBar::new(bars, self.couplers.tables())
     }
 }
 
@@ -185,9 +200,13 @@ impl Sample {
         let limit = |margin: f64| Sine((margin * 32768.0).ceil() as i16);
         let mut names = Vec::new();
         let gaits = gaits(&mut names);
-        Self {
-            measures,
-            ends: [end(kinematics::End::Head), end(kinematics::End::Tail)],
+        let ends = [end(kinematics::End::Head), end(kinematics::End::Tail)];
+        let content = Content {
+            name: "sample".to_string(),
+            pins: [9, 10, 5, 6],
+            rail: Some(14),
+            maps: core::array::from_fn(|_| Map::default()),
+            ends: ends.each_ref().map(Loop::content),
             sides: [side(kinematics::Side::Left), side(kinematics::Side::Right)],
             limits: Limits {
                 type2: limit(limits.type2),
@@ -208,9 +227,21 @@ impl Sample {
                 }
             }),
             supplies: SUPPLIES,
-            hash: 0x1f0a_9c3e,
             servo_hash: 0x7b5d_2e81,
+        };
+        Self {
+            robot: read(&content),
+            measures,
+            content,
+            ends,
         }
+    }
+
+    /// With some of its numbers changed.
+    pub fn with(mut self, change: impl FnOnce(&mut Content)) -> Self {
+        change(&mut self.content);
+        self.robot = read(&self.content);
+        self
     }
 
     /// See [`Measures::paper`].
@@ -236,27 +267,32 @@ impl Sample {
         Clearance::of(self, &Pose::NEUTRAL).hazard(self).is_none()
     }
 
-    /// A gait by its name.
-    pub fn id(&self, name: &str) -> GaitId {
-        GaitId::all(self.gaits().len())
-            .find(|id| self.name(*id).eq(name.bytes()))
-            .expect("a gait of that name")
+    /// The same robot under another hash.
+    pub fn with_hash(&self, hash: u32) -> Robot<'static> {
+        let mut section = self.content.section();
+        let at = offset_of!(Header, hash);
+        section[at..at + 4].copy_from_slice(&hash.to_le_bytes());
+        let crc = Checksum::of(&section[offset_of!(Header, name)..]).0;
+        let at = offset_of!(Header, crc);
+        section[at..at + 2].copy_from_slice(&crc.to_le_bytes());
+        Robot::unchecked(Region::new(Vec::leak(section))).expect("a whole section")
     }
 
     /// With one more gait that stands still, of this name.
-    pub fn with_gait(mut self, name: &str) -> Self {
-        self.gaits.push(Gait {
-            name_start: self.names.len() as u16,
-            name_length: name.len() as u8,
-            ..Gait::STILL
-        });
-        self.names.extend(name.bytes());
-        self
+    pub fn with_gait(self, name: &str) -> Self {
+        self.with(|content| {
+            content.gaits.push(Gait {
+                name_start: content.names.len() as u16,
+                name_length: name.len() as u16,
+                ..Gait::STILL
+            });
+            content.names.extend(name.bytes());
+        })
     }
 
     /// The chassis angles of a pose, deg.
     pub fn degrees(&self, pose: &Pose) -> [f64; 4] {
-        pose.angles(&self.neutral).map(degrees)
+        pose.angles(&self.neutral()).map(degrees)
     }
 
     /// The truth about a pose; none where a loop does not close.
@@ -267,70 +303,24 @@ impl Sample {
 
     /// Sweeps within the travel of every servo.
     pub fn pose(&self) -> impl Strategy<Value = Pose> + use<> {
-        self.calibration
+        self.calibration()
             .map(|servo| (servo.min.0..=servo.max.0).prop_map(Sweep))
             .prop_map(Pose)
     }
 }
 
-impl Robot for Sample {
-    fn end(&self, end: End) -> FiveBar<'_> {
-        match end {
-            End::Head => self.ends[0].five_bar(),
-            End::Tail => self.ends[1].five_bar(),
-        }
+impl Robot<'_> {
+    /// A gait by its name.
+    pub fn id(&self, name: &str) -> GaitId {
+        GaitId::all(self.gait_count())
+            .find(|id| self.name(*id).eq(name.bytes()))
+            .expect("a gait of that name")
     }
+}
 
-    fn side(&self, side: Side) -> Slider {
-        match side {
-            Side::Left => self.sides[0],
-            Side::Right => self.sides[1],
-        }
-    }
-
-    fn limits(&self) -> Limits {
-        self.limits
-    }
-
-    fn slew(&self) -> Slew {
-        self.slew
-    }
-
-    fn neutral(&self) -> [Angle; 4] {
-        self.neutral
-    }
-
-    fn calibration(&self) -> [Calibration; 4] {
-        self.calibration
-    }
-
-    fn gaits(&self) -> Flash<'_, [Gait]> {
-        Flash::from(self.gaits.as_slice())
-    }
-
-    fn names(&self) -> Flash<'_, [u8]> {
-        Flash::from(self.names.as_slice())
-    }
-
-    fn waves(&self) -> Flash<'_, [Wave]> {
-        Flash::from(self.waves.as_slice())
-    }
-
-    fn reach(&self, servo: Servo) -> Reach {
-        *servo.of(&self.reach)
-    }
-
-    fn supplies(&self) -> Supplies {
-        self.supplies
-    }
-
-    fn hash(&self) -> u32 {
-        self.hash
-    }
-
-    fn servo_hash(&self) -> u32 {
-        self.servo_hash
-    }
+/// A robot by its section, which is kept until the tests end.
+fn read(content: &Content) -> Robot<'static> {
+    Robot::unchecked(Region::new(Vec::leak(content.section()))).expect("a whole section")
 }
 
 /// An angle of the core in degrees, 0..360.
@@ -437,7 +427,7 @@ fn gaits(names: &mut Vec<u8>) -> Vec<Gait> {
             names.extend(name.bytes());
             Gait {
                 name_start,
-                name_length: name.len() as u8,
+                name_length: name.len() as u16,
                 increment,
                 channels,
             }

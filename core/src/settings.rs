@@ -55,7 +55,7 @@ impl Settings {
 
     /// Those of robot.toml.
     #[inline(never)]
-    pub fn of<R: Robot>(robot: &R) -> Self {
+    pub fn of(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
         settings.set_head(robot);
         for servo in Servo::ALL {
@@ -66,7 +66,7 @@ impl Settings {
     }
 
     /// Makes them a record for the servos of a robot.
-    fn set_head<R: Robot>(&mut self, robot: &R) {
+    fn set_head(&mut self, robot: &Robot) {
         self.bytes[0] = FORMAT;
         let hash = robot.servo_hash();
         self.put(HASH, hash as u16);
@@ -76,7 +76,7 @@ impl Settings {
     /// A record that keeps a pose instead of settings: each servo's sweep is where its
     /// trim would be.
     #[inline(never)]
-    pub fn of_pose<R: Robot>(pose: &Pose, robot: &R) -> Self {
+    pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
         let mut kept = Self::NONE;
         kept.set_head(robot);
         let mut at = SERVOS;
@@ -115,7 +115,7 @@ impl Settings {
     }
 
     /// Whether they are of this format and for the servos of this robot.
-    pub fn are_for<R: Robot>(&self, robot: &R) -> bool {
+    pub fn are_for(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
         self.bytes[0] == FORMAT
             && self.get(HASH) == hash as u16
@@ -154,17 +154,17 @@ impl Settings {
     }
 
     /// What is done after power-on; `stand` for a gait that is no more.
-    pub fn boot<R: Robot>(&self, robot: &R) -> Boot {
+    pub fn boot(&self, robot: &Robot) -> Boot {
         let kept = self.get(BOOT);
         if kept == 0 {
             return Boot::Rest;
         }
-        let gait = GaitId::all(robot.gaits().len()).find(|id| key(robot.name(*id)) == kept);
+        let gait = GaitId::all(robot.gait_count()).find(|id| key(robot.name(*id)) == kept);
         Boot::Gait(gait.unwrap_or(GaitId::STAND))
     }
 
     /// Sets what is done after power-on.
-    pub fn set_boot<R: Robot>(&mut self, boot: Boot, robot: &R) {
+    pub fn set_boot(&mut self, boot: Boot, robot: &Robot) {
         let kept = match boot {
             Boot::Rest => 0,
             Boot::Gait(id) => key(robot.name(id)),
@@ -184,13 +184,13 @@ impl Settings {
 
     /// A servo's calibration.
     #[inline(never)]
-    pub fn calibration<R: Robot>(&self, servo: Servo, robot: &R) -> Calibration {
+    pub fn calibration(&self, servo: Servo, robot: &Robot) -> Calibration {
         self.servo(servo).apply(&robot.servo(servo))
     }
 
     /// The first servo whose travel ends short of the neutral angle or of a gait.
     #[inline(never)]
-    pub fn unfit<R: Robot>(&self, robot: &R) -> Option<Servo> {
+    pub fn unfit(&self, robot: &Robot) -> Option<Servo> {
         Servo::ALL.into_iter().find(|servo| {
             let calibration = self.calibration(*servo, robot);
             !robot.reach(*servo).is_within(&calibration)

@@ -19,28 +19,42 @@ pub const LONGEST: f64 = 255.0 * 256.0;
 /// add up to has a sign.
 pub const LONGEST_ARMS: f64 = 127.0 * 256.0;
 
-/// One side of the body, lengths in steps of `scale`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Slider {
-    /// How many steps are a millimetre.
-    pub scale: Scale,
-    /// Front shaft's x less the rear shaft's.
-    pub offset: i16,
-    /// Distance between the two shafts along y.
-    pub base: u16,
-    /// Arm at the front crank, at a right angle to it.
-    pub front: i16,
-    /// Arm at the rear crank, at a right angle to it.
-    pub rear: i16,
-    /// The slider's nominal length.
-    pub nominal: u16,
-    /// The shortest that its stroke allows.
-    pub min: u16,
-    /// The longest.
-    pub max: u16,
+lizard_avr::plain! {
+    /// One side of the body, lengths in steps of `scale`.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Slider {
+        /// How many steps are a millimetre.
+        pub scale: Scale,
+        /// Front shaft's x less the rear shaft's.
+        pub offset: i16,
+        /// Distance between the two shafts along y.
+        pub base: u16,
+        /// Arm at the front crank, at a right angle to it.
+        pub front: i16,
+        /// Arm at the rear crank, at a right angle to it.
+        pub rear: i16,
+        /// The slider's nominal length.
+        pub nominal: u16,
+        /// The shortest that its stroke allows.
+        pub min: u16,
+        /// The longest.
+        pub max: u16,
+    }
 }
 
 impl Slider {
+    /// No slider.
+    pub const NONE: Self = Self {
+        scale: Scale { bits: 0 },
+        offset: 0,
+        base: 0,
+        front: 0,
+        rear: 0,
+        nominal: 0,
+        min: 0,
+        max: 0,
+    };
+
     /// The right side as a left one.
     pub const fn mirrored(self) -> Self {
         Self {
@@ -54,7 +68,8 @@ impl Slider {
     ///
     /// Written for the left side, where the front arm leads its crank by a
     /// right angle; the right side is its mirror image.
-    pub fn length_sq(&self, front: Direction, rear: Direction) -> u32 {
+    #[inline(never)]
+    pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let aside = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
         let ahead = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
         let x = (self.offset + aside).unsigned_abs();
@@ -63,9 +78,9 @@ impl Slider {
     }
 
     /// True where a squared length is within the stroke.
-    pub const fn allows(&self, length_sq: u32) -> bool {
-        let (min, max) = (self.min as u32, self.max as u32);
-        min * min <= length_sq && length_sq <= max * max
+    pub fn allows(&self, length_sq: u32) -> bool {
+        let square = |length| mul_unsigned(length, length);
+        square(self.min) <= length_sq && length_sq <= square(self.max)
     }
 
     /// The travel from nominal at a length, in hundredths of a millimetre.
@@ -118,9 +133,9 @@ mod tests {
             // Cranks in the frame of their end; the slider's rear one in the tail's.
             let got = if mirrored {
                 let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
-                integers.mirrored().length_sq(front, rear)
+                integers.mirrored().length_sq(&front, &rear)
             } else {
-                integers.length_sq(Direction::of(front), Direction::of(rear))
+                integers.length_sq(&Direction::of(front), &Direction::of(rear))
             };
             let (of, turn) = if mirrored {
                 (kinematics::Side::Right, -90.0)

@@ -10,6 +10,7 @@
 
 use core::convert::Infallible;
 
+use lizard_avr::Region;
 use ufmt::uWrite;
 
 use crate::console::{Console, Counters, LONGEST_LINE};
@@ -17,7 +18,6 @@ use crate::control::Control;
 use crate::memory::Memory;
 use crate::pose::Pulses;
 use crate::restart::{Restart, Stance};
-use crate::robot::Robot;
 use crate::safety::Health;
 use crate::supply::Reading;
 use crate::units::CYCLES_PER_US;
@@ -37,6 +37,11 @@ pub trait Board {
 
     /// Steps of a pulse's width in a microsecond; the core counts in 1/16 us.
     const CYCLES_PER_US: u16;
+
+    /// Connects the servos A1 to A4 to these pins, and the measured rail, if there is
+    /// one, by their Arduino numbers; 14 to 19 are A0 to A5. Once, before the first
+    /// pulses.
+    fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
 
     /// Ticks since power-on, modulo 256; one every 20 ms.
     fn ticks(&self) -> u8;
@@ -86,8 +91,8 @@ pub trait Board {
 /// The robot, somebody at its serial line, and the tick that it has computed a frame
 /// for.
 #[derive(Clone, Debug)]
-pub struct Main<R> {
-    control: Control<R>,
+pub struct Main {
+    control: Control,
     console: Console,
     ticks: u8,
 }
@@ -101,30 +106,41 @@ pub enum Step {
     Idle(u8),
 }
 
-impl<R: Robot> Main<R> {
-    /// A robot; [`Main::begin`] has to follow.
-    pub const fn new(robot: R) -> Self {
+impl Default for Main {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Main {
+    /// No robot yet; [`Main::begin`] has to follow.
+    pub const fn new() -> Self {
         Self {
-            control: Control::new(robot),
+            control: Control::new(),
             console: Console::new(),
             ticks: 0,
         }
     }
 
-    /// Begins on a board. Once, before the first step.
+    /// Begins on a board, with the robot at the beginning of `flash`. Once, before the
+    /// first step.
     #[inline(always)]
-    pub fn begin<B: Board>(&mut self, board: &mut B) {
+    pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
             assert!(B::ROOM >= LONGEST_LINE);
             assert!(B::CYCLES_PER_US == CYCLES_PER_US);
         }
-        self.ticks = board.ticks();
         let restart = *board.restart();
-        self.control.begin(board.memory(), &restart);
+        self.control.begin(flash, board.memory(), &restart);
+        let robot = self.control.motion().robot();
+        if !robot.is_none() {
+            board.connect(robot.pins(), robot.rail_pin());
+        }
+        self.ticks = board.ticks();
     }
 
     /// The robot.
-    pub const fn control(&self) -> &Control<R> {
+    pub const fn control(&self) -> &Control {
         &self.control
     }
 
@@ -192,19 +208,19 @@ mod tests {
     use crate::virtual_board::{Running, Transmitter, VirtualBoard};
 
     /// A robot whose program begins at this tick, with these bytes already received.
-    fn begun(ticks: u8, received: &str) -> Running<Sample> {
+    fn begun(ticks: u8, received: &str) -> Running {
         let mut board = VirtualBoard::default().at_tick(ticks);
         board.send(received.as_bytes());
-        Running::on(Sample::odd(), board)
+        Running::on(Sample::odd().section(), board)
     }
 
     /// Whether main does something in a step.
-    fn works(running: &mut Running<Sample>) -> bool {
+    fn works(running: &mut Running) -> bool {
         running.main.step(&mut running.board) == Step::Worked
     }
 
     /// The lines written so far.
-    fn written(running: &Running<Sample>) -> usize {
+    fn written(running: &Running) -> usize {
         running.board.transmitter.text.lines().count()
     }
 
@@ -266,7 +282,7 @@ mod tests {
     #[test]
     fn the_pulses_handed_over_are_those_of_the_motion_and_counters_reach_status() {
         let mut running = begun(0, "");
-        let mut alone = Motion::new(Sample::odd());
+        let mut alone = Motion::new(*Sample::odd());
         for _ in 0..30 {
             running.frame();
             assert_eq!(running.board.submitted(), alone.tick());
@@ -329,7 +345,7 @@ mod tests {
 
     #[test]
     fn a_slow_memory_holds_up_the_input_and_no_frame() {
-        let mut running = Running::power_on(Sample::odd());
+        let mut running = Running::power_on(*Sample::odd());
         running.run(10);
         running.board.send(b"save\rstand\r");
         running.board.memory.slowness = 50;

@@ -25,35 +25,33 @@ pub struct Reading {
     pub rail: u16,
 }
 
-/// Voltages of one supply below which the robot reacts, mV, falling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Thresholds {
-    /// Below: gaits at no more than half their pace, and no EEPROM writes.
-    pub slow: u16,
-    /// Below: the robot freezes.
-    pub stop: u16,
-    /// Below: the pulses end.
-    pub rest: u16,
+lizard_avr::plain! {
+    /// Voltages of one supply below which the robot reacts, mV, falling.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Thresholds {
+        /// Below: gaits at no more than half their pace, and no EEPROM writes.
+        pub slow: u16,
+        /// Below: the robot freezes.
+        pub stop: u16,
+        /// Below: the pulses end.
+        pub rest: u16,
+    }
 }
 
-/// The servos' own rail, divided on its way to an analogue pin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rail {
-    /// The reference times the divider's ratio, mV.
-    pub reference: u16,
-    /// Of the rail itself.
-    pub thresholds: Thresholds,
-}
-
-/// What robot.toml says of the supplies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Supplies {
-    /// The chip's reference, mV.
-    pub reference: u16,
-    /// Of the chip's own supply.
-    pub board: Thresholds,
-    /// The servos' rail, where it is measured.
-    pub rail: Option<Rail>,
+lizard_avr::plain! {
+    /// What robot.toml says of the supplies.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Supplies {
+        /// The chip's reference, mV.
+        pub reference: u16,
+        /// Of the chip's own supply.
+        pub board: Thresholds,
+        /// The reference times the ratio of the divider through which the servos' rail is
+        /// measured, mV; 0 where it is not.
+        pub rail_reference: u16,
+        /// Of the rail itself.
+        pub rail: Thresholds,
+    }
 }
 
 /// What the supply allows.
@@ -111,9 +109,9 @@ impl Voltage {
     }
 
     /// The servos' rail.
-    pub fn of_rail(reading: Reading, rail: &Rail) -> Self {
+    pub fn of_rail(reading: Reading, supplies: &Supplies) -> Self {
         Self {
-            product: mul_unsigned(reading.rail, rail.reference),
+            product: mul_unsigned(reading.rail, supplies.rail_reference),
             counts: reading.reference,
         }
     }
@@ -155,13 +153,11 @@ impl Supplies {
     /// The worse level of both supplies.
     fn level(&self, reading: Reading, above: u16) -> Level {
         let board = self.board.level(Voltage::of_board(reading, self), above);
-        match &self.rail {
-            None => board,
-            Some(rail) => {
-                let voltage = Voltage::of_rail(reading, rail);
-                board.max(rail.thresholds.level(voltage, above))
-            }
+        if self.rail_reference == 0 {
+            return board;
         }
+        let rail = Voltage::of_rail(reading, self);
+        board.max(self.rail.level(rail, above))
     }
 }
 
@@ -208,16 +204,12 @@ impl Supply {
     /// The voltage of the supply that allows less.
     pub fn worst(&self, supplies: &Supplies) -> Voltage {
         let board = Voltage::of_board(self.reading, supplies);
-        match &supplies.rail {
-            Some(rail) => {
-                let voltage = Voltage::of_rail(self.reading, rail);
-                if rail.thresholds.level(voltage, 0) > supplies.board.level(board, 0) {
-                    voltage
-                } else {
-                    board
-                }
-            }
-            None => board,
+        let rail = Voltage::of_rail(self.reading, supplies);
+        let is_worse = supplies.rail.level(rail, 0) > supplies.board.level(board, 0);
+        if supplies.rail_reference != 0 && is_worse {
+            rail
+        } else {
+            board
         }
     }
 
@@ -272,16 +264,22 @@ mod tests {
             stop: 4300,
             rest: 4100,
         },
-        rail: None,
+        rail_reference: 0,
+        rail: Thresholds {
+            slow: 0,
+            stop: 0,
+            rest: 0,
+        },
     };
 
-    const RAIL: Rail = Rail {
-        reference: 2200,
-        thresholds: Thresholds {
+    const WITH_RAIL: Supplies = Supplies {
+        rail_reference: 2200,
+        rail: Thresholds {
             slow: 6400,
             stop: 6200,
             rest: 6000,
         },
+        ..SUPPLIES
     };
 
     /// What the converter reads of a board at `volts`, its rail at `rail` volts.
@@ -319,7 +317,7 @@ mod tests {
                 // More than 81.91 V is no supply.
                 let expected = exact.floor().min(8191.0);
                 assert_eq!(f64::from(told), expected, "{reference} {mv}");
-                let rail = Voltage::of_rail(reading, &RAIL).hundredths();
+                let rail = Voltage::of_rail(reading, &WITH_RAIL).hundredths();
                 let exact = 700.0 * 2200.0 / f64::from(reference) / 10.0;
                 assert_eq!(f64::from(rail), exact.floor().min(8191.0));
             }
@@ -432,10 +430,7 @@ mod tests {
 
     #[test]
     fn the_worse_of_two_supplies_counts_and_is_the_one_that_is_told() {
-        let supplies = Supplies {
-            rail: Some(RAIL),
-            ..SUPPLIES
-        };
+        let supplies = WITH_RAIL;
         for (board, rail, level, worst) in [
             (5.0, 6.6, Level::Good, 5.0),
             (5.0, 6.3, Level::Slow, 6.3),
@@ -452,10 +447,7 @@ mod tests {
 
     #[test]
     fn what_has_not_been_measured_yet_is_not_low() {
-        let supplies = Supplies {
-            rail: Some(RAIL),
-            ..SUPPLIES
-        };
+        let supplies = WITH_RAIL;
         let mut supply = Supply::default();
         assert_eq!(
             until_change(&mut supply, Reading::default(), &supplies).0,

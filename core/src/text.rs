@@ -24,7 +24,8 @@ texts! {
     // The banner and information lines.
     Banner = "# lizard ";
     Version = env!("CARGO_PKG_VERSION");
-    BannerTables = " tables ";
+    BannerRobot = " robot ";
+    BannerNone = " without a robot";
     BannerEnd = ", send help for the commands";
     WatchTime = "# t=";
     WatchPose = " pose=";
@@ -55,6 +56,9 @@ texts! {
     WhyWatchdog = "the program hung and began anew";
     WhyLate = "a pulse came late, stopped";
     WhyBrownOut = "the supply broke down several times in a row, resting";
+    WhyRobot = "no robot in the flash, write one";
+    WhyRobotFormat = "the robot in the flash is for another version, write it again";
+    WhyRobotDamaged = "the robot in the flash is damaged, write it again";
     WhyStack = "the stack has grown into the data, stopped";
     LevelGood = ", good";
     LevelSlow = ", low: half speed, no saving";
@@ -96,6 +100,7 @@ texts! {
     FaultLate = "late";
     FaultStack = "stack";
     FaultBrownOut = "brownout";
+    FaultRobot = "robot";
     CausePower = "power";
     CauseExternal = "external";
     CauseBrownOut = "brownout";
@@ -141,6 +146,7 @@ texts! {
     NotHere = " would not reach where it is or goes, send stand first";
     LowSupply = "the supply is too low";
     NotKept = "the memory does not keep what is written";
+    NoRobot = "no robot in the flash";
     NothingSaved = "nothing is saved that could be loaded";
 }
 

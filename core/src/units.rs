@@ -48,16 +48,22 @@ pub const CYCLE16: u32 = 1 << 16;
 #[repr(transparent)]
 pub struct Angle(pub u16);
 
+lizard_avr::plain!(Angle: u16);
+
 /// An angle that a servo has turned from its neutral angle, counter-clockwise
 /// positive, 1/65536 turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Sweep(pub i16);
 
+lizard_avr::plain!(Sweep: i16);
+
 /// A margin: the sine of the angle between two bars, Q15.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
 pub struct Sine(pub i16);
+
+lizard_avr::plain!(Sine: i16);
 
 /// The width of a pulse in CPU cycles of 62.5 ns; 0 is no pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -70,13 +76,17 @@ impl From<Width> for u16 {
     }
 }
 
-/// The step of a mechanism's lengths: `2^bits` of them are a millimetre.
-///
-/// Sixteen bits hold the bars of any robot if the step follows its size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scale {
-    /// Binary logarithm of the steps in a millimetre, at most 14.
-    pub bits: u8,
+lizard_avr::plain!(Width: u16);
+
+lizard_avr::plain! {
+    /// The step of a mechanism's lengths: `2^bits` of them are a millimetre.
+    ///
+    /// Sixteen bits hold the bars of any robot if the step follows its size.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Scale {
+        /// Binary logarithm of the steps in a millimetre, at most 14.
+        pub bits: u16,
+    }
 }
 
 impl Angle {

@@ -90,6 +90,8 @@ pub struct VirtualBoard {
     /// Milliseconds since the watchdog was fed.
     unfed: u16,
     hushed: bool,
+    /// The servos' pins and the rail's, once main has named them.
+    connected: Option<([u8; 4], Option<u8>)>,
 }
 
 impl Default for VirtualBoard {
@@ -122,6 +124,7 @@ impl VirtualBoard {
             restart: Restart::NONE,
             unfed: 0,
             hushed: false,
+            connected: None,
         }
     }
 
@@ -170,7 +173,7 @@ impl VirtualBoard {
                 self.take_over();
             }
             let width = self.playing.0[servo];
-            if !self.hushed && WIDTHS.contains(&width.0) {
+            if !self.hushed && self.connected.is_some() && WIDTHS.contains(&width.0) {
                 self.begun.0[servo] = width;
             }
         }
@@ -303,6 +306,10 @@ impl Board for VirtualBoard {
 
     const ROOM: u8 = u8::MAX;
     const CYCLES_PER_US: u16 = CYCLES_PER_US;
+
+    fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
+        self.connected = Some((servos, rail));
+    }
 
     fn ticks(&self) -> u8 {
         self.ticks

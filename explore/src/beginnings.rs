@@ -1,10 +1,10 @@
 //! Where a walk begins: memories of every kind, and robots that already do something.
 
 use lizard_core::restart::Cause;
+use lizard_core::robot::Robot;
 use lizard_core::virtual_board::Eeprom;
 
 use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};
-use crate::small::Small;
 use crate::world::World;
 
 /// A state to begin with, and how it came about.
@@ -92,7 +92,7 @@ const DOES: [&[Action]; 8] = [
 /// # Panics
 /// If a memory cannot be made.
 #[must_use]
-pub fn all(robot: &'static Small) -> Vec<Beginning> {
+pub fn all(robot: Robot<'static>) -> Vec<Beginning> {
     let mut memories: Vec<(&'static str, Eeprom)> = MEMORIES
         .iter()
         .map(|(name, actions)| {

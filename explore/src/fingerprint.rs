@@ -234,7 +234,7 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::small::Small;
+    use crate::small::small;
     use crate::{Action, beginnings};
 
     #[derive(Clone, Copy, Debug)]
@@ -281,7 +281,7 @@ mod tests {
 
     #[test]
     fn every_rule_is_about_a_field_that_there_is() {
-        let robot = Box::leak(Box::new(Small::new()));
+        let robot = small();
         let mut text = String::new();
         for beginning in beginnings::all(robot) {
             for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {

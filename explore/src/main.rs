@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use lizard_explore::{search, small::Small};
+use lizard_explore::{search, small::small};
 
 fn main() -> ExitCode {
     let most = std::env::args()
@@ -12,7 +12,7 @@ fn main() -> ExitCode {
         eprintln!("explore [how many states]");
         return ExitCode::FAILURE;
     };
-    let robot = Box::leak(Box::new(Small::new()));
+    let robot = small();
     let begun = std::time::Instant::now();
     let found = search(robot, most);
     println!(

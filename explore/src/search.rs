@@ -14,9 +14,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::vec;
 
+use lizard_core::robot::Robot;
+
 use crate::action::Action;
 use crate::beginnings::{self, Beginning};
-use crate::small::Small;
 use crate::world::{Broken, Held, World};
 
 /// Numbers of states are random as they are.
@@ -66,7 +67,7 @@ struct Step {
 
 /// From all beginnings, until that many distinct states are reached or none is left.
 #[must_use]
-pub fn search(robot: &'static Small, most: usize) -> Found {
+pub fn search(robot: Robot<'static>, most: usize) -> Found {
     let actions = Action::all();
     let begun = beginnings::all(robot);
     let known: Vec<Mutex<Known>> = (0..64).map(|_| Mutex::default()).collect();

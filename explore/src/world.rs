@@ -15,7 +15,6 @@ use lizard_core::virtual_board::{Eeprom, Running, reading};
 use crate::action::Action;
 use crate::fingerprint::{self, Print};
 use crate::seen::Seen;
-use crate::small::Small;
 
 /// A rule that was broken: its sentence, and what was seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,7 +42,7 @@ const BELIEVED: u8 = 14;
 #[derive(Clone, Debug)]
 pub struct World {
     /// The firmware on its board.
-    pub running: Running<&'static Small>,
+    pub running: Running,
     /// What a bystander remembers.
     pub seen: Seen,
 }
@@ -51,7 +50,7 @@ pub struct World {
 impl World {
     /// Power comes on.
     #[must_use]
-    pub fn power_on(robot: &'static Small, mut memory: Eeprom) -> Self {
+    pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
         memory.slowness = 4;
         memory.timed = true;
         Self {
@@ -162,8 +161,8 @@ impl World {
         self.written()
     }
 
-    fn robot(&self) -> &'static Small {
-        self.running.motion().robot()
+    fn robot(&self) -> Robot<'static> {
+        *self.running.motion().robot()
     }
 
     fn reset(&mut self, cause: Cause) {
@@ -210,7 +209,7 @@ impl World {
     }
 
     /// The same robot with nothing left to say.
-    fn settled(&self) -> Running<&'static Small> {
+    fn settled(&self) -> Running {
         let mut settled = self.running.clone();
         settled.board.transmitter.text.clear();
         settled.settle();
@@ -230,7 +229,7 @@ impl World {
     }
 
     /// The same robot, left alone for some frames.
-    fn after(&self, frames: u32) -> Running<&'static Small> {
+    fn after(&self, frames: u32) -> Running {
         let mut running = self.running.clone();
         for _ in 0..frames {
             running.frame();

@@ -7,12 +7,12 @@ use lizard_core::record::{self, Outcome, RESTED};
 use lizard_core::restart::Restart;
 use lizard_core::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, Running};
-use lizard_robot::{CoreRobot, Robot};
+use lizard_robot::Robot;
 
 /// The core on a board without time.
 pub struct Board {
     robot: &'static Robot,
-    running: Running<&'static CoreRobot>,
+    running: Running,
     said: String,
     /// The line under way as another reader of lines has it.
     line: Vec<u8>,
@@ -26,7 +26,7 @@ impl Board {
     /// If it never falls silent.
     #[must_use]
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
-        let mut running = Running::with(robot.firmware(), memory, Restart::default());
+        let mut running = Running::with(*robot.firmware(), memory, Restart::default());
         // Until the supplies have been measured, a `save` waits.
         for _ in 0..30 {
             running.frame();

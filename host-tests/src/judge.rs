@@ -7,13 +7,13 @@
 
 use std::fmt;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 use lizard_host::sim::supplies;
 use lizard_robot::Robot;
 use lizard_time_limit::LIMIT;
-use simulated_uno::{Edge, Pin, SerialByte};
+use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
@@ -93,23 +93,25 @@ pub struct Verdict {
     pub cpu_ms: u64,
 }
 
-/// Runs an ELF file on avr8js. `received` are the bytes that the serial line brings
+/// Runs an image on avr8js. `received` are the bytes that the serial line brings
 /// and the cycles at which each is complete on simavr, `end` the cycle at which the
 /// run ends.
 ///
 /// # Errors
 /// A sentence: what is missing, or what avr8js cannot simulate.
 pub fn judge(
-    elf: &Path,
+    image: &Image,
     received: &[SerialByte],
     end: u64,
     robot: &Robot,
 ) -> Result<Verdict, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let hex = folder.path().join("firmware.hex");
+    let flash = folder.path().join("firmware.bin");
+    std::fs::write(&flash, image.flash()).map_err(|error| error.to_string())?;
     let mut objcopy = Command::new("avr-objcopy");
-    objcopy.args(["-O", "ihex", "-R", ".eeprom"]);
-    done(objcopy.args([elf, &hex]), "binutils-avr", "")?;
+    objcopy.args(["-I", "binary", "-O", "ihex"]);
+    done(objcopy.args([&flash, &hex]), "binutils-avr", "")?;
     let mut script = String::new();
     if let Some((pin, mv)) = supplies::at_pin(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());

@@ -50,7 +50,7 @@ fn agree(bench: &mut FirmwareBench, what: &str, apart: Apart) {
     let edges = bench.uno.edges();
     let simavr = Account::new(&edges, bench.bytes(), end);
     let received = bench.uno.received_by_uno();
-    let verdict = done(judge(&FirmwareBench::elf(), &received, end, robot()));
+    let verdict = done(judge(&FirmwareBench::image(), &received, end, robot()));
     let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
     let pulses = pulses.unwrap_or_else(|difference| panic!("{what}: {difference}"));
     assert_eq!(

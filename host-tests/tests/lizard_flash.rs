@@ -35,7 +35,7 @@ static TALKER: LazyLock<Image> = LazyLock::new(|| {
 
 /// Flash of a board that has the firmware and nothing else.
 fn firmware() -> Vec<u8> {
-    let uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the image loads");
+    let uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
     uno.flash()[..BOOT].to_vec()
 }
 

@@ -1,5 +1,5 @@
-//! The guard of every robot of this repository against floating point, at one in
-//! 64 of all pairs of servo positions. `make prove` looks at all of them.
+//! The guard of every robot of this repository against floating point and against the
+//! robot's maps of cells, at one in 64 of all pairs of servo positions. `make prove` looks at all of them.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ fn files() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_pair_of_positions_outside_the_band_is_decided_wrong_for_any_robot() {
+fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong_for_any_robot() {
     for (number, file) in (0..).zip(files()) {
         // Another share of the pairs for each robot, and for each seed.
         let share = Share {
@@ -36,6 +36,11 @@ fn no_pair_of_positions_outside_the_band_is_decided_wrong_for_any_robot() {
         let proof = Proof::of(&robot, robot.firmware(), share, |_| {});
         let pairs: u64 = proof.findings.iter().map(|one| one.tally.pairs).sum();
         assert!(pairs > 1_000_000, "{pairs} pairs are no walk");
+        let certified = proof.certified();
+        assert!(
+            certified > pairs / 50,
+            "{certified} of {pairs} pairs in cells"
+        );
         for finding in &proof.findings {
             assert_eq!(
                 finding.tally.wrong,

@@ -6,14 +6,13 @@ use std::thread;
 
 use lizard_host_tests::trouble::{Activity, Scenario, campaign};
 use lizard_host_tests::{FirmwareBench, robot, seed};
-use simulated_uno::Image;
 
 /// As many scenarios, an eighth for each activity.
 const COUNT: u64 = 152;
 
 #[test]
 fn whatever_goes_wrong_at_whatever_moment_the_robot_does_what_a_user_would_sign() {
-    let image = Image::read(FirmwareBench::elf()).expect("make firmware");
+    let image = FirmwareBench::image();
     let threads = thread::available_parallelism().map_or(1, |n| n.get());
     let summary = campaign(&image, robot(), seed(), COUNT, threads, |_, _| {});
     let first = summary.failures.first();

@@ -22,7 +22,7 @@ fn walk_all(model: ServoModel) -> Replay {
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
     }
     let script = Script { steps, end_ms: ms };
-    let mut uno = Uno::load(FirmwareBench::elf(), Fidelity::DataSheet).expect("the firmware");
+    let mut uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));
     let recording = recording.expect("nothing is written");

@@ -4,12 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use lizard_robot::Robot;
-use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, LoadError, Pin, SerialByte, State, Uno};
+use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, LoadError, Pin, SerialByte, State, Uno};
 
-use crate::Failure;
 use crate::sim::frame::{FRAME, Frame, frames, latest_start, next_start, opens, servo_pins};
 use crate::sim::lines::{Line, LineReader};
 use crate::sim::supplies;
+use crate::{Failure, firmware};
 
 /// The longest wait for an answer after its command has been sent, ms. The
 /// console promises much less.
@@ -98,16 +98,21 @@ impl SimulatedBoard {
     /// # Errors
     /// The ELF file is missing or wrong.
     pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
-        match Uno::load(elf, fidelity) {
-            Ok(mut uno) => {
-                supplies::connect(&mut uno, robot);
-                Ok(Self::with_uno(uno, servo_pins(robot)))
-            }
+        match firmware::with_robot(elf, robot) {
+            Ok(image) => Ok(Self::with_image(image, fidelity, robot)),
             Err(error) => Err(BoardError::Load {
                 elf: elf.to_owned(),
                 error,
             }),
         }
+    }
+
+    /// The same with an image that has the robot in it already.
+    #[must_use]
+    pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
+        let mut uno = Uno::with_image(image, fidelity);
+        supplies::connect(&mut uno, robot);
+        Self::with_uno(uno, servo_pins(robot))
     }
 
     /// Powers a board on and waits for the lizard's banner.

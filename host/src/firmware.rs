@@ -1,16 +1,18 @@
-//! Which firmware a command runs on the simulated UNO, and that it is the robot's.
+//! Which firmware a command runs on the simulated UNO, and with which robot.
 //!
-//! A firmware has the numbers of one robot compiled into it: its pins, its pulses,
-//! its gaits. Run for another one, it moves other pins, so that all tables come out
-//! empty or wrong, and nothing looks like a fault. So each image is started once and
-//! asked: the first line that it says names the robot by a number, `tables 5265f050`.
+//! The firmware is one image for any lizard; its robot is a section of flash behind the
+//! code. So a command takes whatever image there is and puts the robot that it was told
+//! into it. Where somebody names an image that has another robot in it, one of the two is
+//! not what was meant, and it is not run.
 
 use std::path::{Path, PathBuf};
 
+use lizard_core::robot::Robot as CoreRobot;
+use lizard_core::section::{Region, SPACE, START};
 use lizard_robot::Robot;
-use simulated_uno::Fidelity;
+use simulated_uno::{Image, LoadError};
 
-use crate::board::{BANNER_MS, SimulatedBoard};
+use crate::board::BoardError;
 use crate::{Failure, RobotFile};
 
 /// Where `make firmware` leaves it.
@@ -22,9 +24,8 @@ enum FirmwareError {
     #[error("there is no firmware at {0}; build it with `make firmware`")]
     Missing(String),
     #[error(
-        "{} is the firmware of another robot than {robot}: its tables are {its}, those of that \
-         robot {wanted}; `make firmware{and_robot}` builds the right one, or --robot names \
-         the robot that it was built for",
+        "{} has the robot {its} in it, and not {robot}, which is {wanted}; without --elf, the \
+         program that `make firmware` has built runs with any robot",
         elf.display()
     )]
     OtherRobot {
@@ -32,8 +33,6 @@ enum FirmwareError {
         robot: String,
         its: String,
         wanted: String,
-        /// ` ROBOT=...`, or nothing for the robot that is built without.
-        and_robot: String,
     },
 }
 
@@ -43,45 +42,67 @@ impl From<FirmwareError> for Failure {
     }
 }
 
-/// The firmware to run for a robot: the ELF file given, or the one that `make
-/// firmware` leaves in this folder or one above it. `file` is where the robot was
-/// read from.
+/// The firmware to run for a robot: the file given, which must have this robot in it, or
+/// what `make firmware` leaves in this folder or one above it, with this robot put into it;
+/// and that file. `file` is where the robot was read from.
 ///
-/// A program that says no such first line is no lizard's and is let through: what it
-/// does is seen when it runs.
+/// An image that has no robot's section is no lizard's and is let through: what it does is
+/// seen when it runs.
 ///
 /// # Errors
-/// There is none, it is no program of an AVR, or it is the firmware of another robot.
+/// There is none, it is no program of an AVR, or it has another robot in it.
 pub(crate) fn of_robot(
     elf: Option<&Path>,
     file: &RobotFile,
     robot: &Robot,
-) -> Result<PathBuf, Failure> {
-    let elf = find(elf)?;
-    let mut board = SimulatedBoard::power_on(&elf, Fidelity::DataSheet, robot)?;
-    let banner = board.next_line(BANNER_MS).unwrap_or_default();
-    let wanted = format!("{:08x}", robot.firmware().hash());
-    match tables(&banner) {
-        Some(its) if its != wanted => Err(FirmwareError::OtherRobot {
-            robot: file.name()?,
-            its: its.to_owned(),
-            wanted,
-            and_robot: file
-                .given()
-                .map(|path| format!(" ROBOT={}", path.display()))
-                .unwrap_or_default(),
-            elf,
+) -> Result<(PathBuf, Image), Failure> {
+    let path = find(elf)?;
+    let load = |error| BoardError::Load {
+        elf: path.clone(),
+        error,
+    };
+    if elf.is_some() {
+        let image = Image::read(&path).map_err(load)?;
+        let flash = image.flash();
+        if let Some(its) = robot_in(&flash)
+            && its.hash() != robot.firmware().hash()
+        {
+            return Err(FirmwareError::OtherRobot {
+                robot: file.name()?,
+                its: named(&its),
+                wanted: named(robot.firmware()),
+                elf: path,
+            }
+            .into());
         }
-        .into()),
-        _ => Ok(elf),
     }
+    let image = with_robot(&path, robot).map_err(load)?;
+    Ok((path, image))
 }
 
-/// The number of a robot in a firmware's first line, `# lizard 0.2.0 tables 5265f050, ...`.
-fn tables(banner: &str) -> Option<&str> {
-    let (_, after) = banner.strip_prefix("# lizard ")?.split_once(" tables ")?;
-    let end = after.find(|c: char| !c.is_ascii_hexdigit());
-    Some(&after[..end.unwrap_or(after.len())])
+/// The program of an ELF or HEX file with this robot in the place of the one that it has;
+/// as it is where it has none.
+///
+/// # Errors
+/// It cannot be read, or is no program of an AVR.
+pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, LoadError> {
+    let mut image = Image::read(path)?;
+    if robot_in(&image.flash()).is_some() {
+        let start = u32::from(START);
+        image.replace(start..start + u32::from(SPACE), &robot.section())?;
+    }
+    Ok(image)
+}
+
+/// The robot in a flash.
+fn robot_in(flash: &[u8]) -> Option<CoreRobot<'_>> {
+    CoreRobot::open(Region::new(flash.get(usize::from(START)..)?)).ok()
+}
+
+/// A robot's name and hash, as its banner says them.
+fn named(robot: &CoreRobot) -> String {
+    let name: String = robot.label().map(char::from).collect();
+    format!("{name} {:08x}", robot.hash())
 }
 
 fn find(given: Option<&Path>) -> Result<PathBuf, Failure> {
@@ -98,19 +119,4 @@ fn find(given: Option<&Path>) -> Result<PathBuf, Failure> {
     folders
         .find(|path| path.is_file())
         .ok_or_else(|| missing(Path::new(BUILT)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_number_of_the_robot_is_read_from_the_first_line() {
-        let banner = "# lizard 0.2.0 tables 5265f050, send help for the commands";
-        assert_eq!(tables(banner), Some("5265f050"));
-        assert_eq!(tables("# lizard 0.2.0 tables 00ff"), Some("00ff"));
-        assert_eq!(tables("# lizard 0.2.0"), None);
-        assert_eq!(tables("hello tables 5265f050"), None);
-        assert_eq!(tables(""), None);
-    }
 }

@@ -12,7 +12,7 @@ pub mod console;
 pub mod draw;
 mod failure;
 #[cfg(feature = "simulator")]
-mod firmware;
+pub mod firmware;
 #[cfg(feature = "console")]
 pub mod flash;
 pub mod gaits;

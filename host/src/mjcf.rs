@@ -159,9 +159,8 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
 
 /// Three cycles of a gait by the firmware on the simulated UNO.
 fn course(args: &Args, robot: &Robot, gait: &CheckedGait) -> Result<Course, Failure> {
-    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, robot)?;
-    let mut uno = Uno::load(&elf, Fidelity::DataSheet)
-        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    let (_, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, robot)?;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::every(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
     if recording.state != State::Alive {

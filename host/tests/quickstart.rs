@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lizard_core::virtual_board::Running;
-use lizard_robot::{CoreRobot, Robot};
+use lizard_robot::Robot;
 
 fn read(path: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -12,7 +12,7 @@ fn read(path: &str) -> String {
 
 /// The paper's robot with an EEPROM that was never written, on 5 V.
 struct Board {
-    running: Running<CoreRobot>,
+    running: Running,
 }
 
 impl Board {

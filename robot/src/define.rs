@@ -370,7 +370,6 @@ fn harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
 mod tests {
     use crate::testing::{body, robot};
     use crate::{Error, Robot};
-    use lizard_core::robot::Robot as _;
 
     fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
         Robot::parse(&format!("{}{gaits}", body("paper")))

@@ -213,6 +213,33 @@ pub enum Problem {
         "is so far from the middle that foot {0} is in the air at neutral; all four must carry"
     )]
     InTheAir(&'static str),
+    /// A name of the robot that the firmware cannot say.
+    #[error("must be at most {most} lower-case letters, digits and dashes")]
+    RobotName {
+        /// How many characters it may have.
+        most: usize,
+    },
+    /// More gaits than the board has room for.
+    #[error(
+        "the robot takes {over} bytes more than the {most} that the board has for it; {waves} waveforms take {of_waves}, {gaits} gaits and their names {of_gaits}: leave out gaits, first those whose waveform no other has"
+    )]
+    Large {
+        /// Bytes too many.
+        over: usize,
+        /// Bytes that there are.
+        most: usize,
+        /// Its waveforms.
+        waves: usize,
+        /// Their bytes.
+        of_waves: usize,
+        /// Its gaits.
+        gaits: usize,
+        /// Bytes of them and their names.
+        of_gaits: usize,
+    },
+    /// Numbers that passed every check of a file and that the firmware does not take.
+    #[error("the firmware would not take this robot: its numbers cannot be worked with")]
+    Impossible,
     /// A gait name the console cannot take.
     #[error("is no gait name: {0}")]
     Name(&'static str),

@@ -4,16 +4,17 @@
 //! [`Robot::load`] reads the file and checks everything in it, every sample of
 //! every gait included, so a `Robot` that exists is one that can walk. From it
 //! come the gaits in floating point beside the tables that the firmware reads
-//! ([`CheckedGait`]), the robot in the integers of the core ([`CoreRobot`]) and the Rust
-//! source that carries these into an image ([`CoreRobot::source`]).
+//! ([`CheckedGait`]), the robot in the integers of the core ([`CoreRobot`]) and the
+//! section of flash that carries these to the board ([`Robot::section`]).
 //!
 //! Inside, a file becomes `Measures`, all of it but the gaits; these and the gaits'
-//! `Tables` become `Numbers`, the integers; a [`Robot`] holds all of them, and a
-//! [`CoreRobot`] is the numbers as the core reads them. docs/firmware.md says how the
-//! types of other crates that are a robot differ from these.
+//! `Tables` become the integers, [`lizard_core::section::Content`]; a [`Robot`] holds all
+//! of them, and a [`CoreRobot`] is what the core reads of them. docs/firmware.md says how
+//! the types of other crates that are a robot differ from these.
 
 mod accuracy;
 mod audit;
+mod cells;
 mod checked_gait;
 mod coil;
 mod core_robot;
@@ -24,7 +25,6 @@ mod feet;
 mod file;
 mod friction;
 mod gait;
-mod generate;
 mod ground;
 mod harmonic;
 mod hips;
@@ -62,9 +62,10 @@ mod yields;
 
 pub use accuracy::TableError;
 pub use audit::{Audit, Least, Peak};
+pub use cells::CellMaps;
 pub use checked_gait::{CheckedGait, Walked};
 pub use coil::Coil;
-pub use core_robot::CoreRobot;
+pub use core_robot::{CoreRobot, flash};
 pub use drive::{Drive, Kind};
 pub use error::{Error, Hint, Problem};
 pub use feet::{Body, Feet, GRAVITY};

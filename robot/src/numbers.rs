@@ -6,19 +6,15 @@
 //! even, it is rounded to the safe side: limits of margins up, strokes and
 //! travels inwards, the slew limit down.
 
-use std::sync::Arc;
-
 use lizard_avr::Flash;
 use lizard_core::adjustment::Reach;
 use lizard_core::calibration::Calibration;
-use lizard_core::couplers::{self, Couplers};
-use lizard_core::curve::Table;
-use lizard_core::five_bar::FiveBar;
+use lizard_core::couplers::Couplers;
 use lizard_core::gait::SAMPLES;
 use lizard_core::limits::Limits;
 use lizard_core::point_to_point::Slew;
+use lizard_core::section::{Content, Loop, Map};
 use lizard_core::slider::Slider;
-use lizard_core::supply::Supplies;
 use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
 use lizard_kinematics as kinematics;
 
@@ -31,124 +27,64 @@ use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER
 /// What rounding may add to a number that robot.toml gives exactly.
 const SLACK: f64 = 1e-6;
 
-/// A robot in the integers of its firmware, in the types of the core.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Numbers {
-    /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
-    pub pins: [u8; 4],
-    pub ends: [Loop; 2],
-    pub sides: [Slider; 2],
-    pub limits: Limits,
-    pub slew: Slew,
-    pub neutral: [Angle; 4],
-    pub calibration: [Calibration; 4],
-    /// What the gaits and the neutral pose need of the servos.
-    pub reach: [Reach; 4],
-    pub supplies: Supplies,
-    /// Arduino number of the pin of the servos' rail, where that is measured.
-    pub rail_pin: Option<u8>,
-    pub tables: Arc<Tables>,
-}
-
-/// One end's loop, in steps of its scale.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Loop {
-    /// Steps in a millimetre; the margins do not need it.
-    pub scale: Scale,
-    pub base: i16,
-    pub left: i16,
-    pub right: i16,
-    pub couplers: Bars,
-}
-
-/// The couplers of a loop, and which tables they need.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Bars {
-    pub left: i16,
-    pub right: i16,
-    pub near_stretched: bool,
-    rise: Table,
-    stretched: Option<Table>,
-    folded: Option<Table>,
-    skew: Option<Table>,
-}
-
-impl Numbers {
-    /// The integers of a robot.
-    pub fn new(measures: &Measures, tables: Tables) -> Self {
-        let Measures {
-            lizard,
-            servos,
-            limits,
-            pace,
-            supplies,
-            ..
-        } = measures;
-        Self {
-            pins: servos.map(|servo| servo.pin),
-            ends: kinematics::End::ALL.map(|end| Loop::new(&lizard.end(end))),
-            sides: kinematics::Side::ALL.map(|of| side(&lizard.side(of), limits)),
-            limits: Limits {
-                type2: sine(limits.type2),
-                type1: sine(limits.type1),
-                leg: sine(limits.leg),
-            },
-            slew: Slew::new(floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16),
-            neutral: servos
-                .map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16)),
-            calibration: servos.map(|servo| calibration(&servo)),
-            reach: reach(&tables),
-            supplies: supplies.numbers(),
-            rail_pin: supplies.rail.map(|rail| rail.pin),
-            tables: Arc::new(tables),
-        }
+/// The numbers of a robot, without its maps of certified cells.
+pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Content {
+    let Measures {
+        lizard,
+        servos,
+        limits,
+        pace,
+        supplies,
+        ..
+    } = measures;
+    let pins = servos.map(|servo| servo.pin);
+    let neutral =
+        servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
+    let calibrations = servos.map(|servo| calibration(&servo));
+    let reach = reach(tables);
+    Content {
+        name: name.to_string(),
+        servo_hash: servo_hash(&pins, &neutral, &calibrations),
+        pins,
+        rail: supplies.rail.map(|rail| rail.pin),
+        neutral,
+        calibration: calibrations,
+        reach,
+        limits: Limits {
+            type2: sine(limits.type2),
+            type1: sine(limits.type1),
+            leg: sine(limits.leg),
+        },
+        slew: Slew::new(floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16),
+        supplies: supplies.numbers(),
+        ends: kinematics::End::ALL.map(|end| five_bar(&lizard.end(end))),
+        sides: kinematics::Side::ALL.map(|of| side(&lizard.side(of), limits)),
+        gaits: tables.gaits.clone(),
+        names: tables.names.clone(),
+        waves: tables.waves.clone(),
+        maps: std::array::from_fn(|_| Map::default()),
     }
 }
 
-impl Bars {
-    /// Whether the table of folded couplers is needed.
-    pub fn differ_much(&self) -> bool {
-        self.folded.is_some()
-    }
+/// The hash of the servos alone, by which a saved calibration is known to be theirs.
+/// Gaits, bars and limits may change without it.
+fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
+    crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
 }
 
-impl Loop {
-    fn new(bars: &kinematics::FiveBar) -> Self {
-        let scale = scale::of_loop(bars);
-        let length = |mm: f64| steps(mm, scale) as i16;
-        // The crank tips part the furthest where both cranks point outwards.
-        let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length);
-        let furthest = (base as u32 + left as u32 + right as u32) / 2 + 2;
-        let [a, b] = [bars.coupler_left, bars.coupler_right].map(length);
-        let near_stretched = Couplers::is_near_stretched(a, b, furthest * furthest);
-        Self {
-            scale,
-            base,
-            left,
-            right,
-            couplers: Bars {
-                left: a,
-                right: b,
-                near_stretched,
-                rise: couplers::rise(a, b),
-                stretched: near_stretched.then(|| couplers::stretched(a, b)),
-                folded: Couplers::differ_much(a, b).then(|| couplers::folded(a, b)),
-                skew: (a != b).then(|| couplers::skew(a, b)),
-            },
-        }
-    }
-
-    /// The loop as the core has it.
-    pub fn five_bar(&self) -> FiveBar<'_> {
-        let bars = &self.couplers;
-        let tables = couplers::Tables {
-            rise: Flash::from(&bars.rise),
-            stretched: bars.stretched.as_ref().map(Flash::from),
-            folded: bars.folded.as_ref().map(Flash::from),
-            skew: bars.skew.as_ref().map(Flash::from),
-        };
-        let couplers = Couplers::new(bars.left, bars.right, tables);
-        FiveBar::new(self.base, self.left, self.right, couplers)
+fn five_bar(bars: &kinematics::FiveBar) -> Loop {
+    let scale = scale::of_loop(bars);
+    let length = |mm: f64| steps(mm, scale) as i16;
+    // The crank tips part the furthest where both cranks point outwards.
+    let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length);
+    let furthest = (base as u32 + left as u32 + right as u32) / 2 + 2;
+    let [a, b] = [bars.coupler_left, bars.coupler_right].map(length);
+    Loop {
+        scale,
+        base,
+        cranks: [left, right],
+        couplers: [a, b],
+        near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
     }
 }
 
@@ -222,7 +158,7 @@ mod tests {
     use crate::testing::{all, robot, with};
     use lizard_core::gait::GaitId;
     use lizard_core::part::{End, Side};
-    use lizard_core::robot::Robot as _;
+    use lizard_core::section::{Header, Numbers};
 
     /// 256 steps to a millimetre: the scale of every mechanism of the unequal robot.
     const PER_MM: f64 = 256.0;
@@ -231,26 +167,14 @@ mod tests {
     fn every_link_goes_where_it_belongs() {
         let robot = robot("unequal");
         let l = robot.lizard().links;
-        let numbers = Numbers::new(
-            &crate::measure::Measures {
-                lizard: *robot.lizard(),
-                servos: *robot.servos(),
-                limits: *robot.limits(),
-                pace: *robot.pace(),
-                ground: *robot.ground(),
-                supplies: *robot.supplies(),
-                parts: *robot.parts(),
-                legs: *robot.legs(),
-            },
-            Tables::new(&[]).expect("no gait"),
-        );
+        let content = robot.content();
         let loops = [
             [l.l0, l.l1, l.l4, l.l2, l.l3],
             [l.l5, l.l6, l.l9, l.l7, l.l8],
         ];
-        for (bars, mm) in numbers.ends.iter().zip(loops) {
-            let Bars { left, right, .. } = bars.couplers;
-            let steps = [bars.base, bars.left, bars.right, left, right];
+        for (bars, mm) in content.ends.iter().zip(loops) {
+            let ([left, right], [a, b]) = (bars.cranks, bars.couplers);
+            let steps = [bars.base, left, right, a, b];
             assert_eq!(steps.map(f64::from), mm.map(|mm| mm * PER_MM));
             assert_eq!(bars.scale.bits, 8);
         }
@@ -259,7 +183,7 @@ mod tests {
             [aside, l.l10, l.l14, l.l11, l.l12 + l.l13],
             [-aside, l.l15, l.l19, l.l16, l.l17 + l.l18],
         ];
-        for (side, mm) in numbers.sides.iter().zip(sides) {
+        for (side, mm) in content.sides.iter().zip(sides) {
             let steps = [
                 f64::from(side.offset),
                 f64::from(side.base),
@@ -270,7 +194,7 @@ mod tests {
             assert_eq!(steps, mm.map(|mm| mm * PER_MM));
             assert_eq!(side.scale.bits, 8);
         }
-        assert_eq!(numbers.pins, [6, 14, 19, 12]);
+        assert_eq!(content.pins, [6, 14, 19, 12]);
     }
 
     #[test]
@@ -358,7 +282,7 @@ mod tests {
                 coupler_right: 50.0,
                 crank_right,
             };
-            assert_eq!(Loop::new(&bars).couplers.near_stretched, near, "{bars:?}");
+            assert_eq!(five_bar(&bars).near_stretched, near, "{bars:?}");
         }
     }
 
@@ -391,7 +315,7 @@ mod tests {
         for (name, robot) in all() {
             let firmware = robot.firmware();
             let mut widest = [(0, 0); 4];
-            for gait in GaitId::all(firmware.gaits().len()) {
+            for gait in GaitId::all(firmware.gait_count()) {
                 let gait = firmware.gait(gait);
                 for phase in (0..1 << 24).step_by(1 << 8) {
                     let pose = gait.pose(firmware.waves(), phase);
@@ -421,16 +345,23 @@ mod tests {
         assert!(slow.firmware().slew().per_frame >= Slew::SLOWEST);
     }
 
+    /// The numbers of a section.
+    fn numbers_of(robot: &crate::Robot) -> Numbers {
+        let section = robot.section();
+        Flash::from(section.as_slice()).read(size_of::<Header>())
+    }
+
     #[test]
     fn only_unequal_couplers_and_wide_cranks_have_further_tables() {
         for (name, robot) in all() {
-            let source = robot.firmware().source();
-            // Both ends have the same couplers, and share their tables.
-            for table in ["HEAD_SKEW", "HEAD_FOLDED", "HEAD_STRETCHED"] {
-                let there = source.contains(&format!("{table}: Table"));
-                assert_eq!(there, name == "unequal", "{name} {table}");
+            // Where a curve begins; both ends have the same couplers, and share their curves.
+            let [head, tail] = numbers_of(&robot).curves;
+            assert_eq!(head, tail, "{name}");
+            let [rise, further @ ..] = head;
+            assert_ne!(rise, 0, "{name}");
+            for curve in further {
+                assert_eq!(curve != 0, name == "unequal", "{name}");
             }
-            assert!(!source.contains("TAIL_SKEW"), "{name}");
         }
     }
 
@@ -438,8 +369,8 @@ mod tests {
     fn a_larger_robot_has_a_coarser_step_where_its_lengths_need_one() {
         let (paper, large) = (robot("paper"), robot("large"));
         for end in [End::Head, End::Tail] {
-            assert_eq!(paper.firmware().end_scale(end).bits, 8);
-            assert_eq!(large.firmware().end_scale(end).bits, 8);
+            assert_eq!(paper.firmware().end(end).bars().scale().bits, 8);
+            assert_eq!(large.firmware().end(end).bars().scale().bits, 8);
         }
         for side in [Side::Left, Side::Right] {
             let (small, long) = (paper.firmware().side(side), large.firmware().side(side));

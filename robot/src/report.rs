@@ -3,8 +3,7 @@
 
 use std::fmt;
 
-use lizard_core::gait::SAMPLES;
-use lizard_core::robot::Robot as _;
+use lizard_core::section::SPACE;
 
 use crate::accuracy::TableError;
 use crate::audit::Audit;
@@ -41,18 +40,15 @@ pub struct Report {
     pub hash: u32,
     /// How many waveforms the gaits share.
     pub waves: usize,
-    /// What the waveforms and gaits take of the firmware's flash, bytes.
+    /// What the robot takes of the board's flash, bytes; at most [`SPACE`].
     pub flash: usize,
+    /// The robot's name.
+    pub name: String,
 }
 
 /// What a dash in place of a prediction means.
 pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
-
-/// Bytes of a waveform and of a gait in flash: 128 samples of two; the place of its
-/// name 3, a step of 4, and four channels of 5 (padded to 6 on the host, not there).
-const WAVE_BYTES: usize = 2 * SAMPLES;
-const GAIT_BYTES: usize = 3 + 4 + 4 * 5;
 
 impl Report {
     /// Measures the tables and predicts the gaits of a robot; takes a moment.
@@ -66,12 +62,12 @@ impl Report {
             sprung: Sprung::of(gait, robot.ground()),
         };
         let firmware = robot.firmware();
-        let (waves, gaits) = (firmware.waves().len(), firmware.gaits().len());
         Self {
             rows: robot.gaits().iter().map(row).collect(),
             hash: firmware.hash(),
-            waves,
-            flash: waves * WAVE_BYTES + gaits * GAIT_BYTES + firmware.names().len(),
+            waves: firmware.waves().len(),
+            flash: robot.section().len(),
+            name: robot.name().to_string(),
         }
     }
 }
@@ -80,10 +76,12 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "{} gaits in {} waveforms, {} bytes of flash, tables {:08x}\n",
+            "{} gaits in {} waveforms, {} bytes of flash of {}, robot {} {:08x}\n",
             self.rows.len(),
             self.waves,
             self.flash,
+            SPACE,
+            self.name,
             self.hash
         )?;
         let lags = self.rows.iter().any(|row| row.sprung.is_some());

@@ -1,15 +1,18 @@
 //! A whole robot.toml.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use lizard_core::gait::MOST_WAVES;
+use lizard_core::gait::{Gait, MOST_WAVES};
+use lizard_core::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
 use crate::audit;
+use crate::cells::CellMaps;
 use crate::checked_gait::CheckedGait;
 use crate::coil::Coil;
-use crate::core_robot::CoreRobot;
+use crate::core_robot::{CoreRobot, flash};
 use crate::define;
 use crate::drive::Drive;
 use crate::error::{Checked, Error, Fault, Problem};
@@ -17,7 +20,7 @@ use crate::file;
 use crate::ground::Ground;
 use crate::legs::LegPlan;
 use crate::measure::Measures;
-use crate::numbers::Numbers;
+use crate::numbers;
 use crate::parts::Parts;
 use crate::plate::Plate;
 use crate::reader::{self, Section};
@@ -30,11 +33,20 @@ use crate::tabled_gait::TabledGait;
 use crate::travel::{Prediction, Travel};
 
 /// A robot whose every value and gait has been checked.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
+    content: Content,
     firmware: CoreRobot,
+}
+
+impl PartialEq for Robot {
+    fn eq(&self, other: &Self) -> bool {
+        self.measures == other.measures
+            && self.gaits == other.gaits
+            && self.content == other.content
+    }
 }
 
 impl Robot {
@@ -73,7 +85,8 @@ impl Robot {
     /// If the text holds a mistake.
     pub fn with_gaits(&self, text: &str) -> Result<Self, Error> {
         Self::checked(text, |table| {
-            Self::walking(self.measures.clone(), &Section::root(table, &["gait"])?)
+            let root = Section::root(table, &["gait"])?;
+            Self::walking(self.name(), self.measures.clone(), &root)
         })
     }
 
@@ -105,15 +118,16 @@ impl Robot {
         let root = Section::root(
             table,
             &[
-                "links", "leg", "servo", "limits", "supply", "body", "feet", "ground", "parts",
-                "gait",
+                "name", "links", "leg", "servo", "limits", "supply", "body", "feet", "ground",
+                "parts", "gait",
             ],
         )?;
-        Self::walking(Measures::read(&root)?, &root)
+        let name = name(&root)?;
+        Self::walking(name, Measures::read(&root)?, &root)
     }
 
     /// A body with the gaits of a file.
-    fn walking(measures: Measures, root: &Section) -> Checked<Self> {
+    fn walking(name: &str, measures: Measures, root: &Section) -> Checked<Self> {
         let gaits = define::gaits(root, &measures)?;
         let key = |name: &str| format!("gait.{name}");
         let tables = Tables::new(&gaits).map_err(|(gait, unfit)| {
@@ -125,10 +139,17 @@ impl Robot {
             }
             .at(key(&gaits[gait].name))
         })?;
-        let firmware = CoreRobot::new(Numbers::new(&measures, tables));
+        let content = numbers::content(name, &measures, &tables);
+        let tables = Arc::new(tables);
+        let section = content.section();
+        if section.len() > usize::from(SPACE) {
+            return Err(too_large(&content, section.len()).at("gait"));
+        }
+        let flash = flash(&section);
+        let unchecked = CoreRobot::unchecked(flash).ok_or_else(|| Problem::Impossible.at(""))?;
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
-            let gait = TabledGait::new(gait, index, firmware.tables());
-            match audit::check(&gait, &measures, &firmware) {
+            let gait = TabledGait::new(gait, index, &tables);
+            match audit::check(&gait, &measures, &unchecked) {
                 Ok(audit) => Ok(CheckedGait::new(gait, audit)),
                 Err(problem) => Err(problem.at(key(gait.name()))),
             }
@@ -136,8 +157,33 @@ impl Robot {
         Ok(Self {
             gaits: gaits.collect::<Checked<_>>()?,
             measures,
-            firmware,
+            content,
+            firmware: CoreRobot::open(flash).map_err(|_| Problem::Impossible.at(""))?,
         })
+    }
+
+    /// Its name, which the firmware says when it begins.
+    pub fn name(&self) -> &str {
+        &self.content.name
+    }
+
+    /// Its section of flash: all that it says to the firmware, with the maps of
+    /// certified cells, which take a moment to prove. At most [`SPACE`] bytes.
+    pub fn section(&self) -> Vec<u8> {
+        let mut content = self.content.clone();
+        let CellMaps {
+            head,
+            tail,
+            left,
+            right,
+        } = self.cell_maps();
+        content.maps = [head, tail, left, right];
+        content.section()
+    }
+
+    /// Its numbers as its section has them.
+    pub const fn content(&self) -> &Content {
+        &self.content
     }
 
     /// Its links.
@@ -221,9 +267,15 @@ impl Robot {
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// The robot as the core reads it, in its firmware and on a host.
+    /// The robot as the core reads it, on a host: without the maps of certified cells,
+    /// which change no decision.
     pub fn firmware(&self) -> &CoreRobot {
         &self.firmware
+    }
+
+    /// The cells in which its guard is proved to accept every pose.
+    pub fn cell_maps(&self) -> CellMaps {
+        CellMaps::new(self.lizard(), &self.content)
     }
 
     /// The neutral pose.
@@ -262,5 +314,29 @@ impl Robot {
     /// its own floor.
     pub fn predict(&self, gait: &CheckedGait) -> Prediction {
         gait.predict(self.ground())
+    }
+}
+/// The name at the top of the file.
+fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
+    if !root.has("name") {
+        return Ok("robot");
+    }
+    let name = root.text("name")?;
+    let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(letters) {
+        return Err(Problem::RobotName { most: LONGEST_NAME }.at("name"));
+    }
+    Ok(name)
+}
+
+/// What takes the room of a section that is too large.
+fn too_large(content: &Content, bytes: usize) -> Problem {
+    Problem::Large {
+        over: bytes - usize::from(SPACE),
+        most: SPACE.into(),
+        waves: content.waves.len(),
+        of_waves: std::mem::size_of_val(content.waves.as_slice()),
+        gaits: content.gaits.len(),
+        of_gaits: content.gaits.len() * size_of::<Gait>() + content.names.len(),
     }
 }

@@ -56,7 +56,7 @@ mod tests {
 
     /// Whether bars fit at so many bits, in the words of the core: 127 and 255 times
     /// 256 steps.
-    fn loop_fits(bars: &FiveBar, bits: u8) -> bool {
+    fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
         let steps = |mm: f64| mm * f64::from(1u32 << bits);
         let all = bars.base + bars.crank_left + bars.crank_right;
         [all, bars.coupler_left, bars.coupler_right]
@@ -64,7 +64,7 @@ mod tests {
             .all(|mm| steps(mm) < 127.0 * 256.0)
     }
 
-    fn side_fits(side: &Slider, stroke_max: f64, bits: u8) -> bool {
+    fn side_fits(side: &Slider, stroke_max: f64, bits: u16) -> bool {
         let steps = |mm: f64| mm * f64::from(1u32 << bits);
         let arms = side.front + side.rear + side.offset.abs();
         steps(arms) < 127.0 * 256.0

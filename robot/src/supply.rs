@@ -1,6 +1,6 @@
 //! The supplies in robot.toml: what is measured, and when the robot reacts.
 
-use lizard_core::supply::{Rail as CoreRail, Supplies as CoreSupplies, Thresholds};
+use lizard_core::supply::{Supplies as CoreSupplies, Thresholds};
 
 use crate::error::{Checked, Problem};
 use crate::reader::Section;
@@ -74,13 +74,20 @@ impl Supplies {
         CoreSupplies {
             reference: millivolts(self.reference),
             board: numbers(self.board),
-            rail: self.rail.map(|rail| CoreRail {
-                reference: millivolts(self.reference * rail.ratio),
-                thresholds: numbers(rail.thresholds),
-            }),
+            rail_reference: self
+                .rail
+                .map_or(0, |rail| millivolts(self.reference * rail.ratio)),
+            rail: self.rail.map_or(NO_RAIL, |rail| numbers(rail.thresholds)),
         }
     }
 }
+
+/// Where none is measured.
+const NO_RAIL: Thresholds = Thresholds {
+    slow: 0,
+    stop: 0,
+    rest: 0,
+};
 
 /// The voltage that a servos' rail in good order leaves at its divided pin, mV: for
 /// simulations, since a rail of 0 V ends the pulses. It is 5 V, or well above what the
@@ -88,10 +95,9 @@ impl Supplies {
 pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
     const RESERVE: f64 = 500.0;
     const BOARD: f64 = 5_000.0;
-    let rail = supplies.rail?;
-    let ratio = f64::from(rail.reference) / f64::from(supplies.reference);
-    let mv = f64::from(rail.thresholds.slow) + RESERVE;
-    Some((mv.max(BOARD) / ratio).min(BOARD - 1.0).floor())
+    let ratio = f64::from(supplies.rail_reference) / f64::from(supplies.reference);
+    let mv = f64::from(supplies.rail.slow) + RESERVE;
+    (supplies.rail_reference != 0).then(|| (mv.max(BOARD) / ratio).min(BOARD - 1.0).floor())
 }
 
 fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
@@ -152,8 +158,7 @@ fn millivolts(volts: f64) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use lizard_core::robot::Robot as _;
-    use lizard_core::supply::{Rail, Supplies, Thresholds};
+    use lizard_core::supply::{Supplies, Thresholds};
 
     use crate::testing::with;
 
@@ -177,7 +182,8 @@ mod tests {
                 stop: 4000,
                 rest: 3700,
             },
-            rail: None,
+            rail_reference: 0,
+            ..robot.firmware().supplies()
         };
         assert_eq!(robot.firmware().supplies(), expected);
     }
@@ -190,15 +196,12 @@ mod tests {
         .expect("a rail");
         let supplies = robot.firmware().supplies();
         assert_eq!((supplies.reference, supplies.board.slow), (1080, 4500));
-        let rail = Rail {
-            reference: 2700,
-            thresholds: Thresholds {
-                slow: 6600,
-                stop: 6200,
-                rest: 6000,
-            },
+        let rail = Thresholds {
+            slow: 6600,
+            stop: 6200,
+            rest: 6000,
         };
-        assert_eq!(supplies.rail, Some(rail));
+        assert_eq!((supplies.rail_reference, supplies.rail), (2700, rail));
         assert_eq!(robot.firmware().rail_pin(), Some(17));
     }
 

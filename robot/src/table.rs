@@ -66,7 +66,7 @@ impl Tables {
         let channel = |part: &Part| {
             let gain = part.amplitude / largest.get(part.wave).copied().unwrap_or(1.0);
             Channel {
-                wave: part.wave as u8,
+                wave: part.wave as u16,
                 // A shift of a whole cycle is none: the cast to u16 wraps.
                 offset: (part.ahead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
@@ -77,7 +77,7 @@ impl Tables {
         for (gait, parts) in gaits.iter().zip(parts.chunks(4)) {
             table.push(TableGait {
                 name_start: names.len() as u16,
-                name_length: gait.name.len() as u8,
+                name_length: gait.name.len() as u16,
                 increment: increment(gait),
                 channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel),
             });
@@ -175,7 +175,6 @@ fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Opt
 
 #[cfg(test)]
 mod tests {
-    use lizard_core::robot::Robot as _;
 
     use crate::Robot;
     use crate::testing::{all, body, robot, with};
@@ -187,10 +186,9 @@ mod tests {
     #[test]
     fn a_reversed_gait_is_its_table_with_the_phase_turned_round() {
         let robot = robot("own-gaits");
-        let gaits = robot.firmware().gaits();
         let gait = |name: &str| {
             let place = robot.gait(name).expect(name).index();
-            gaits.get(place).expect(name).load()
+            robot.firmware().gait(id(&robot, place))
         };
         for (forth, back) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
             let (forth, back) = (gait(forth), gait(back));

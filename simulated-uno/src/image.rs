@@ -1,6 +1,7 @@
 //! A firmware image: what an ELF file, or one of Intel HEX, puts into flash and SRAM.
 
 use std::io::Read;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
@@ -290,6 +291,43 @@ impl Image {
             flash[at..at + bytes.len()].copy_from_slice(bytes);
         }
         flash
+    }
+
+    /// Puts bytes into flash at the beginning of a range, in the place of whatever the image
+    /// has in it: data that is exchanged without a compiler.
+    ///
+    /// # Errors
+    /// [`LoadError::TooLarge`] where the range is not inside flash or too short for them.
+    pub fn replace(&mut self, range: Range<u32>, bytes: &[u8]) -> Result<(), LoadError> {
+        let size = bytes.len() as u64;
+        if range.end > FLASH_SIZE || u64::from(range.start) + size > u64::from(range.end) {
+            return Err(LoadError::TooLarge {
+                address: range.start.into(),
+                size,
+            });
+        }
+        let mut segments = Vec::new();
+        for (at, bytes) in self.segments.drain(..) {
+            let before = range.start.saturating_sub(at) as usize;
+            let behind = range.end.saturating_sub(at) as usize;
+            if let Some(kept) = bytes
+                .get(..before.min(bytes.len()))
+                .filter(|kept| !kept.is_empty())
+            {
+                segments.push((at, kept.to_vec()));
+            }
+            if let Some(kept) = bytes.get(behind..).filter(|kept| !kept.is_empty()) {
+                segments.push((at + behind as u32, kept.to_vec()));
+            }
+        }
+        segments.push((range.start, bytes.to_vec()));
+        self.segments = segments;
+        self.flash = self
+            .segments
+            .iter()
+            .map(|(_, data)| data.len() as u32)
+            .sum();
+        Ok(())
     }
 
     /// Address of the first byte of flash used.

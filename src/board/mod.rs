@@ -83,6 +83,12 @@ impl Board for Uno {
     const CYCLES_PER_US: u16 = servo_pulses::CYCLES_PER_US;
 
     #[inline(always)]
+    fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
+        pulses::connect_numbers(servos);
+        self.converter.connect(rail);
+    }
+
+    #[inline(always)]
     fn ticks(&self) -> u8 {
         pulses::ticks()
     }

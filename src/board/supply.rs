@@ -9,19 +9,14 @@
 use avr_device::atmega328p::ADC;
 use lizard_core::supply::Reading;
 
-use crate::robot::RAIL_PIN;
-
 /// AVcc is what is compared with; then the channel.
 const AVCC: u8 = 0x40;
 
 /// The channel of the chip's reference.
 const REFERENCE: u8 = 0x0e;
 
-/// The channel of the servos' rail, where it is measured: A0 is Arduino pin 14.
-const RAIL: Option<u8> = match RAIL_PIN {
-    Some(pin) => Some(pin - 14),
-    None => None,
-};
+/// The Arduino number of the first analogue pin, A0.
+const A0: u8 = 14;
 
 /// On, and 16 MHz / 128 = 125 kHz: ten bits want 50 to 200.
 const ON: u8 = 0x87;
@@ -31,6 +26,8 @@ const START: u8 = 0x40;
 pub struct Converter {
     registers: ADC,
     reading: Reading,
+    /// The channel of the servos' rail, where it is measured.
+    channel: Option<u8>,
     /// Whether the rail's turn is under way.
     rail: bool,
     /// Whether the channel has been chosen and nothing converted yet.
@@ -47,10 +44,16 @@ impl Converter {
         Self {
             registers,
             reading: Reading::default(),
+            channel: None,
             rail: false,
             chosen: true,
             complete: false,
         }
+    }
+
+    /// From now on the rail is measured at this pin, by its Arduino number.
+    pub fn connect(&mut self, pin: Option<u8>) {
+        self.channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
     /// What was read last, all of it or nothing; begins the next part of a
@@ -75,7 +78,7 @@ impl Converter {
     }
 
     fn take(&mut self, value: u16) {
-        match RAIL {
+        match self.channel {
             None => {
                 self.reading.reference = value;
                 self.complete = true;

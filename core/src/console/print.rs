@@ -15,6 +15,7 @@ use crate::part::Servo;
 use crate::record::Outcome;
 use crate::robot::Robot;
 use crate::safety::Notice;
+use crate::section::Damage;
 use crate::settings::Boot;
 use crate::supply::{Level, Voltage};
 use crate::text::Text;
@@ -28,21 +29,20 @@ const CAL_END: u8 = 6;
 
 /// Prints a line of an answer; returns what is left of it.
 #[inline(never)]
-pub(super) fn answer<R, W>(
+pub(super) fn answer<W>(
     out: &mut W,
     answer: Answer,
     line: &Line,
-    control: &Control<R>,
+    control: &Control,
     counters: Counters,
 ) -> Result<Option<Answer>, W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     match answer {
         Answer::Refused(refusal) => {
             Text::Err.print(out)?;
-            out.write_char(char::from(b'0' + refusal.code()))?;
+            digits::number(out, refusal.code().into(), 0)?;
             out.write_char(' ')?;
             refusal.print(control.motion(), out)?;
         }
@@ -80,9 +80,8 @@ where
 
 /// `# gaits: stand|walk|...`, as many as a line takes; returns the first that
 /// it has no room for.
-fn gaits<R, W>(out: &mut W, first: GaitId, robot: &R) -> Result<Option<GaitId>, W::Error>
+fn gaits<W>(out: &mut W, first: GaitId, robot: &Robot) -> Result<Option<GaitId>, W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     /// Without the line end.
@@ -98,7 +97,7 @@ where
         length += 1 + name.length();
         out.write_char(if gait == first { ' ' } else { '|' })?;
         digits::ascii(out, name)?;
-        match gait.next(robot.gaits().len()) {
+        match gait.next(robot.gait_count()) {
             Some(next) => gait = next,
             None => return Ok(None),
         }
@@ -106,9 +105,8 @@ where
 }
 
 #[inline(never)]
-fn status<R, W>(out: &mut W, motion: &Motion<R>, counters: Counters) -> Result<(), W::Error>
+fn status<W>(out: &mut W, motion: &Motion, counters: Counters) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     let robot = motion.robot();
@@ -146,9 +144,8 @@ where
 /// ` fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
 /// measured.
 #[inline(never)]
-fn health<R, W>(out: &mut W, control: &Control<R>) -> Result<(), W::Error>
+fn health<W>(out: &mut W, control: &Control) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     Text::StatusFault.print(out)?;
@@ -163,8 +160,8 @@ where
     let reading = control.safety().supply().reading();
     let board = Voltage::of_board(reading, &supplies);
     digits::field(out, Text::StatusVcc, board.hundredths())?;
-    if let Some(rail) = &supplies.rail {
-        let rail = Voltage::of_rail(reading, rail);
+    if supplies.rail_reference != 0 {
+        let rail = Voltage::of_rail(reading, &supplies);
         digits::field(out, Text::StatusRail, rail.hundredths())?;
     }
     Ok(())
@@ -172,9 +169,8 @@ where
 
 /// A line of `cal`; false after the last one, which is `ok cal`.
 #[inline(never)]
-fn settings<R, W>(out: &mut W, line: u8, control: &Control<R>) -> Result<bool, W::Error>
+fn settings<W>(out: &mut W, line: u8, control: &Control) -> Result<bool, W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     let settings = control.settings();
@@ -210,9 +206,8 @@ where
     Ok(true)
 }
 
-fn boot<R, W>(out: &mut W, control: &Control<R>) -> Result<(), W::Error>
+fn boot<W>(out: &mut W, control: &Control) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     let robot = control.motion().robot();
@@ -223,13 +218,8 @@ where
 }
 
 /// What is said without being asked for.
-pub(super) fn notice<R, W>(
-    out: &mut W,
-    notice: Notice,
-    control: &Control<R>,
-) -> Result<(), W::Error>
+pub(super) fn notice<W>(out: &mut W, notice: Notice, control: &Control) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     match notice {
@@ -245,7 +235,12 @@ where
         Notice::Fault => {
             Text::NoticeFault.print(out)?;
             let fault = control.safety().fault();
-            fault.map_or(Text::FaultNone, Fault::sentence).print(out)
+            match control.damage() {
+                Some(Damage::Format) => Text::WhyRobotFormat,
+                Some(Damage::Damaged | Damage::Impossible) => Text::WhyRobotDamaged,
+                _ => fault.map_or(Text::FaultNone, Fault::sentence),
+            }
+            .print(out)
         }
         Notice::Supply => {
             digits::field(out, Text::NoticeSupply, control.voltage().hundredths())?;
@@ -267,9 +262,8 @@ where
 }
 
 /// ` pose=`, and the chassis angles of the four servos.
-pub(super) fn pose<R, W>(out: &mut W, motion: &Motion<R>) -> Result<(), W::Error>
+pub(super) fn pose<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
 where
-    R: Robot,
     W: uWrite + ?Sized,
 {
     Text::WatchPose.print(out)?;
@@ -283,11 +277,18 @@ fn sweep<W: uWrite + ?Sized>(out: &mut W, sweep: Sweep) -> Result<(), W::Error> 
     digits::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
-/// `# lizard 0.2.0 tables 1a2b3c4d, send help for the commands`.
-pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, hash: u32) -> Result<(), W::Error> {
+/// `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
+pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, robot: &Robot) -> Result<(), W::Error> {
     Text::Banner.print(out)?;
     Text::Version.print(out)?;
-    Text::BannerTables.print(out)?;
+    if robot.is_none() {
+        Text::BannerNone.print(out)?;
+        return Text::BannerEnd.print(out);
+    }
+    Text::BannerRobot.print(out)?;
+    digits::ascii(out, robot.label())?;
+    out.write_char(' ')?;
+    let hash = robot.hash();
     for digit in 0..8 {
         let nibble = (hash >> (28 - 4 * digit)) as u8 & 0xf;
         let digit = if nibble < 10 {

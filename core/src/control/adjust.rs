@@ -6,10 +6,9 @@ use crate::calibration::Calibration;
 use crate::order::Setting;
 use crate::part::Servo;
 use crate::refusal::Refusal;
-use crate::robot::Robot;
 use crate::settings::Settings;
 
-impl<R: Robot> Control<R> {
+impl Control {
     /// Sets something of a servo.
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {

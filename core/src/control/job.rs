@@ -9,7 +9,6 @@ use super::Control;
 use crate::memory::{Memory, Progress, Writing};
 use crate::record::{self, Outcome};
 use crate::refusal::Refusal;
-use crate::robot::Robot;
 use crate::safety::Notice;
 use crate::settings::Settings;
 use crate::supply::Level;
@@ -28,7 +27,7 @@ pub enum Job {
     Saving(Writing),
 }
 
-impl<R: Robot> Control<R> {
+impl Control {
     /// True while there is something to do with the memory. No order is to be given
     /// meanwhile. The pose of a rest waits for a supply that allows to write it, and
     /// nobody has to wait with it.

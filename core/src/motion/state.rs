@@ -56,7 +56,7 @@ pub enum State {
 
 impl State {
     /// A gait from phase 0, still without pace.
-    pub fn cycling<R: Robot>(robot: &R, id: GaitId) -> Self {
+    pub fn cycling(robot: &Robot, id: GaitId) -> Self {
         Self::Cycling {
             id,
             gait: robot.gait(id),

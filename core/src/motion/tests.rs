@@ -3,6 +3,7 @@
 use std::vec::Vec;
 
 use super::*;
+use crate::guard::Clearance;
 use crate::sample::{GAITS, Sample};
 use crate::units::Width;
 use crate::units::{CYCLE, Sweep};
@@ -18,14 +19,14 @@ const WAKING: u32 = 20;
 /// Braking, the longest move of these tests, gathering pace.
 const LONG_ENOUGH: u32 = 150;
 
-impl Motion<Sample> {
+impl Motion {
     /// Awake, standing, for as long as it takes to have all its pace.
     fn standing() -> Self {
         Self::awake(Sample::odd())
     }
 
     fn awake(robot: Sample) -> Self {
-        let mut motion = Self::new(robot);
+        let mut motion = Self::new(*robot);
         motion.run(WAKING + 7);
         motion
     }
@@ -85,7 +86,7 @@ const THERE: [i16; 4] = [900, -700, 800, -1100];
 const BACK: [i16; 4] = [-600, 500, -800, 700];
 
 /// Two motions that have nothing to tell them apart for some frames.
-fn assert_same(mut one: Motion<Sample>, mut other: Motion<Sample>) {
+fn assert_same(mut one: Motion, mut other: Motion) {
     for _ in 0..100 {
         assert_eq!(one.tick(), other.tick());
         assert_eq!(one.activity(), other.activity());
@@ -96,7 +97,7 @@ fn assert_same(mut one: Motion<Sample>, mut other: Motion<Sample>) {
 
 // Resting.
 
-fn resting() -> Motion<Sample> {
+fn resting() -> Motion {
     let mut motion = Motion::in_gait("sway", 90);
     motion.rest();
     motion.run(10);
@@ -324,7 +325,7 @@ fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
 
 #[test]
 fn stop_and_rest_forget_what_was_to_come_next() {
-    for ask in [Motion::<Sample>::stop, Motion::<Sample>::rest] {
+    for ask in [Motion::stop, Motion::rest] {
         let mut motion = Motion::in_gait("sway", 90);
         motion.head_for_pose(THERE);
         motion.run(3);
@@ -355,7 +356,7 @@ fn a_stopped_gait_begins_anew_at_its_first_pose() {
 
 #[test]
 fn frames_are_counted_from_power_on_also_while_it_rests() {
-    let mut motion = Motion::new(Sample::odd());
+    let mut motion = Motion::new(*Sample::odd());
     motion.run(30);
     motion.rest();
     motion.run(12);

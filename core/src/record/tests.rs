@@ -197,10 +197,9 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
     let robot = robot();
     let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 1), &mut chip);
-    let other = Sample {
-        servo_hash: robot.servo_hash ^ 0x0001_0000,
-        ..robot.clone()
-    };
+    let other = robot
+        .clone()
+        .with(|content| content.servo_hash ^= 0x0001_0000);
     let found = loaded(&other, &chip);
     assert_eq!(found, (Settings::of(&other), Outcome::Foreign));
     let mut format = *settings(&robot, 1).bytes();
@@ -219,10 +218,7 @@ fn every_bit_of_the_servos_hash_tells_other_servos() {
     let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 1), &mut chip);
     for bit in 0..32 {
-        let other = Sample {
-            servo_hash: robot.servo_hash ^ 1 << bit,
-            ..robot.clone()
-        };
+        let other = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
         assert_eq!(loaded(&other, &chip).1, Outcome::Foreign, "bit {bit}");
     }
     assert_eq!(loaded(&robot, &chip).1, Outcome::Latest);
@@ -234,7 +230,7 @@ fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     let mut chip = Eeprom::blank();
     let mut narrow = settings(&robot, 1);
     let mut set = narrow.servo(Servo::A3);
-    set.max = Sweep(robot.reach[2].max.0 - 1);
+    set.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
     narrow.set_servo(Servo::A3, set);
     save_all(&narrow, &mut chip);
     let found = loaded(&robot, &chip);
@@ -247,10 +243,9 @@ fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
     let mut chip = Eeprom::blank();
     let kept = save_all(&settings(&robot, 1), &mut chip);
     assert_eq!(kept.boot(&robot), Boot::Gait(robot.id("sway left")));
-    let mut fewer = robot.clone();
-    fewer.gaits.remove(1);
+    let fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
     assert_eq!(kept.boot(&fewer), Boot::Gait(fewer.id("sway left")));
-    fewer.gaits.remove(1);
+    let fewer = fewer.with(|content| _ = content.gaits.remove(1));
     assert_eq!(kept.boot(&fewer), Boot::Gait(GaitId::STAND));
     let mut rests = kept;
     rests.set_boot(Boot::Rest, &robot);
@@ -268,10 +263,7 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
         let mut writing = RESTED.write();
         while writing.step(kept.bytes(), &mut chip) == Progress::Going {}
         assert_eq!(rested(&robot, &chip), Some(there));
-        let other = Sample {
-            servo_hash: 7,
-            ..robot.clone()
-        };
+        let other = robot.clone().with(|content| content.servo_hash = 7);
         assert_eq!(rested(&other, &chip), None);
     }
     let mut writing = RESTED.forget();

@@ -1,7 +1,6 @@
 //! Every fault, alone and with others.
 
 use super::*;
-use crate::robot::Robot;
 use crate::sample::{Sample, WELL};
 
 fn supplies() -> Supplies {

@@ -77,8 +77,9 @@ pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let reference = u32::from(supplies.reference);
     Reading {
         reference: parts(reference),
-        rail: supplies.rail.map_or(0, |divider| {
-            parts(rail * reference / u32::from(divider.reference).max(1))
-        }),
+        rail: match supplies.rail_reference {
+            0 => 0,
+            divided => parts(rail * reference / u32::from(divided)),
+        },
     }
 }

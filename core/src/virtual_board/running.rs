@@ -3,6 +3,8 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use lizard_avr::Region;
+
 use super::{Converter, Eeprom, VirtualBoard, reading};
 use crate::console::LONGEST_LINE;
 use crate::motion::Motion;
@@ -13,43 +15,43 @@ use crate::step::{Main, Step};
 
 /// The firmware's main and its board.
 #[derive(Clone, Debug)]
-pub struct Running<R> {
+pub struct Running {
     /// The robot.
-    pub main: Main<R>,
+    pub main: Main,
     /// What it runs on.
     pub board: VirtualBoard,
+    /// Where its robot's section is.
+    flash: Region<'static>,
 }
 
-impl<R: Robot> Running<R> {
+impl Running {
     /// At power-on, with supplies in good order and nothing saved.
-    pub fn power_on(robot: R) -> Self {
+    pub fn power_on(robot: Robot<'static>) -> Self {
         Self::with(robot, Eeprom::blank(), Restart::default())
     }
 
     /// The same with what a memory holds and why the program begins.
-    pub fn with(robot: R, memory: Eeprom, restart: Restart) -> Self {
+    pub fn with(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
         // A rail well above what it needs.
-        let rail = supplies
-            .rail
-            .map_or(0, |rail| u32::from(rail.thresholds.slow) + 1_000);
+        let rail = u32::from(supplies.rail.slow) + 1_000;
         let truth = reading(&supplies, 5_000, rail.max(6_000));
         let board = VirtualBoard {
-            converter: Converter::new(truth, supplies.rail.is_some()),
+            converter: Converter::new(truth, supplies.rail_reference != 0),
             ..VirtualBoard::new(memory).restarted(restart)
         };
-        Self::on(robot, board)
+        Self::on(robot.section(), board)
     }
 
-    /// On a board as it is.
-    pub fn on(robot: R, mut board: VirtualBoard) -> Self {
-        let mut main = Main::new(robot);
-        main.begin(&mut board);
-        Self { main, board }
+    /// On a board as it is, with whatever is where the robot's section should be.
+    pub fn on(flash: Region<'static>, mut board: VirtualBoard) -> Self {
+        let mut main = Main::new();
+        main.begin(flash, &mut board);
+        Self { main, board, flash }
     }
 
     /// The motion of the robot.
-    pub const fn motion(&self) -> &Motion<R> {
+    pub const fn motion(&self) -> &Motion {
         self.main.control().motion()
     }
 
@@ -169,7 +171,7 @@ impl<R: Robot> Running<R> {
     }
 }
 
-impl<R: Robot + Clone> Running<R> {
+impl Running {
     /// Time passes in which main does nothing. Once the watchdog has ended the pulses,
     /// main does not go on and the reset is waited for. Returns whether it comes.
     pub fn stall(&mut self, ms: u16) -> bool {
@@ -196,8 +198,8 @@ impl<R: Robot + Clone> Running<R> {
     }
 
     fn begin_anew(&mut self) {
-        self.main = Main::new(self.motion().robot().clone());
-        self.main.begin(&mut self.board);
+        self.main = Main::new();
+        self.main.begin(self.flash, &mut self.board);
     }
 }
 

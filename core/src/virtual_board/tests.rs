@@ -8,8 +8,8 @@ use crate::sample::Sample;
 use crate::step::{Main, Step};
 
 /// A robot that stands.
-fn standing() -> Running<Sample> {
-    let mut running = Running::power_on(Sample::odd());
+fn standing() -> Running {
+    let mut running = Running::power_on(*Sample::odd());
     running.run(30);
     running
 }
@@ -19,6 +19,7 @@ const NONE: Pulses = Pulses([Width(0); 4]);
 #[test]
 fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
     let mut board = VirtualBoard::default();
+    board.connect([9, 10, 5, 6], None);
     let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(Width));
     board.submit(pulses);
     assert_eq!(board.begun(), NONE);
@@ -125,8 +126,8 @@ fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
     board.send(&[b'x'; RECEIVED + 5]);
     assert_eq!((board.waiting(), board.counters().rx_lost), (RECEIVED, 5));
-    let mut main = Main::new(Sample::odd());
-    main.begin(&mut board);
+    let mut main = Main::new();
+    main.begin(Sample::odd().section(), &mut board);
     while main.step(&mut board) == Step::Worked {}
     assert_eq!(board.waiting(), 0);
 }
@@ -135,7 +136,7 @@ fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
 fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     // A setting that comes before the servos wake turns them at the slew limit from
     // where they were, not from a frame farther.
-    let mut running = Running::power_on(Sample::odd());
+    let mut running = Running::power_on(*Sample::odd());
     running.run(200);
     running.say("sway");
     running.run(60);
@@ -161,7 +162,7 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
 }
 
 /// How far the pulses of each servo are from the one before, at most, cycles.
-fn leaps(running: &mut Running<Sample>, frames: usize) -> [u16; 4] {
+fn leaps(running: &mut Running, frames: usize) -> [u16; 4] {
     let mut last = *running.motion().sent();
     let mut leaps = [0; 4];
     for _ in 0..frames {
@@ -179,8 +180,8 @@ fn leaps(running: &mut Running<Sample>, frames: usize) -> [u16; 4] {
 #[test]
 fn what_is_set_while_the_robot_rests_turns_no_servo_faster_than_the_slew_limit() {
     let robot = Sample::odd();
-    let per_frame = robot.slew.per_frame;
-    let most = robot.calibration.map(|servo| servo.slew(per_frame));
+    let per_frame = robot.slew().per_frame;
+    let most = robot.calibration().map(|servo| servo.slew(per_frame));
     for reset in [None, Some(Cause::External), Some(Cause::Watchdog)] {
         let mut running = standing();
         running.say("sway");

@@ -4,12 +4,10 @@ use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
 use lizard_core::motion::Activity;
 use lizard_core::pose::Pose;
-use lizard_core::robot::Robot;
 use lizard_core::virtual_board::{Running, is_final};
 
 use super::{BELIEVED, Held, World, broken};
 use crate::fingerprint;
-use crate::small::Small;
 
 /// Cycles of a rounding, at either end of a frame.
 const ROUNDING: u16 = 2;
@@ -20,13 +18,13 @@ const LONG: u32 = 160;
 impl World {
     /// Holds the robot to the answer that it is about to give, if it gives one at once:
     /// it has done by now what it answers.
-    pub(super) fn foresee(&mut self, before: &Running<&'static Small>) -> Held {
+    pub(super) fn foresee(&mut self, before: &Running) -> Held {
         let after = self.settled();
         let text = &after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
             return Ok(());
         };
-        let print = |running: &Running<_>| fingerprint::but_for_the_line(&running.main);
+        let print = |running: &Running| fingerprint::but_for_the_line(&running.main);
         if answer.starts_with("err ")
             && (print(&after) != print(before)
                 || after.board.memory.bytes() != before.board.memory.bytes())
@@ -229,8 +227,8 @@ impl World {
         }
         if widths.iter().any(|width| *width > 0) && main_ran {
             let motion = self.running.motion();
-            if Clearance::of(self.robot(), motion.pose())
-                .hazard(self.robot())
+            if Clearance::of(&self.robot(), motion.pose())
+                .hazard(&self.robot())
                 .is_some()
             {
                 return broken(

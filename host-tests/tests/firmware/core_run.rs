@@ -105,7 +105,7 @@ fn ten_minutes_of_random_commands_give_the_same_widths_on_the_avr_and_here() {
         let count = (bench.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
         let commands = core_run::play(
-            robot().firmware(),
+            *robot().firmware(),
             &bench.uno.received_by_uno(),
             first,
             sent.len(),

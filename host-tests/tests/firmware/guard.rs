@@ -4,7 +4,6 @@ use fastrand::Rng;
 use lizard_core::guard::Clearance;
 use lizard_core::part::{End, Side};
 use lizard_core::pose::Pose as Sweeps;
-use lizard_core::robot::Robot as _;
 use lizard_core::units::Sweep;
 use lizard_host::prove::{STEPS_BAND, margin_band};
 use lizard_host::sim::analysis::instants;
@@ -27,7 +26,7 @@ fn margin_error(type2: f64) -> f64 {
         (End::Tail, kinematics::End::Tail),
     ];
     let bands = ends.map(|(end, of)| {
-        let step = 1.0 / f64::from(1 << robot().firmware().end_scale(end).bits);
+        let step = 1.0 / f64::from(1 << robot().firmware().end(end).bars().scale().bits);
         margin_band(&robot().lizard().end(of), type2, step)
     });
     bands[0].max(bands[1])

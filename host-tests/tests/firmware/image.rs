@@ -1,14 +1,13 @@
 //! What the ELF is made of: no panic, no float, no core::fmt, and tables that
 //! stay in flash.
 
-use lizard_core::robot::Robot as _;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
 
 use crate::{Status, awake};
 
 fn image() -> Image {
-    Image::read(FirmwareBench::elf()).unwrap_or_else(|error| panic!("{error}"))
+    FirmwareBench::image()
 }
 
 /// The functions whose path has one of these in it.

@@ -45,7 +45,7 @@ pub fn commanded(
 ) -> Vec<[u64; 4]> {
     let before = ((frames[0].start - first) / FRAME) as usize;
     let commands = core_run::play(
-        robot().firmware(),
+        *robot().firmware(),
         &bench.uno.received_by_uno()[..received],
         first,
         before + frames.len(),

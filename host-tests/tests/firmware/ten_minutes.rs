@@ -51,7 +51,7 @@ fn everything(apart: u64) -> Script {
 
 /// Runs a script; also returns the lines that the robot sent.
 fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
-    let mut uno = Uno::load(FirmwareBench::elf(), fidelity).expect("`make firmware` builds it");
+    let mut uno = Uno::with_image(FirmwareBench::image(), fidelity);
     supplies::connect(&mut uno, robot());
     let mut lines = Vec::new();
     let recording = play(&mut uno, servo_pins(robot()), script, false, |event| {
@@ -85,7 +85,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let log = &recording.frames;
         assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
         let commands = core_run::play(
-            robot().firmware(),
+            *robot().firmware(),
             &recording.received_by_uno,
             log.first,
             log.widths.len(),

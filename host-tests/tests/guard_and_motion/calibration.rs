@@ -1,6 +1,5 @@
 //! Each servo by its own numbers: neutral, gain, travel and pin.
 
-use lizard_core::robot::Robot as _;
 use lizard_core::units::Sweep;
 use lizard_host_tests::{Named, robots};
 

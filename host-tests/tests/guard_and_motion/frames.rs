@@ -5,11 +5,10 @@ use fastrand::Rng;
 use lizard_core::gait::GaitId;
 use lizard_core::motion::{Activity, Motion};
 use lizard_core::pose::{Pose, Pulses};
-use lizard_core::robot::Robot as _;
 use lizard_core::units::CYCLE;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::Named;
-use lizard_robot::{CheckedGait, CoreRobot, Robot};
+use lizard_robot::{CheckedGait, Robot};
 
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
@@ -77,7 +76,7 @@ pub fn long_enough(robot: &Robot) -> u32 {
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
-    running: Running<&'a CoreRobot>,
+    running: Running,
     /// Degrees a second of each servo in the last frame.
     speeds: [f64; 4],
     /// True if the next frame may stop dead.
@@ -93,7 +92,7 @@ impl<'a> Walker<'a> {
         let mut walker = Self {
             name,
             robot,
-            running: Running::power_on(robot.firmware()),
+            running: Running::power_on(*robot.firmware()),
             speeds: [0.0; 4],
             may_stop: false,
             most_jerk: jerk(robot),
@@ -110,7 +109,7 @@ impl<'a> Walker<'a> {
         walker
     }
 
-    pub fn motion(&self) -> &Motion<&'a CoreRobot> {
+    pub fn motion(&self) -> &Motion {
         self.running.motion()
     }
 

@@ -3,7 +3,6 @@
 
 use lizard_core::gait::{Gait, GaitId};
 use lizard_core::pose::Pose;
-use lizard_core::robot::Robot as _;
 use lizard_core::units::{CYCLE, Sweep};
 use lizard_host_tests::{Named, paper, rng, robots};
 use lizard_kinematics::End;
@@ -50,7 +49,7 @@ fn mirrored(pose: Pose) -> Pose {
 fn the_core_has_the_gaits_of_the_file_in_its_order() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
-        let names: Vec<String> = GaitId::all(firmware.gaits().len())
+        let names: Vec<String> = GaitId::all(firmware.gait_count())
             .map(|id| firmware.name(id).map(char::from).collect())
             .collect();
         let expected: Vec<String> = robot.gaits().iter().map(words).collect();

@@ -3,7 +3,6 @@
 use lizard_core::guard::Clearance;
 use lizard_core::hazard::Hazard;
 use lizard_core::part::Side;
-use lizard_core::robot::Robot as _;
 use lizard_core::units::Sine;
 use lizard_host_tests::{Named, robots};
 use lizard_robot::Robot;

@@ -5,7 +5,6 @@ use lizard_core::guard::Clearance;
 use lizard_core::hazard::Hazard;
 use lizard_core::part::Side;
 use lizard_core::pose::Pose;
-use lizard_core::robot::Robot as _;
 use lizard_core::root::root;
 use lizard_core::units::Sweep;
 use lizard_host::prove::STEPS_BAND;

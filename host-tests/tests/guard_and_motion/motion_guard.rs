@@ -5,7 +5,6 @@ use fastrand::Rng;
 use lizard_core::guard::Clearance;
 use lizard_core::motion::Activity;
 use lizard_core::pose::Pose;
-use lizard_core::robot::Robot as _;
 use lizard_core::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::{CoreRobot, Robot};

@@ -6,7 +6,6 @@ use lizard_core::guard::Clearance;
 use lizard_core::hazard::{Hazard, Margin};
 use lizard_core::part::End;
 use lizard_core::pose::Pose;
-use lizard_core::robot::Robot as _;
 use lizard_core::units::{Angle, Sweep};
 use lizard_host_tests::paper;
 
@@ -81,7 +80,7 @@ fn the_condition_printed_in_the_paper_calls_every_symmetric_head_singular() {
 #[test]
 fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     let firmware = paper().firmware();
-    for id in GaitId::all(firmware.gaits().len()) {
+    for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
         let stopped = (0..256u32)
             .filter(|n| Printed::of(&gait.pose(firmware.waves(), n << 16)).stops())

@@ -9,7 +9,6 @@ use lizard_core::guard::Clearance;
 use lizard_core::hazard::Margin;
 use lizard_core::part::{End, Servo, Side};
 use lizard_core::pose::Pose;
-use lizard_core::robot::Robot as _;
 use lizard_core::units::{Angle, Scale, Sine, Sweep};
 use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
@@ -106,7 +105,7 @@ impl Truth {
         }
         let firmware = robot.firmware();
         let side = |side| STEPS_BAND / per_mm(firmware.side(side).scale);
-        let end = |end| STEPS_BAND / per_mm(firmware.end_scale(end));
+        let end = |end| STEPS_BAND / per_mm(firmware.end(end).bars().scale());
         let [head, tail] = [(End::Head, &solution.head), (End::Tail, &solution.tail)]
             .map(|(of, pose)| couplers(robot, of, pose.gap.length(), pose.type2.abs(), end(of)));
         let leg = MARGIN_BAND;

@@ -40,7 +40,7 @@ impl Exactness {
         let count = (board.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&edges, pins, first, count);
         let received = &board.uno.received_by_uno()[..commands];
-        let asked = core_run::play(robot, received, first, sent.len());
+        let asked = core_run::play(*robot, received, first, sent.len());
         let known = banner.as_deref() == asked.written.lines().next();
 
         let mut error = [i64::MAX, i64::MIN];

@@ -59,7 +59,7 @@ impl<'a> Judged<'a> {
 /// No firmware, a firmware that dies or does not answer, a broken budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let (elf, _) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
     let progress = ProgressBar::new_spinner();
     progress.set_style(style.expect("the template is well formed"));

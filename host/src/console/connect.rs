@@ -73,9 +73,8 @@ fn simulated(
 ) -> Result<Finder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
     let robot = file.load()?;
-    let elf = crate::firmware::of_robot(elf, file, &robot)?;
-    let mut uno = Uno::load(&elf, Fidelity::DataSheet)
-        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    let (_, image) = crate::firmware::of_robot(elf, file, &robot)?;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     crate::sim::supplies::connect(&mut uno, &robot);
     let port = Port::new().map_err(|error| {
         Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))

@@ -6,13 +6,13 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
 use lizard_core::virtual_board::Running;
-use lizard_robot::{CoreRobot, Robot};
+use lizard_robot::Robot;
 
 use super::link::{Link, Patience};
 
 /// The core on its board without a chip, and what it has written.
 pub struct Double {
-    running: Running<CoreRobot>,
+    running: Running,
     out: VecDeque<u8>,
     /// Every line it was sent.
     pub sent: String,

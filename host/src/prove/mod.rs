@@ -27,10 +27,11 @@ pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 /// Every condition of a safe pose depends on one servo or on two: so every pair of
 /// positions of the two servos of the head, the tail, the left and the right side
 /// is decided by the firmware's integers and by floating point, in the firmware's
-/// own steps of 1/65536 turn. Prints the largest error of each margin (of an end
+/// own steps of 1/65536 turn. In the robot's maps of cells, where the firmware does
+/// not measure a pose, the guard must accept every pair. Prints the largest error of each margin (of an end
 /// whose type-2 margin keeps its limit), and how far from its limit a pose may be
 /// that the two decide differently. Exit code 1 if one
-/// is farther than the band that the documentation states.
+/// is farther than the band that the documentation states, or refused in a cell.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard prove
@@ -122,7 +123,7 @@ impl Proof {
         Self {
             findings: walk::findings(robot, guard, pieces),
             hash: guard.hash(),
-            margin_band: walk::widest_band(robot, guard),
+            margin_band: walk::widest_band(robot),
         }
     }
 
@@ -131,8 +132,16 @@ impl Proof {
         walk::rows(guard)
     }
 
+    /// Pairs in cells of the robot's maps, whose poses the firmware does not measure.
+    pub fn certified(&self) -> u64 {
+        self.findings
+            .iter()
+            .map(|finding| finding.tally.certified)
+            .sum()
+    }
+
     /// Poses farther from every limit than the bands, and decided wrong all the
-    /// same: 0 proves the guard.
+    /// same, and poses of a cell that the guard refuses: 0 proves guard and cells.
     pub fn wrong(&self) -> u64 {
         self.findings
             .iter()
@@ -174,7 +183,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     match proof.wrong() {
         0 => Ok(()),
         wrong => Err(Failure::Impossible(format!(
-            "the guard decides {wrong} pairs wrong that are outside the band"
+            "the guard decides {wrong} pairs wrong that are outside the band or in a cell"
         ))),
     }
 }
@@ -237,6 +246,11 @@ fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
             out,
             "no pose that is farther than {:.4} (a sine) or {STEPS_BAND} steps of length from a limit is decided wrong",
             proof.margin_band
+        )?;
+        writeln!(
+            out,
+            "the guard accepts all {} pairs in the robot's cells, where the firmware does not ask it",
+            grouped(proof.certified())
         )?;
     }
     Ok(())

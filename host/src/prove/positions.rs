@@ -1,6 +1,5 @@
 //! Every position of a servo, as the firmware and as floating point see it.
 
-use lizard_core::robot::Robot as _;
 use lizard_core::trig::Direction;
 use lizard_core::units::Sweep;
 use lizard_kinematics::{End, Vector};
@@ -8,6 +7,8 @@ use lizard_robot::CoreRobot;
 
 /// One servo's positions, in steps of 1/65536 turn over its whole travel.
 pub struct Positions {
+    /// The first one's sweep from neutral.
+    first: i16,
     /// Its angle in the chassis frame, degrees.
     pub degrees: Vec<f64>,
     /// The crank's direction in the frame of its end, Q15.
@@ -23,6 +24,7 @@ impl Positions {
         let calibration = guard.calibration()[servo];
         let end = End::of_servo(servo);
         let mut positions = Self {
+            first: calibration.min.0,
             degrees: Vec::new(),
             fixed: Vec::new(),
             exact: Vec::new(),
@@ -39,5 +41,10 @@ impl Positions {
             positions.exact.push(end.mirror(Vector::direction(degrees)));
         }
         positions
+    }
+
+    /// The sweep from neutral of a position.
+    pub fn sweep(&self, position: usize) -> Sweep {
+        Sweep((i32::from(self.first) + position as i32) as i16)
     }
 }

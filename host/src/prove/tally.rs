@@ -27,6 +27,8 @@ pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
 pub struct Tally {
     /// Pairs of positions looked at.
     pub pairs: u64,
+    /// Those of them that a cell of the robot's maps holds: the guard must accept each.
+    pub certified: u64,
     /// Largest error of the type-2 margin, a sine.
     pub type2: Option<f64>,
     /// Largest error of a type-1 margin.
@@ -58,6 +60,7 @@ impl Tally {
     /// Of two walks together.
     pub fn and(mut self, other: Self) -> Self {
         self.pairs += other.pairs;
+        self.certified += other.certified;
         for (largest, value) in [
             (&mut self.type2, other.type2),
             (&mut self.type1, other.type1),
@@ -73,6 +76,17 @@ impl Tally {
         self.wrong += other.wrong;
         self.example = self.example.or(other.example);
         self
+    }
+
+    /// Notes a pair that a cell holds and that the guard refuses, if it does.
+    #[inline(always)]
+    pub fn certify(&mut self, accepted: bool, place: impl FnOnce() -> String) {
+        self.certified += 1;
+        if !accepted {
+            self.wrong += 1;
+            self.example
+                .get_or_insert_with(|| format!("{}: in a cell, but the guard refuses it", place()));
+        }
     }
 
     /// Notes a pair that is decided differently: it is `by` from the limit, where

@@ -1,12 +1,12 @@
 //! Rows and columns of positions, and the two decisions at each pair.
 
+use lizard_core::cells::Cells;
 use lizard_core::five_bar::EndMargins;
 use lizard_core::part;
-use lizard_core::robot::Robot as _;
 use lizard_core::trig::Direction;
 use lizard_core::units::ONE_Q15;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Side, Slider, Vector};
-use lizard_robot::{CoreRobot, Robot, servo};
+use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 use rayon::prelude::*;
 
 use super::positions::Positions;
@@ -30,15 +30,16 @@ pub fn piece(
     progress: &(impl Fn(u64) + Sync),
 ) -> Tally {
     let (whole, cut) = (place / CUTS, place % CUTS);
+    let maps = robot.cell_maps();
     let of = |[first, second]: [usize; 2]| [first, second].map(|servo| Positions::of(guard, servo));
     if let Some(end) = End::ALL.get(whole) {
         let pair = of(end.servos());
-        let walk = EndWalk::new(robot, guard, *end);
+        let walk = EndWalk::new(robot, guard, &maps, *end);
         walk.walk(pair.each_ref(), share, cut, progress)
     } else {
         let side = Side::ALL[whole - End::ALL.len()];
         let pair = of(side.servos());
-        let walk = SideWalk::new(robot, guard, side);
+        let walk = SideWalk::new(robot, guard, &maps, side);
         walk.walk(pair.each_ref(), share, cut, progress)
     }
 }
@@ -78,11 +79,27 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
 }
 
 /// The widest band of the robot's ends: see [`margin_band`].
-pub fn widest_band(robot: &Robot, guard: &CoreRobot) -> f64 {
+pub fn widest_band(robot: &Robot) -> f64 {
     End::ALL
-        .map(|end| EndWalk::new(robot, guard, end).margin_band)
+        .map(|end| bands(robot, end)[0])
         .into_iter()
         .fold(MARGIN_BAND, f64::max)
+}
+
+/// How near to the limit of a margin, a sine, and to the crossing of its crank tips, mm,
+/// an end may be decided otherwise.
+fn bands(robot: &Robot, end: End) -> [f64; 2] {
+    let step = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
+    let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step);
+    [band, STEPS_BAND * step]
+}
+
+/// The core's name of an end.
+fn part(end: End) -> part::End {
+    match end {
+        End::Head => part::End::Head,
+        End::Tail => part::End::Tail,
+    }
 }
 
 /// How many rows that is.
@@ -163,33 +180,37 @@ fn sine(q15: i16) -> f64 {
 
 /// The pairs of an end.
 struct EndWalk<'a> {
-    name: &'static str,
     fixed: lizard_core::five_bar::FiveBar<'a>,
     exact: FiveBar,
     /// Type-2 and type-1, as robot.toml and as the firmware has them.
     limits: [f64; 2],
     fixed_limits: [i16; 2],
+    /// Of the legs, as the firmware has it.
+    fixed_leg: i16,
+    end: End,
+    cells: Cells<'a>,
     margin_band: f64,
     crossing_band: f64,
 }
 
 impl<'a> EndWalk<'a> {
-    fn new(robot: &Robot, guard: &'a CoreRobot, end: End) -> Self {
-        let part = match end {
-            End::Head => part::End::Head,
-            End::Tail => part::End::Tail,
-        };
+    fn new(robot: &Robot, guard: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
         let limits = guard.limits();
-        let exact = robot.lizard().end(end);
-        let step = f64::from(1u32 << guard.end_scale(part).bits).recip();
+        let [margin_band, crossing_band] = bands(robot, end);
+        let map = match end {
+            End::Head => &maps.head,
+            End::Tail => &maps.tail,
+        };
         Self {
-            name: end.name(),
-            fixed: guard.end(part),
-            exact,
+            fixed: guard.end(part(end)),
+            exact: robot.lizard().end(end),
             limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],
-            margin_band: margin_band(&exact, robot.limits().type2, step),
-            crossing_band: STEPS_BAND * step,
+            fixed_leg: limits.leg.0,
+            end,
+            cells: map.cells(),
+            margin_band,
+            crossing_band,
         }
     }
 
@@ -219,18 +240,39 @@ impl<'a> EndWalk<'a> {
                         type1: [type1_left[lane], type1_right[lane]],
                         across: across[lane],
                     };
-                    let margins = self.fixed.margins(left.fixed[row], right.fixed[column]);
+                    let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
                     let place = || {
                         format!(
                             "{} at {:.4} and {:.4} deg",
-                            self.name, left.degrees[row], right.degrees[column]
+                            self.end.name(),
+                            left.degrees[row],
+                            right.degrees[column]
                         )
                     };
                     self.compare(&mut tally, margins, &truth, place);
+                    let [sweep, other] = [left.sweep(row), right.sweep(column)];
+                    // Their rows are A1 and A3, their columns A2 and A4.
+                    let held = match self.end {
+                        End::Head => self.cells.hold(sweep, other),
+                        End::Tail => self.cells.hold(other, sweep),
+                    };
+                    if held {
+                        let legs = [left.fixed[row], right.fixed[column]];
+                        let accepted = self.accepts(margins)
+                            && legs.iter().all(|leg| leg.sin >= self.fixed_leg);
+                        tally.certify(accepted, place);
+                    }
                 }
             });
             tally
         })
+    }
+
+    /// What the guard says of an end.
+    #[inline(always)]
+    fn accepts(&self, margins: EndMargins) -> bool {
+        let [type2, type1] = self.fixed_limits;
+        margins.type2.0 >= type2 && margins.type1_left.0 >= type1 && margins.type1_right.0 >= type1
     }
 
     #[inline(always)]
@@ -242,6 +284,7 @@ impl<'a> EndWalk<'a> {
         place: impl Fn() -> String,
     ) {
         tally.pairs += 1;
+        let fixed = self.accepts(margins);
         let EndMargins {
             type2,
             type1_left,
@@ -254,8 +297,6 @@ impl<'a> EndWalk<'a> {
                 Tally::raise(&mut tally.type1, (sine(fixed.0) - exact).abs());
             }
         }
-        let [least2, least1] = self.fixed_limits;
-        let fixed = type2.0 >= least2 && type1_left.0 >= least1 && type1_right.0 >= least1;
         let (clear, crossed) = truth.clear_by(self.limits);
         let exact = clear >= 0.0 && crossed > 0.0;
         if fixed != exact {
@@ -308,22 +349,24 @@ impl EndTruth {
 }
 
 /// The pairs of a side.
-struct SideWalk {
+struct SideWalk<'a> {
     side: Side,
+    cells: Cells<'a>,
     fixed: lizard_core::slider::Slider,
     exact: Slider,
     stroke: [f64; 2],
     steps_per_mm: f64,
 }
 
-impl SideWalk {
-    fn new(robot: &Robot, guard: &CoreRobot, side: Side) -> Self {
-        let fixed = match side {
-            Side::Left => guard.side(part::Side::Left),
-            Side::Right => guard.side(part::Side::Right).mirrored(),
+impl<'a> SideWalk<'a> {
+    fn new(robot: &Robot, guard: &CoreRobot, maps: &'a CellMaps, side: Side) -> Self {
+        let (fixed, map) = match side {
+            Side::Left => (guard.side(part::Side::Left), &maps.left),
+            Side::Right => (guard.side(part::Side::Right).mirrored(), &maps.right),
         };
         Self {
             side,
+            cells: map.cells(),
             fixed,
             exact: robot.lizard().side(side),
             stroke: [robot.limits().stroke_min, robot.limits().stroke_max],
@@ -355,10 +398,18 @@ impl SideWalk {
                 for lane in 0..count {
                     let column = eight[lane];
                     tally.pairs += 1;
-                    let length_sq = self.fixed.length_sq(crank, turned(rear.fixed[column]));
+                    let length_sq = self.fixed.length_sq(&crank, &turned(rear.fixed[column]));
                     let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
                     Tally::raise(&mut tally.travel, (length - d[lane]).abs());
                     let fixed = self.fixed.allows(length_sq);
+                    if self.cells.hold(front.sweep(row), rear.sweep(column)) {
+                        tally.certify(fixed, || {
+                            format!(
+                                "{} side at {:.4} and {:.4} deg",
+                                self.side, front.degrees[row], rear.degrees[column]
+                            )
+                        });
+                    }
                     let [min, max] = self.stroke;
                     let clear = (s[lane] - min).min(max - s[lane]);
                     if fixed != (clear >= 0.0) {

@@ -34,18 +34,19 @@ const READING_TAKES: u64 = 1_600;
 const WAKES: usize = 500;
 
 /// The firmware's main on such a board.
-struct CoreRun<R> {
-    running: Running<R>,
+struct CoreRun {
+    running: Running,
 }
 
-impl<R: Robot> CoreRun<R> {
-    fn new(robot: R) -> Self {
+impl CoreRun {
+    fn new(robot: Robot<'static>) -> Self {
         let supplies = robot.supplies();
         let mut board = VirtualBoard::default();
         board.transmitter = Transmitter::new(BYTE, CAPACITY);
-        board.converter = Converter::new(supplies::reading(&supplies), supplies.rail.is_some());
+        board.converter =
+            Converter::new(supplies::reading(&supplies), supplies.rail_reference != 0);
         Self {
-            running: Running::on(robot, board),
+            running: Running::on(robot.section(), board),
         }
     }
 
@@ -87,12 +88,7 @@ pub struct Commands {
 /// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
 /// frames from there on. Exact but for the lines of [`undecided`].
 #[must_use]
-pub fn play<R: Robot + Copy>(
-    robot: R,
-    received: &[SerialByte],
-    first: u64,
-    count: usize,
-) -> Commands {
+pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
     let silent = frames_before_waking(robot);
     let mut run = CoreRun::new(robot);
     let mut received = received.iter().peekable();
@@ -137,7 +133,7 @@ pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = us
 }
 
 /// Frames before A1's first pulse, if no command comes.
-fn frames_before_waking<R: Robot>(robot: R) -> usize {
+fn frames_before_waking(robot: Robot<'static>) -> usize {
     let mut run = CoreRun::new(robot);
     (0..WAKES).take_while(|_| run.tick(0)[0] == 0).count()
 }

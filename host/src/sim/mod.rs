@@ -119,17 +119,17 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
             Some(loader) => served::as_sold(loader, fidelity)?,
-            None => load(
-                &firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?,
-                fidelity,
-            )?,
+            None => {
+                let (_, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+                Uno::with_image(image, fidelity)
+            }
         };
         supplies::connect(&mut uno, &robot);
         return served::until_interrupted(uno, link.as_deref());
     }
     let script = script(&args, &robot)?;
-    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
-    let mut uno = load(&elf, fidelity)?;
+    let (elf, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
     let mut kept = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
@@ -210,17 +210,13 @@ fn record(
 fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
     let commands = core_run::play(
-        robot.firmware(),
+        *robot.firmware(),
         &recording.received_by_uno,
         log.first,
         log.widths.len(),
     );
     let same = recording.banner.as_deref()? == commands.written.lines().next()?;
     same.then_some(commands.widths)
-}
-
-fn load(elf: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
-    Uno::load(elf, fidelity).map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))
 }
 
 fn ended(state: &State) -> String {

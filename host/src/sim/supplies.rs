@@ -4,7 +4,6 @@
 //! needs, besides its own 5 V, whatever voltage robot.toml says it measures: the
 //! servos' rail through its divider.
 
-use lizard_core::robot::Robot as _;
 use lizard_core::supply::{Reading, Supplies};
 use lizard_robot::{Robot, healthy_rail_mv};
 use simulated_uno::{Pin, Uno};

@@ -84,9 +84,8 @@ enum ServoArg {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
-    let elf = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
-    let mut uno = Uno::load(&elf, Fidelity::DataSheet)
-        .map_err(|error| Failure::Input(format!("{}: {error}", elf.display())))?;
+    let (_, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let recording = record(&mut uno, &robot, &script)?;
     if recording.state != State::Alive {
         return Err(Failure::Impossible(

@@ -5,7 +5,6 @@
 //! are missing.
 
 use lizard_core::restart::Restart;
-use lizard_core::robot::Robot as _;
 use lizard_core::supply::Reading;
 use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::{CoreRobot, healthy_rail_mv};
@@ -26,7 +25,7 @@ pub struct Said {
 
 /// The core of a robot, running.
 pub struct CoreRun {
-    running: Running<CoreRobot>,
+    running: Running,
     /// What a healthy rail of the servos leaves at its pin.
     rail_mv: f64,
 }

@@ -1,6 +1,5 @@
 //! What the page has to know of a robot before anything moves.
 
-use lizard_core::robot::Robot as _;
 use lizard_core::word::Word;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};

@@ -52,7 +52,7 @@ fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
     dialogue.say("trim 2 5");
     assert_ne!(cal(&mut dialogue), saved);
     let mut again = Dialogue::with(
-        Sample::odd(),
+        *Sample::odd(),
         dialogue.board.memory.clone(),
         Restart::default(),
     );
@@ -99,7 +99,7 @@ fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_t
             .0
             .map(|width| width.0);
         let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
-        let most = f64::from(motion.robot().slew.per_frame) * gain;
+        let most = f64::from(motion.robot().slew().per_frame) * gain;
         let mut last = before;
         for _ in 0..200 {
             let now = widths(&mut dialogue);
@@ -198,8 +198,8 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
     assert!(other.say("load").starts_with("err 9 "));
     assert_eq!(cal(&mut other), before);
     // A trim moves the travel: this pose is within it, but not within robot.toml's.
-    let mut robot = Sample::odd();
-    robot.calibration[0].max = crate::units::Sweep(2200);
+    let narrow = crate::units::Sweep(2200);
+    let robot = Sample::odd().with(|content| content.calibration[0].max = narrow);
     let mut narrow = awake(robot);
     assert_eq!(narrow.say("trim 1 -5"), "ok trim 1 -5");
     assert_eq!(narrow.say("limit 1 67 149"), "ok limit 1 67 149");
@@ -225,7 +225,7 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     dialogue.run(100);
     assert_eq!(dialogue.say("center"), "ok center");
     dialogue.run(200);
-    let neutral = Sample::odd().calibration.map(|servo| servo.neutral.0);
+    let neutral = Sample::odd().calibration().map(|servo| servo.neutral.0);
     for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
         assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
     }
@@ -244,7 +244,7 @@ fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
             .fold(Sample::odd(), |robot, name| robot.with_gait(name))
     };
     for name in names {
-        let mut dialogue = Dialogue::power_on(robot());
+        let mut dialogue = Dialogue::power_on(*robot());
         dialogue.run(30);
         assert_eq!(
             dialogue.say(&format!("boot {name}")),
@@ -252,7 +252,7 @@ fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
         );
         assert_eq!(dialogue.say("save"), "ok save");
         let memory = dialogue.board.memory.clone();
-        let mut again = Dialogue::with(robot(), memory, Restart::NONE);
+        let mut again = Dialogue::with(*robot(), memory, Restart::NONE);
         again.run(151);
         assert_eq!(again.status("gait"), name.replace(' ', "-"));
     }
@@ -264,7 +264,7 @@ fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
         let robot = Sample::odd();
         let mut settings = Settings::of(&robot);
         let mut set = settings.servo(servo);
-        set.max = crate::units::Sweep(servo.of(&robot.reach).max.0 - 1);
+        set.max = crate::units::Sweep(robot.reach(servo).max.0 - 1);
         settings.set_servo(servo, set);
         assert_eq!(settings.unfit(&robot), Some(servo));
     }

@@ -10,7 +10,7 @@ use crate::virtual_board::Running;
 pub(super) const WAKING: u32 = 21;
 
 /// A robot of these tests, running.
-pub(super) type Dialogue = Running<Sample>;
+pub(super) type Dialogue = Running;
 
 /// With the banner read and the robot awake.
 pub(super) fn standing() -> Dialogue {
@@ -19,7 +19,7 @@ pub(super) fn standing() -> Dialogue {
 
 /// The same of another robot.
 pub(super) fn awake(robot: Sample) -> Dialogue {
-    let mut dialogue = Dialogue::power_on(robot);
+    let mut dialogue = Dialogue::power_on(*robot);
     let said = dialogue.lines();
     assert_eq!(
         said.len(),

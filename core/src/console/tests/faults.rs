@@ -9,13 +9,13 @@ fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
         dialogue.say(&format!("boot {boot}"));
         assert_eq!(dialogue.say("save"), "ok save");
         let chip = dialogue.board.memory.clone();
-        let mut alone = Dialogue::with(Sample::odd(), chip.clone(), Restart::default());
+        let mut alone = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
         let said = alone.run(149);
         assert_eq!(said.len(), 1, "{said:?}");
         assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
         assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
         assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
-        let mut watched = Dialogue::with(Sample::odd(), chip, Restart::default());
+        let mut watched = Dialogue::with(*Sample::odd(), chip, Restart::default());
         watched.run(100);
         watched.board.send(b" ");
         watched.run(400);
@@ -116,7 +116,7 @@ fn hung(count: u8, stance: Stance) -> Restart {
 #[test]
 fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
     let stance = held([400, -300, 200, -100]);
-    let mut dialogue = Dialogue::with(Sample::odd(), Eeprom::blank(), hung(3, stance));
+    let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(3, stance));
     let said = dialogue.run(1);
     assert!(
         said.contains(&"# fault: the program hung and began anew".to_string()),
@@ -146,7 +146,7 @@ fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over_and_the_robot_rests(
                 cause,
                 ..hung(1, held(sweeps))
             };
-            let mut dialogue = Dialogue::with(Sample::odd(), Eeprom::blank(), restart);
+            let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), restart);
             for _ in 0..140 {
                 assert_eq!(dialogue.frame(), Pulses::default());
             }
@@ -166,10 +166,10 @@ fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
     let chip = dialogue.board.memory.clone();
     // 132.37 deg and 30 more is safe, and beyond 160.
     let beyond = held([5461, 0, 0, 0]);
-    let mut within = Dialogue::with(Sample::odd(), Eeprom::blank(), hung(1, beyond));
+    let mut within = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(1, beyond));
     within.run(10);
     assert_eq!(within.status("gait"), "stop");
-    let mut narrow = Dialogue::with(Sample::odd(), chip, hung(1, beyond));
+    let mut narrow = Dialogue::with(*Sample::odd(), chip, hung(1, beyond));
     narrow.run(10);
     assert_eq!(narrow.status("gait"), "rest");
 }
@@ -197,7 +197,7 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
                 if pulse.0 == 0 {
                     continue;
                 }
-                let most = calibration[place].slew(Sample::odd().slew.per_frame);
+                let most = calibration[place].slew(Sample::odd().slew().per_frame);
                 let way = pulse.0.abs_diff(before.0);
                 assert!(way <= most + 1, "{setting} A{}: {way} of {most}", place + 1);
                 moved += usize::from(place == servo && way > 0);
@@ -313,7 +313,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     dialogue.run(2);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     let chip = dialogue.board.memory.clone();
-    let mut again = Dialogue::with(Sample::odd(), chip, Restart::NONE);
+    let mut again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
     let writes = again.board.memory.log.len();
     for _ in 0..60 {
         again.lines();
@@ -363,7 +363,7 @@ fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
         "{said:?}"
     );
     let chip = dialogue.board.memory.clone();
-    let again = Dialogue::with(Sample::odd(), chip, Restart::NONE);
+    let again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
     assert_eq!(again.main.control().settings().deadman(), 1000);
 }
 
@@ -394,7 +394,7 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
     dialogue.run(150);
     dialogue.say("rest");
     let chip = dialogue.board.memory.clone();
-    let mut again = Dialogue::with(Sample::odd(), chip.clone(), Restart::default());
+    let mut again = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
     again.lines();
     assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
     let there = again.motion().pose().pulses(again.motion().calibration());
@@ -412,7 +412,7 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
     assert_eq!(again.status("pose"), dialogue_neutral());
     // Having moved, it has forgotten where it rested.
     let after = Dialogue::with(
-        Sample::odd(),
+        *Sample::odd(),
         again.board.memory.clone(),
         Restart::default(),
     );
@@ -434,7 +434,7 @@ fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
 
 #[test]
 fn a_save_right_after_the_start_waits_for_the_supply_and_no_longer_than_half_a_second() {
-    let mut dialogue = Dialogue::power_on(Sample::odd());
+    let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.lines();
     dialogue.board.send(b"save\r");
     let said = dialogue.run(5);
@@ -443,7 +443,7 @@ fn a_save_right_after_the_start_waits_for_the_supply_and_no_longer_than_half_a_s
         "{said:?}"
     );
     assert_eq!(dialogue.run(15), ["ok save"]);
-    let mut never = Dialogue::on(Sample::odd(), VirtualBoard::default());
+    let mut never = Dialogue::on(Sample::odd().section(), VirtualBoard::default());
     never.lines();
     never.board.send(b"save\r");
     assert_eq!(never.run(30), ["err 8 the supply is too low"]);

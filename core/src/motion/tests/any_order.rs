@@ -60,7 +60,7 @@ proptest! {
                 }
                 if !cycling {
                     let way = before.farthest(motion.pose());
-                    prop_assert!(way <= motion.robot.slew.per_frame, "{}", way);
+                    prop_assert!(way <= motion.robot.slew().per_frame, "{}", way);
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A robot that the guard has just stopped.
-fn guarded() -> Motion<Sample> {
+fn guarded() -> Motion {
     let mut motion = Motion::standing();
     motion.start("stray");
     for _ in 0..200 {

@@ -8,7 +8,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     // The gains of this robot differ from servo to servo.
     let mut motion = Motion::standing();
     let before = motion.sent().0;
-    let per_frame = f64::from(motion.robot.slew.per_frame);
+    let per_frame = f64::from(motion.robot.slew().per_frame);
     let ways = motion.calibration.map(|servo| {
         // Cycles for a frame's turn, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16

@@ -17,7 +17,7 @@ fn while_it_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
 
 #[test]
 fn stop_and_rest_change_nothing_while_it_rests() {
-    for ask in [Motion::<Sample>::stop, Motion::<Sample>::rest] {
+    for ask in [Motion::stop, Motion::rest] {
         let mut motion = resting();
         ask(&mut motion);
         assert_eq!(motion.activity(), Activity::Rest);
@@ -56,7 +56,7 @@ fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_before_anything_moves(
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
     let mut again = resting();
     again.start("stand");
-    for mut motion in [Motion::new(Sample::odd()), again] {
+    for mut motion in [Motion::new(*Sample::odd()), again] {
         let held = motion.held();
         let mut since = [0; 4];
         for frame in 1..=WAKING {
@@ -78,7 +78,7 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
 
 #[test]
 fn a_robot_that_is_told_to_rest_while_it_wakes_wakes_from_the_beginning_later() {
-    let mut motion = Motion::new(Sample::odd());
+    let mut motion = Motion::new(*Sample::odd());
     motion.run(12);
     motion.rest();
     assert_eq!(motion.tick(), Pulses::default());
@@ -105,7 +105,7 @@ fn stop_while_it_wakes_lets_the_servos_wake_and_nothing_move() {
 
 #[test]
 fn what_is_asked_for_while_it_wakes_waits_until_all_are_awake() {
-    let mut motion = Motion::new(Sample::odd());
+    let mut motion = Motion::new(*Sample::odd());
     motion.run(3);
     motion.head_for_pose(THERE);
     motion.run(WAKING - 3);

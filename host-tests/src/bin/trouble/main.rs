@@ -25,8 +25,7 @@ fn number(name: &str) -> Option<u64> {
 }
 
 fn main() -> ExitCode {
-    let elf = FirmwareBench::elf();
-    let image = Image::read(&elf).unwrap_or_else(|error| panic!("{error}; make firmware"));
+    let image = FirmwareBench::image();
     let seed = number("SEED").unwrap_or(1);
     if let Some(only) = number("ONLY") {
         return one(&image, seed, only);

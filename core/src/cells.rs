@@ -1,0 +1,169 @@
+//! Poses that need no measuring: cells of two servos' sweeps in which the guard is
+//! known to accept every pose.
+//!
+//! To measure how clear of every hazard a pose is takes most of a frame's time, and far
+//! from all limits the answer is always the same. Every condition of the guard depends
+//! on one servo or on two, so four small maps over pairs of servos can say where that
+//! is. Whoever makes the numbers of a robot also makes its maps, and proves that the
+//! integers of [`crate::guard`] accept every pose of every cell; a pose outside of the
+//! cells is not unsafe, it is measured.
+
+use lizard_avr::{Flash, flash};
+
+use crate::units::Sweep;
+
+/// The most rows that a map may have.
+pub const MOST_ROWS: usize = 64;
+
+/// Binary logarithm of the steps of a sweep (1/65536 turn) that a row is wide: 1.4 deg.
+pub const ROW_BITS: u32 = 8;
+
+/// The same of a column: 0.7 deg.
+pub const COLUMN_BITS: u32 = 7;
+
+flash! {
+    const NO_ROWS: [[i8; 2]; 0] = [];
+}
+
+/// The cells of one pair of servos in which everything is safe that depends on the two.
+#[derive(Clone, Copy)]
+pub struct Cells<'a> {
+    first: i8,
+    rows: Flash<'a, [[i8; 2]]>,
+}
+
+impl Cells<'static> {
+    /// No cell at all: every pose is measured.
+    pub const NONE: Self = Self::new(0, NO_ROWS.as_slice());
+}
+
+impl<'a> Cells<'a> {
+    /// A map whose rows follow one another from row `first` on. Each has its first and
+    /// its last column, both of which belong to it; a row whose first column is the
+    /// greater one has none. A row or column is a sweep divided by 2 to the
+    /// [`ROW_BITS`] or [`COLUMN_BITS`], rounded down.
+    pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+        Self { first, rows }
+    }
+
+    /// True where a cell holds this pair of sweeps. A column that is no `i8`, a
+    /// quarter of a turn from neutral, is in no cell.
+    pub fn hold(&self, row: Sweep, column: Sweep) -> bool {
+        // One shift and a byte, where a shift by seven would be a loop.
+        let Some(twice) = column.0.checked_add(column.0) else {
+            return false;
+        };
+        let (row, column) = ((row.0 >> 8) as i8, (twice >> 8) as i8);
+        if row < self.first {
+            return false;
+        }
+        let place = usize::from(row.wrapping_sub(self.first) as u8);
+        if place >= self.rows.len() {
+            return false;
+        }
+        let Some(columns) = self.rows.get(place) else {
+            return false;
+        };
+        let [first, last] = columns.load();
+        first <= column && column <= last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What a map says, by division and without a shortcut.
+    fn held(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
+        let row = f64::from(row).div_euclid(256.0) as i32;
+        let column = f64::from(column).div_euclid(128.0) as i32;
+        rows.iter().enumerate().any(|(place, [low, high])| {
+            i32::from(first) + place as i32 == row
+                && (i32::from(*low)..=i32::from(*high)).contains(&column)
+        })
+    }
+
+    /// Columns at and beside every border that rows here have, and a quarter of a turn
+    /// from neutral, where columns end.
+    const COLUMNS: [i16; 17] = [
+        i16::MIN,
+        -16_385,
+        -16_384,
+        -16_257,
+        -16_256,
+        -1281,
+        -1280,
+        -129,
+        -1,
+        0,
+        127,
+        128,
+        1407,
+        1408,
+        16_383,
+        16_384,
+        i16::MAX,
+    ];
+
+    fn agrees(first: i8, rows: &[[i8; 2]]) {
+        let cells = Cells::new(first, Flash::from(rows));
+        for row in i16::MIN..=i16::MAX {
+            for column in COLUMNS {
+                assert_eq!(
+                    cells.hold(Sweep(row), Sweep(column)),
+                    held(first, rows, row, column),
+                    "{row} {column} in {rows:?} from {first}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_pair_is_held_by_the_row_and_the_columns_that_it_is_in_at_every_sweep() {
+        let rows = [
+            [-10, 10],
+            [1, 0],
+            [-128, 127],
+            [0, 0],
+            [-127, -2],
+            [127, -128],
+        ];
+        // About neutral, at either end of the turn, and with rows beyond its end.
+        for first in [-3, 0, -128, 122, 125] {
+            agrees(first, &rows);
+        }
+        let most: Vec<[i8; 2]> = (0..MOST_ROWS as i8).map(|n| [n - 40, n]).collect();
+        agrees(-32, &most);
+    }
+
+    #[test]
+    fn a_map_without_rows_holds_nothing() {
+        for row in i16::MIN..=i16::MAX {
+            for column in COLUMNS {
+                assert!(!Cells::NONE.hold(Sweep(row), Sweep(column)));
+            }
+        }
+        agrees(-5, &[]);
+    }
+
+    proptest! {
+        #[test]
+        fn any_map_holds_what_its_rows_say(
+            first: i8,
+            rows in prop::collection::vec(any::<[i8; 2]>(), 0..300),
+            pairs in prop::collection::vec(any::<[i16; 2]>(), 1000),
+        ) {
+            let cells = Cells::new(first, Flash::from(rows.as_slice()));
+            for [row, column] in pairs {
+                prop_assert_eq!(
+                    cells.hold(Sweep(row), Sweep(column)),
+                    held(first, &rows, row, column)
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The sum by which what is kept is known to be whole: the CRC of sixteen bits of
+//! polynomial x^16 + x^12 + x^5 + 1 that begins with ones (CRC-16/IBM-3740).
+//!
+//! It finds every change of one or two bits in a row of 32 751 bits, every odd number of
+//! changed bits, and all changes within sixteen neighbouring bits; of others it misses one
+//! in 65 536. The crate `crc` takes six times the flash for it; the tests compare with it.
+
+/// The sum of bytes that come one after another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Checksum(pub u16);
+
+impl Checksum {
+    /// Of nothing yet.
+    pub const NOTHING: Self = Self(u16::MAX);
+
+    /// With one byte more.
+    #[inline(never)]
+    pub const fn and(self, byte: u8) -> Self {
+        // Eight steps at once: the byte meets the sum's high half, and what leaves at the
+        // top comes back where the polynomial has its powers.
+        let out = (self.0 >> 8) as u8 ^ byte;
+        let out = (out ^ (out >> 4)) as u16;
+        Self((self.0 << 8) ^ (out << 12) ^ (out << 5) ^ out)
+    }
+
+    /// Of some bytes.
+    #[inline(never)]
+    pub fn of(bytes: &[u8]) -> Self {
+        let mut sum = Self::NOTHING;
+        for byte in bytes {
+            sum = sum.and(*byte);
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crc::{CRC_16_IBM_3740, Crc};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn it_is_the_sum_of_the_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+            let catalogue = Crc::<u16>::new(&CRC_16_IBM_3740);
+            prop_assert_eq!(Checksum::of(&bytes).0, catalogue.checksum(&bytes));
+        }
+    }
+}

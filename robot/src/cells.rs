@@ -1,0 +1,137 @@
+//! The maps of cells in which the integer guard is proved to accept every pose.
+//!
+//! On its chip the robot measures how clear of every hazard a pose is, and that takes
+//! most of a frame's time. Every condition depends on one servo or on the two of an end
+//! or of a side, so the poses that are safe by far can be told beforehand, in four maps
+//! over pairs of servos: [`lizard_core::cells`]. Here they are made of the robot's true
+//! measurements, by bounds over a whole cell and of what the integers may be off by.
+//! Nothing is sampled, so a cell needs no measuring at any pose in it.
+
+mod cell;
+mod end;
+mod side;
+
+use std::ops::RangeInclusive;
+
+use lizard_core::calibration::Calibration;
+use lizard_core::cells::{COLUMN_BITS, MOST_ROWS, ROW_BITS};
+use lizard_core::pose::Pose;
+use lizard_core::section::{Content, Map};
+use lizard_core::units::Angle;
+use lizard_kinematics::{End, Lizard, Side};
+
+use cell::{Cell, Condition, Span};
+
+/// The maps of a robot. A pose is certified where all of them hold it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CellMaps {
+    /// Rows A1, columns A2.
+    pub head: Map,
+    /// Rows A3, columns A4.
+    pub tail: Map,
+    /// Rows A1, columns A4.
+    pub left: Map,
+    /// Rows A2, columns A3.
+    pub right: Map,
+}
+
+/// A row without a cell.
+const NO_CELL: [i8; 2] = [1, 0];
+
+impl CellMaps {
+    /// The maps of true measurements and of the integers that were made of them.
+    pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
+        let end = |end: End| map(&end::Rule::new(lizard, numbers, end), numbers);
+        let side = |side: Side| map(&side::Rule::new(lizard, numbers, side), numbers);
+        Self {
+            head: end(End::Head),
+            tail: end(End::Tail),
+            left: side(Side::Left),
+            right: side(Side::Right),
+        }
+    }
+
+    /// Whether a pose is certified: the guard accepts it.
+    pub fn hold(&self, pose: &Pose) -> bool {
+        let [a1, a2, a3, a4] = pose.0;
+        self.head.cells().hold(a1, a2)
+            && self.tail.cells().hold(a3, a4)
+            && self.left.cells().hold(a1, a4)
+            && self.right.cells().hold(a2, a3)
+    }
+}
+
+/// The cells in which a condition is proved.
+fn map(rule: &impl Condition, numbers: &Content) -> Map {
+    let [row, column] = rule.servos().map(|servo| Servo {
+        neutral: numbers.neutral[servo],
+        travel: numbers.calibration[servo],
+    });
+    let most = MOST_ROWS as i32 / 2;
+    let rows = row.cells(ROW_BITS, -most..=most - 1);
+    let columns = column.cells(COLUMN_BITS, i8::MIN.into()..=i8::MAX.into());
+    let first = *rows.start();
+    let all: Vec<[i8; 2]> = rows
+        .map(|at| {
+            let across = row.span(at, ROW_BITS);
+            certified(&columns, |at| {
+                let along = column.span(at, COLUMN_BITS);
+                Cell([across, along]).keeps(rule)
+            })
+        })
+        .collect();
+    let some = |row: &[i8; 2]| row[0] <= row[1];
+    let Some(begin) = all.iter().position(some) else {
+        return Map {
+            first: 0,
+            rows: Vec::new(),
+        };
+    };
+    let end = all.iter().rposition(some).map_or(begin, |last| last + 1);
+    Map {
+        first: (first + begin as i32) as i8,
+        rows: all[begin..end].to_vec(),
+    }
+}
+/// A servo whose travel is divided into cells.
+struct Servo {
+    neutral: Angle,
+    travel: Calibration,
+}
+
+impl Servo {
+    /// The cells that its travel touches, of those that a map may have.
+    fn cells(&self, bits: u32, may: RangeInclusive<i32>) -> RangeInclusive<i32> {
+        let [min, max] = [self.travel.min, self.travel.max].map(|end| i32::from(end.0 >> bits));
+        min.max(*may.start())..=max.min(*may.end())
+    }
+
+    /// The chassis angles of a cell: of its first sweep to its last.
+    fn span(&self, at: i32, bits: u32) -> Span {
+        let first = f64::from(i32::from(self.neutral.0) + (at << bits));
+        Span {
+            low: first,
+            high: first + f64::from((1 << bits) - 1),
+        }
+    }
+}
+
+/// The longest run of columns that keep a condition from the one nearest to neutral on.
+fn certified(columns: &RangeInclusive<i32>, keeps: impl Fn(i32) -> bool) -> [i8; 2] {
+    let mut outwards: Vec<i32> = columns.clone().collect();
+    outwards.sort_by_key(|column| (2 * column + 1).abs());
+    let Some(nearest) = outwards.into_iter().find(|column| keeps(*column)) else {
+        return NO_CELL;
+    };
+    let last = (nearest + 1..=*columns.end()).take_while(|column| keeps(*column));
+    let first = (*columns.start()..nearest)
+        .rev()
+        .take_while(|column| keeps(*column));
+    [
+        first.last().unwrap_or(nearest) as i8,
+        last.last().unwrap_or(nearest) as i8,
+    ]
+}
+
+#[cfg(test)]
+mod tests;

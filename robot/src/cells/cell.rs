@@ -1,0 +1,99 @@
+//! A cell of two servos' angles, and when all of it keeps a condition.
+
+use std::f64::consts::TAU;
+
+use lizard_core::units::TURN;
+use lizard_kinematics::Vector;
+
+/// How often a cell is divided in four before it is given up. A bound over a cell is
+/// too wide by about the cell's size, so each division lets cells in that are half as
+/// near to a limit.
+const DIVISIONS: u32 = 4;
+
+/// What floating point itself may be off by, sines and mm: far more than it is.
+pub(super) const HAIR: f64 = 1e-9;
+
+/// A range of one servo's angles in the chassis frame, 1/65536 turn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Ranges of the angles of a map's row and of its column.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell(pub [Span; 2]);
+
+/// What can be said of a condition in all of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// The integers keep it at every pose.
+    Kept,
+    /// Its centre breaks it.
+    Broken,
+    /// The bounds are too wide to say.
+    Open,
+}
+
+/// A condition of the guard that depends on two servos.
+pub(super) trait Condition {
+    /// Row and column, places in servo order.
+    fn servos(&self) -> [usize; 2];
+
+    /// What is known of it in a cell.
+    fn judge(&self, cell: &Cell) -> Verdict;
+}
+
+impl Span {
+    /// The middle, degrees.
+    pub fn centre(&self) -> f64 {
+        (self.low + self.high) / 2.0 * 360.0 / f64::from(TURN)
+    }
+
+    /// How far its ends are from the middle, radians.
+    pub fn half(&self) -> f64 {
+        (self.high - self.low) / 2.0 * TAU / f64::from(TURN)
+    }
+
+    /// The direction of its middle.
+    pub fn direction(&self) -> Vector {
+        Vector::direction(self.centre())
+    }
+
+    fn halves(self) -> [Self; 2] {
+        let middle = (self.low + self.high) / 2.0;
+        [
+            Self {
+                high: middle,
+                ..self
+            },
+            Self {
+                low: middle,
+                ..self
+            },
+        ]
+    }
+}
+
+impl Cell {
+    /// Whether a condition is proved in all of it.
+    pub fn keeps(&self, condition: &impl Condition) -> bool {
+        self.keeps_within(condition, DIVISIONS)
+    }
+
+    fn keeps_within(&self, condition: &impl Condition, divisions: u32) -> bool {
+        match condition.judge(self) {
+            Verdict::Kept => true,
+            Verdict::Broken => false,
+            Verdict::Open => {
+                let [rows, columns] = self.0.map(Span::halves);
+                divisions > 0
+                    && rows.into_iter().all(|row| {
+                        columns.into_iter().all(|column| {
+                            Self([row, column]).keeps_within(condition, divisions - 1)
+                        })
+                    })
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! What is known of an end in a cell: its couplers, its elbows and its legs.
+//!
+//! While the crank angles go from the cell's centre to any other pose of it, the crank
+//! tips move by at most crank times angle, and so does the line `k` between them.
+//! Three things follow:
+//!
+//! * The tips' distance is in a range, and with it the sine between the couplers: the
+//!   type-2 margin, at its least in [`bounds::End::least`]. The tips have not crossed if
+//!   they are farther apart along the base than they can come nearer.
+//! * From `a u2 - b u3 = k`, the couplers of directions `u2` and `u3` over the line
+//!   `k`, the left one turns by at most `|dk| / (a sin(theta3 - theta2))`, the right one
+//!   by as much over `b`. Its crank turns by half the cell, so the type-1 margin, a
+//!   sine, is less than at the centre by at most both together.
+//! * A leg's margin is the sine of its own crank alone, the least at an end of its range.
+//!
+//! The integers' margins are less than that by at most their bounds, and must still
+//! keep the integers' limits.
+
+use lizard_core::bounds::{self, DIRECTION};
+use lizard_core::limits::Limits;
+use lizard_core::section::Content;
+use lizard_core::units::Sine;
+use lizard_kinematics::{AssemblyMode, End, FiveBar, Lizard, Vector};
+
+use super::cell::{Cell, Condition, HAIR, Span, Verdict};
+use crate::units::ONE_Q15;
+
+/// The conditions of an end.
+pub(super) struct Rule {
+    end: End,
+    bars: FiveBar,
+    integers: bounds::Bars,
+    type2: f64,
+    type1: f64,
+    leg: f64,
+}
+
+impl Rule {
+    pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
+        let integers = &numbers.ends[end as usize];
+        let Limits { type2, type1, leg } = numbers.limits;
+        let sine = |limit: Sine| f64::from(limit.0) / ONE_Q15;
+        Self {
+            end,
+            bars: lizard.end(end),
+            integers: bounds::Bars {
+                scale: integers.scale,
+                couplers: integers.couplers,
+            },
+            type2: sine(type2),
+            type1: sine(type1),
+            leg: sine(leg),
+        }
+    }
+
+    /// The least sine of a leg over its servo's range, which is less than half a turn.
+    fn least_leg(&self, span: &Span) -> f64 {
+        let half = span.half();
+        let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
+        // Of the centre turned by half the range, either way.
+        sin * half.cos() - cos.abs() * half.sin()
+    }
+}
+
+impl Condition for Rule {
+    fn servos(&self) -> [usize; 2] {
+        match self.end {
+            End::Head => [0, 1],
+            End::Tail => [2, 3],
+        }
+    }
+
+    fn judge(&self, cell: &Cell) -> Verdict {
+        let [left, right] = match self.end {
+            End::Head => cell.0,
+            End::Tail => [cell.0[1], cell.0[0]],
+        };
+        let directions = [left, right].map(|span| self.end.mirror(span.direction()));
+        let [left_crank, right_crank] = directions;
+        let Ok(pose) = self
+            .bars
+            .close(AssemblyMode::Ahead, left_crank, right_crank)
+        else {
+            return Verdict::Broken;
+        };
+        let type1 = [pose.type1_left(), pose.type1_right()];
+        let keeps = pose.gap.x > 0.0
+            && pose.type2 >= self.type2
+            && type1.iter().all(|margin| *margin >= self.type1)
+            && directions.iter().all(|crank| crank.y >= self.leg);
+        if !keeps {
+            return Verdict::Broken;
+        }
+
+        let moved = self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
+        let apart = pose.gap.length();
+        let range = [(apart - moved).max(0.0), apart + moved];
+        let off = bounds::End::between(&self.bars, self.integers, range);
+        let uncrossed = pose.gap.x - moved > off.along + HAIR;
+        if !(off.known && uncrossed) {
+            return Verdict::Open;
+        }
+        let turned = |coupler: f64| moved / (coupler * off.least);
+        let elbows = [
+            left.half() + turned(self.bars.coupler_left) + off.type1_left,
+            right.half() + turned(self.bars.coupler_right) + off.type1_right,
+        ];
+        let kept = off.least - off.type2 >= self.type2 + HAIR
+            && type1
+                .iter()
+                .zip(elbows)
+                .all(|(margin, less)| margin - less >= self.type1 + HAIR)
+            && [left, right]
+                .iter()
+                .all(|span| self.least_leg(span) - DIRECTION >= self.leg + HAIR);
+        if kept { Verdict::Kept } else { Verdict::Open }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::robot;
+
+    /// The neutral pose of the head of a robot without symmetry, as a cell.
+    fn standing() -> (Rule, Cell) {
+        let robot = robot("unequal");
+        let numbers = robot.content();
+        let rule = Rule {
+            type2: 0.0,
+            type1: -1.0,
+            leg: 0.0,
+            ..Rule::new(robot.lizard(), numbers, End::Head)
+        };
+        let span = |servo: usize| {
+            let angle = f64::from(numbers.neutral[servo].0);
+            Span {
+                low: angle,
+                high: angle,
+            }
+        };
+        (rule, Cell([span(0), span(1)]))
+    }
+
+    type Limit = fn(&mut Rule) -> &mut f64;
+
+    #[test]
+    fn a_single_pose_is_proved_if_it_is_clear_of_each_limit_by_what_the_integers_may_be_off_by() {
+        let (mut rule, cell) = standing();
+        // No limit, nothing to keep.
+        assert_eq!(rule.judge(&cell), Verdict::Kept);
+        let cranks = cell.0.map(|span| span.direction());
+        let [left, right] = cranks;
+        let pose = rule.bars.close(AssemblyMode::Ahead, left, right);
+        let pose = pose.expect("it stands");
+        let apart = pose.gap.length();
+        let off = bounds::End::between(&rule.bars, rule.integers, [apart; 2]);
+        let (lower, bound) = if pose.type1_left() < pose.type1_right() {
+            (pose.type1_left(), off.type1_left)
+        } else {
+            (pose.type1_right(), off.type1_right)
+        };
+        let limits: [(Limit, f64, f64); 3] = [
+            (|rule| &mut rule.type2, pose.type2, off.type2),
+            (|rule| &mut rule.type1, lower, bound),
+            (|rule| &mut rule.leg, left.y.min(right.y), DIRECTION),
+        ];
+        for (limit, value, bound) in limits {
+            assert!(bound > 1e-5 && bound < 0.01, "{bound}");
+            let none = *limit(&mut rule);
+            for (clear, verdict) in [
+                (1.01 * bound, Verdict::Kept),
+                (0.99 * bound, Verdict::Open),
+                (0.01 * bound, Verdict::Open),
+                (-0.01 * bound, Verdict::Broken),
+            ] {
+                *limit(&mut rule) = value - clear;
+                assert_eq!(rule.judge(&cell), verdict, "{value} {clear}");
+            }
+            *limit(&mut rule) = none;
+        }
+    }
+
+    #[test]
+    fn crank_tips_that_may_have_crossed_prove_nothing() {
+        let (rule, _) = standing();
+        let per_step = f64::from(rule.integers.scale.bits).exp2().recip();
+        let turn = |degrees: f64| {
+            let angle = degrees * 65536.0 / 360.0;
+            Span {
+                low: angle,
+                high: angle,
+            }
+        };
+        // Leaning far to the left, so that the tips pass well above one another.
+        let right = turn(165.0);
+        let gap = |left: Span| {
+            let left = left.direction();
+            rule.bars
+                .shape(AssemblyMode::Ahead, left, right.direction())
+                .gap
+                .x
+        };
+        // The angle of the left crank where the tips stand over one another.
+        let (mut apart, mut crossed) = (150.0, 10.0);
+        assert!(gap(turn(apart)) > 0.0 && gap(turn(crossed)) < 0.0);
+        for _ in 0..60 {
+            let middle = (apart + crossed) / 2.0;
+            if gap(turn(middle)) > 0.0 {
+                apart = middle;
+            } else {
+                crossed = middle;
+            }
+        }
+        let beside = |mm: f64| {
+            let slope = rule.bars.crank_left * apart.to_radians().sin();
+            let left = turn(apart + (mm / slope).to_degrees());
+            assert!((gap(left) - mm).abs() < per_step);
+            rule.judge(&Cell([left, right]))
+        };
+        assert_eq!(beside(-per_step), Verdict::Broken);
+        assert_eq!(beside(per_step), Verdict::Open);
+        assert_eq!(beside(20.0 * per_step), Verdict::Kept);
+    }
+}
