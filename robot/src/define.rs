@@ -497,20 +497,38 @@ mod tests {
         );
     }
 
+    /// What a robot is told that has too many bytes of gaits.
+    const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other has";
+
     #[test]
-    fn a_robot_may_have_255_gaits() {
+    fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
         let gaits = |count: usize| {
             let like = |i| format!("[gait.walk{i}]\nlike = \"walk\"\n");
             let more: String = (2..count).map(like).collect();
             format!("{STAND}{WALK}{more}")
         };
-        let many = paper_with_gaits(&gaits(255)).expect("255 gaits");
-        assert_eq!(many.gaits().len(), 255);
-        assert_eq!(many.gait("walk254").map(|gait| gait.index()), Some(254));
+        let many = paper_with_gaits(&gaits(100)).expect("100 gaits");
+        assert_eq!(many.gaits().len(), 100);
+        assert_eq!(many.gait("walk99").map(|gait| gait.index()), Some(99));
         assert_eq!(
-            many.gait("walk254").map(|gait| gait.table_sweeps(99)),
+            many.gait("walk99").map(|gait| gait.table_sweeps(99)),
             many.gait("walk").map(|gait| gait.table_sweeps(99))
         );
+        // Also where there is no room for its maps of cells.
+        for count in 100..255 {
+            match paper_with_gaits(&gaits(count)) {
+                Ok(robot) => {
+                    assert!(robot.section().len() <= usize::from(lizard_core::section::SPACE))
+                }
+                Err(error) => {
+                    assert!(count > 110, "{count}");
+                    assert!(error.to_string().ends_with(LEAVE_OUT), "{error}");
+                    break;
+                }
+            }
+        }
+        let most = paper_with_gaits(&gaits(255)).expect_err("255").to_string();
+        assert!(most.ends_with(LEAVE_OUT), "{most}");
         let more = paper_with_gaits(&gaits(256)).expect_err("256").to_string();
         assert!(
             more.ends_with(
@@ -521,7 +539,7 @@ mod tests {
     }
 
     #[test]
-    fn gaits_may_share_255_waveforms() {
+    fn waveforms_are_refused_that_the_section_has_no_room_for() {
         // Walking takes one, and each nod on a line of its own two.
         let gaits = |count: usize| {
             let nod = |i: usize| {
@@ -533,14 +551,14 @@ mod tests {
             let more: String = (0..count).map(nod).collect();
             format!("{STAND}{WALK}{more}")
         };
-        assert_eq!(
-            paper_with_gaits(&gaits(127))
-                .expect("255")
-                .firmware()
-                .waves()
-                .len(),
-            255
-        );
+        let some = paper_with_gaits(&gaits(6)).expect("13 waveforms");
+        assert_eq!(some.firmware().waves().len(), 13);
+        for count in [10, 127] {
+            let most = paper_with_gaits(&gaits(count))
+                .expect_err("too many")
+                .to_string();
+            assert!(most.ends_with(LEAVE_OUT), "{most}");
+        }
         let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
         assert!(more.contains("gait.nod127 needs one waveform too many: the firmware numbers them with a byte, so gaits may share 255"), "{more}");
     }

@@ -141,11 +141,11 @@ impl Robot {
         })?;
         let content = numbers::content(name, &measures, &tables);
         let tables = Arc::new(tables);
-        let section = content.section();
-        if section.len() > usize::from(SPACE) {
-            return Err(too_large(&content, section.len()).at("gait"));
+        let length = content.length();
+        if length > usize::from(SPACE) {
+            return Err(too_large(&content, length).at("gait"));
         }
-        let flash = flash(&section);
+        let flash = flash(&content.section());
         let unchecked = CoreRobot::unchecked(flash).ok_or_else(|| Problem::Impossible.at(""))?;
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
             let gait = TabledGait::new(gait, index, &tables);
@@ -168,7 +168,8 @@ impl Robot {
     }
 
     /// Its section of flash: all that it says to the firmware, with the maps of
-    /// certified cells, which take a moment to prove. At most [`SPACE`] bytes.
+    /// certified cells, which take a moment to prove. At most [`SPACE`] bytes: where there
+    /// is no room for the maps, the firmware measures every pose.
     pub fn section(&self) -> Vec<u8> {
         let mut content = self.content.clone();
         let CellMaps {
@@ -178,6 +179,9 @@ impl Robot {
             right,
         } = self.cell_maps();
         content.maps = [head, tail, left, right];
+        if content.length() > usize::from(SPACE) {
+            content.maps = Default::default();
+        }
         content.section()
     }
 

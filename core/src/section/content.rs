@@ -117,6 +117,20 @@ impl Loop {
 }
 
 impl Content {
+    /// Bytes of the section, which may be more than fits a board.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        let mut curves = Vec::new();
+        self.curves(&mut curves);
+        let rows: usize = self.maps.iter().map(|map| map.rows.len()).sum();
+        usize::from(REST)
+            + curves.len()
+            + size_of_val(self.gaits.as_slice())
+            + size_of_val(self.waves.as_slice())
+            + self.names.len()
+            + rows * size_of::<[i8; 2]>()
+    }
+
     /// The section. Its length may be more than fits a board: see [`super::SPACE`].
     ///
     /// # Panics
