@@ -13,28 +13,29 @@ fn release() -> PathBuf {
     root().join("target/avr-atmega328p/release")
 }
 
-/// The number of the image's robot, as the build of the firmware has written it.
-fn hash_of_the_image() -> String {
-    let gaits = std::fs::read_to_string(release().join("gaits.txt"));
-    let gaits = gaits.expect("`make firmware` has been run");
-    let first = gaits.lines().next().expect("a line");
-    let (_, hash) = first.split_once("tables ").expect("the number");
-    hash.to_owned()
+/// The name and the number of a robot, as `lizard gaits` and the firmware's build write them.
+fn robot_in(report: &str) -> String {
+    let first = report.lines().next().expect("a line");
+    let (_, robot) = first.split_once("robot ").expect("its name");
+    robot.to_owned()
 }
 
-/// A robot that the image was not built for, and its number by `lizard gaits`.
+/// The robot of the image that was built.
+fn of_the_image() -> String {
+    let gaits = std::fs::read_to_string(release().join("gaits.txt"));
+    robot_in(&gaits.expect("`make firmware` has been run"))
+}
+
+/// The file of a robot that is not in the image, and its name and number.
 fn another() -> (String, String) {
     let robots = ["unequal.toml", "large.toml"].map(|name| root().join("robots").join(name));
-    let numbered = robots.map(|path| {
+    let named = robots.map(|path| {
         let path = path.display().to_string();
         let said = lizard(&["gaits", "--robot", &path]);
-        let said = String::from_utf8_lossy(&said.stdout).into_owned();
-        let first = said.lines().next().expect("a line").to_owned();
-        let (_, hash) = first.split_once("tables ").expect("the number");
-        (path, hash.to_owned())
+        (path, robot_in(&String::from_utf8_lossy(&said.stdout)))
     });
-    let image = hash_of_the_image();
-    let others = numbered.into_iter().find(|(_, hash)| *hash != image);
+    let image = of_the_image();
+    let others = named.into_iter().find(|(_, robot)| *robot != image);
     others.expect("two robots have two numbers")
 }
 
@@ -48,7 +49,7 @@ fn lizard(arguments: &[&str]) -> Output {
 #[test]
 fn every_command_that_runs_an_image_refuses_one_of_another_robot() {
     let (robot, wanted) = another();
-    let image = hash_of_the_image();
+    let image = of_the_image();
     let elf = release().join("lizard.elf").display().to_string();
     for words in [
         &["sim"][..],
@@ -63,9 +64,8 @@ fn every_command_that_runs_an_image_refuses_one_of_another_robot() {
         assert_eq!(
             String::from_utf8_lossy(&output.stderr).trim(),
             format!(
-                "lizard: {elf} is the firmware of another robot than {robot}: its tables are \
-                 {image}, those of that robot {wanted}; `make firmware ROBOT={robot}` builds the \
-                 right one, or --robot names the robot that it was built for"
+                "lizard: {elf} has the robot {image} in it, and not {robot}, which is {wanted}; \
+                 without --elf, the program that `make firmware` has built runs with any robot"
             ),
             "{words:?}"
         );

@@ -41,7 +41,7 @@ pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Conte
     let neutral =
         servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
     let calibrations = servos.map(|servo| calibration(&servo));
-    let reach = reach(tables);
+    let reach = reach(tables, &calibrations);
     Content {
         name: name.to_string(),
         servo_hash: servo_hash(&pins, &neutral, &calibrations),
@@ -100,8 +100,9 @@ fn calibration(servo: &Servo) -> Calibration {
 }
 
 /// The farthest that any gait turns each servo, neutral included. Between two
-/// samples a gait is on the straight line, so no phase goes beyond its samples.
-fn reach(tables: &Tables) -> [Reach; 4] {
+/// samples a gait is on the straight line, so no phase goes beyond its samples. A gait that
+/// uses all of a travel, which is rounded inwards, may be rounded to a step beyond it.
+fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     let mut reach = [Reach::default(); 4];
     for gait in &tables.gaits {
         for (reach, channel) in reach.iter_mut().zip(&gait.channels) {
@@ -114,6 +115,10 @@ fn reach(tables: &Tables) -> [Reach; 4] {
                 reach.max = reach.max.max(sweep);
             }
         }
+    }
+    for (reach, travel) in reach.iter_mut().zip(travel) {
+        reach.min = reach.min.max(travel.min);
+        reach.max = reach.max.min(travel.max);
     }
     reach
 }

@@ -353,7 +353,7 @@ export class Session {
     this.doing('stand');
     this.watching = false;
     this.listener.trouble('board', null);
-    this.found(/ tables ([0-9a-f]{8})/.exec(banner)?.[1] ?? 'unknown');
+    this.found(/ robot \S+ ([0-9a-f]{8})/.exec(banner)?.[1] ?? 'unknown');
     this.onBanner();
     // A byte would call off what `boot` is set to.
     this.mayAsk = false;

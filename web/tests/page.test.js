@@ -36,7 +36,7 @@ async function walks(opened, name) {
 
 test('the banner of the image is seen', async () => {
   const opened = await standing();
-  assert.match(await text(opened, '#log'), /# lizard \d.* tables [0-9a-f]{8}, send help/);
+  assert.match(await text(opened, '#log'), /# lizard \d.* robot [a-z-]+ [0-9a-f]{8}, send help/);
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
@@ -110,7 +110,7 @@ test('every robot of robots/ can be chosen, and runs its own image', async () =>
     await advance(opened, 2500);
     const hash = await opened.evaluate(() => window.lizard.description.hash);
     assert.equal(await text(opened, '#where'), `on a simulated UNO, tables ${hash}`);
-    await opened.locator('#log div', { hasText: `tables ${hash}` }).last().waitFor();
+    await opened.locator('#log div', { hasText: ` ${hash}, send help` }).last().waitFor();
   }
 });
 

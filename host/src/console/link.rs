@@ -341,18 +341,18 @@ mod tests {
         }
     }
 
-    const HELLO: &str = "# lizard 0.2.0 tables 1a2b3c4d, send help for the commands\r\n";
+    const HELLO: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
     fn a_banner_behind_what_a_reset_has_cut_off_is_one() {
         for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
-            let said = format!("{cut}# lizard 0.2.0 tables 1\r\n");
+            let said = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
             let said: &'static str = said.leak();
             let mut link = Script::link(&[Some(said)]);
             let banner = link.greet().expect("it greets");
             assert_eq!(
                 banner.as_deref(),
-                Some("# lizard 0.2.0 tables 1"),
+                Some("# lizard 0.2.0 robot paper 1"),
                 "{cut:?}"
             );
         }
@@ -361,10 +361,10 @@ mod tests {
     #[test]
     fn the_banner_is_found_behind_the_noise_of_an_opening() {
         let mut link = Script::link(&[Some(
-            "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 tables 1a\r\n",
+            "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
         let banner = link.greet().expect("it is a lizard");
-        assert_eq!(banner.as_deref(), Some("# lizard 0.2.0 tables 1a"));
+        assert_eq!(banner.as_deref(), Some("# lizard 0.2.0 robot paper 1a"));
     }
 
     #[test]

@@ -63,10 +63,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     writeln!(out)?;
     summary::print(&session, &mut out)?;
 
-    let tables = format!(" tables {:08x}", robot.firmware().hash());
+    let hash = format!(" {:08x},", robot.firmware().hash());
     if session
         .banner()
-        .is_some_and(|banner| !banner.contains(&tables))
+        .is_some_and(|banner| !banner.contains(&hash))
     {
         writeln!(
             out,
