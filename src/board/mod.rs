@@ -55,6 +55,13 @@ impl Uno {
         // SAFETY: nothing has run before this but the boot loader; each peripheral
         // goes to the one module that owns it.
         let board = unsafe { Peripherals::steal() };
+        // Which of them are the servos' is known later; none of them stays high until then.
+        // SAFETY: any value of a port is sound; D0 and D1, the serial line, keep theirs.
+        unsafe {
+            board.PORTB.portb().write(|w| w.bits(0));
+            board.PORTC.portc().write(|w| w.bits(0));
+            board.PORTD.portd().modify(|port, w| w.bits(port.bits() & 0x03));
+        }
         let restart = kept::restart(&board.CPU);
         stack::start();
         led::start();

@@ -42,7 +42,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             walk.bench.uno.poke(late + 1, 0);
             let said = walk.bench.lines().len();
             ask_at(&mut walk, rise - 2_000 - written);
-            walk.run_to(rise - 2_800 + 2 * n);
+            walk.run_to(rise - 3_300 + 2 * n);
             let now = walk.bench.uno.cycle();
             walk.bench.uno.stall_main(rise + 1_000 - now);
             walk.run_to(rise - 600);

@@ -75,7 +75,7 @@ pub struct Figures {
 /// The function of the firmware that computes a frame: the control tick.
 const TICK: &str = "Control::frame";
 /// The guard.
-const GUARD: &str = "Motion::hazard_of";
+const GUARD: &str = "guard::hazard";
 /// The function that takes an order, and the one that does a step for the memory.
 const ORDER: &str = "Control::execute";
 const MEMORY: &str = "Control::write_memory";
