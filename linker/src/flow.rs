@@ -3,7 +3,7 @@
 use crate::code::Code;
 use crate::edit::Reference;
 use crate::instruction::{
-    ICALL, is_branch, is_call, is_near_jump, reads_flags, skips, writes_flags,
+    RET, RETI, is_branch, is_near_jump, reads_flags, skips, writes_all_flags,
 };
 
 /// The registers that an instruction reads and those that it writes, a bit each. None where
@@ -127,8 +127,9 @@ pub fn is_register_dead(
 /// (`-enable-ipra`).
 pub fn are_flags_dead(code: &Code, from: u64, place: &dyn Fn(&Reference) -> Option<u64>) -> bool {
     is_dead(code, from, place, &|word| match word {
-        _ if reads_flags(word) || is_call(word) || word == ICALL => Use::Read,
-        _ if writes_flags(word) || registers(word).is_none() => Use::Lost,
+        RET | RETI => Use::Lost,
+        _ if reads_flags(word) || registers(word).is_none() => Use::Read,
+        _ if writes_all_flags(word) => Use::Lost,
         _ => Use::Kept,
     })
 }

@@ -7,8 +7,6 @@ pub const RETI: u16 = 0x9518;
 /// `call` and `jmp`, whose targets are in the word behind them.
 pub const CALL: u16 = 0x940e;
 pub const JMP: u16 = 0x940c;
-/// `icall`.
-pub const ICALL: u16 = 0x9509;
 /// `in r28, SPL` and `in r29, SPH`.
 pub const POINTER_FROM_STACK: [u16; 2] = [0xb7cd, 0xb7de];
 /// `in r0, SREG`, `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
@@ -108,6 +106,13 @@ pub const fn writes_flags(code: u16) -> bool {
     matches!(code >> 12, 3..=7)
         || code & 0xfe00 == 0x9600
         || code & 0xfe00 == 0x9400 && matches!(code & 0x0f, 0 | 1 | 5 | 6)
+}
+
+/// Whether carry, zero, negative and overflow all have other values after it: of
+/// [`writes_flags`] those that are no `and`, `or` or `eor`, which leave the carry.
+pub const fn writes_all_flags(code: u16) -> bool {
+    let is_logic = matches!(code >> 10, 0x08..=0x0a) || matches!(code >> 12, 6 | 7);
+    writes_flags(code) && !is_logic
 }
 
 /// The register whose value an instruction computes, where Z then says whether it is zero:
