@@ -19,7 +19,10 @@ fn half_a_second_after_power_on_there_is_a_banner_and_after_one_an_answer() {
         let hash = robot().firmware().hash();
         let banner = bench.lines()[0].text.clone();
         assert!(banner.starts_with("# lizard "), "{banner}");
-        assert!(banner.contains(&format!(" {hash:08x}, send help")), "{banner}");
+        assert!(
+            banner.contains(&format!(" {hash:08x}, send help")),
+            "{banner}"
+        );
         assert!(bench.say("status").starts_with("ok gait=stand "));
         assert!(bench.uno.cycle() < FREQUENCY);
     });

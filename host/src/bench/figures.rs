@@ -21,8 +21,10 @@ use crate::sim::tour;
 pub struct Figures {
     /// The gait that was measured: the first that moves.
     pub gait: Option<String>,
-    /// Bytes of flash: code, tables and initial values.
-    pub flash: u32,
+    /// Bytes of flash that the code has, with its tables and initial values.
+    pub code: u32,
+    /// Bytes of the robot's section.
+    pub section: u32,
     /// Bytes of RAM that are static.
     pub static_ram: u16,
     /// Fewest bytes ever between the stack and static data.
@@ -30,7 +32,8 @@ pub struct Figures {
     /// The same for the deepest stack that the code allows, worked out and not
     /// measured.
     pub stack_margin: i32,
-    /// Mean cycles of the control tick in the gait, interrupts left out.
+    /// Mean cycles of the control tick, interrupts left out, in the gait in which they are
+    /// the most.
     pub tick_mean: Option<f64>,
     /// The most cycles of a control tick in any motion, interrupts left out.
     pub tick_worst: u64,
@@ -141,12 +144,11 @@ impl Figures {
         let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), sent)?;
         progress("every command");
         let mut session = session(awake()?, robot)?;
-        progress("the control tick in a gait");
-        let tick = times(awake()?, TICK, &[gait])?;
         progress("the control tick in every motion");
-        let every = times(awake()?, TICK, &motions(robot))?;
+        let ticks = times(awake()?, TICK, &motions(robot))?;
+        let in_gaits = ticks.iter().take(robot.gaits().len());
         progress("the guard");
-        let guard = mean(&times(awake()?, GUARD, &[gait])?);
+        let guard = mean(&times(awake()?, GUARD, &[gait])?.concat());
         progress("the control tick on a saturated line");
         let tick_latency = latency(awake()?, turn)?;
         progress("settings");
@@ -161,14 +163,21 @@ impl Figures {
 
         let frames = idle.cycles as f64 / FRAME as f64;
         let of_gait = |figure: f64| moves.then_some(figure);
+        let section = robot.section().len() as u32;
         let width_error = idle_exact.worst().zip(flooded_exact.worst());
         Ok(Self {
-            flash: long.board.uno.image().flash_used(),
+            code: long.board.uno.image().flash_used() - section,
+            section,
             static_ram: long.board.uno.image().static_ram(),
             stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
             stack_margin: stack.margin(),
-            tick_mean: of_gait(mean(&tick)),
-            tick_worst: every.iter().map(Call::own_cycles).max().unwrap_or(0),
+            tick_mean: of_gait(in_gaits.map(|calls| mean(calls)).fold(0.0, f64::max)),
+            tick_worst: ticks
+                .iter()
+                .flatten()
+                .map(Call::own_cycles)
+                .max()
+                .unwrap_or(0),
             tick_latency,
             order,
             load,
@@ -294,16 +303,16 @@ fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, B
     Ok(board)
 }
 
-/// Times a function while the robot does one thing after the other.
+/// Times a function while the robot does one thing after the other: the calls of each.
 fn times(
     mut board: SimulatedBoard,
     function: &str,
     lines: &[impl AsRef<str>],
-) -> Result<Vec<Call>, BoardError> {
+) -> Result<Vec<Vec<Call>>, BoardError> {
     let mut calls = Vec::new();
     for line in lines {
         board.say(line.as_ref())?;
-        calls.extend(board.time_calls(function, 3000)?);
+        calls.push(board.time_calls(function, 3000)?);
     }
     Ok(calls)
 }

@@ -63,7 +63,11 @@ mod tests {
         };
         let [paper, other] = ["paper", "unequal"].map(robot);
         let words = image_of(&paper, folder.path()).expect_err("there is none");
-        assert!(words.to_string().starts_with("there is no firmware at target/"));
+        assert!(
+            words
+                .to_string()
+                .starts_with("there is no firmware at target/")
+        );
         std::fs::create_dir_all(built.parent().expect("a folder")).expect("it is made");
         // With a longer section than either has.
         let image = Image::new(vec![7; 0x7e00]).expect("it fits");
