@@ -72,6 +72,7 @@ pub mod answer;
 pub mod bounds;
 pub mod calibration;
 pub mod cells;
+mod check;
 mod checksum;
 pub mod command;
 pub mod console;

@@ -19,12 +19,10 @@ use crate::limits::Limits;
 use crate::part::{End, Servo, Side};
 use crate::point_to_point::Slew;
 use crate::pose::Pose;
-use crate::section::{self, CURVES, Damage, Header, MapHead, NUMBERS, Numbers, Part, Place};
+use crate::section::{self, CURVES, Header, MapHead, NUMBERS, Numbers, Part, Place};
 use crate::slider::Slider;
 use crate::supply::Supplies;
 use crate::units::Angle;
-
-mod check;
 
 /// A four-servo lizard: its geometry, limits and gaits.
 #[derive(Clone, Copy)]
@@ -47,20 +45,13 @@ impl<'a> Robot<'a> {
         is_there: false,
     };
 
-    /// The robot whose section is at the beginning of `flash`.
-    ///
-    /// # Errors
-    /// Why there is none.
-    #[inline(never)]
-    pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
-        let length = section::find(flash)?;
-        let robot = Self {
+    /// What is at the beginning of `flash`, which must be a section that is whole:
+    /// [`Robot::open`] looks at it.
+    #[inline(always)]
+    pub(crate) const fn at(flash: Region<'a>) -> Self {
+        Self {
             section: flash,
             is_there: true,
-        };
-        match robot.is_possible(length) {
-            true => Ok(robot),
-            false => Err(Damage::Impossible),
         }
     }
 
@@ -68,11 +59,7 @@ impl<'a> Robot<'a> {
     /// for whoever is about to.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
-        section::find(flash).ok()?;
-        Some(Self {
-            section: flash,
-            is_there: true,
-        })
+        section::find(flash).ok().map(|_| Self::at(flash))
     }
 
     /// Whether there is no robot.
@@ -201,7 +188,7 @@ impl<'a> Robot<'a> {
     }
 
     /// Where a part is, and how many it has.
-    fn place(&self, part: Part) -> Place {
+    pub(crate) fn place(&self, part: Part) -> Place {
         self.number(offset_of!(Numbers, parts) + part as usize * size_of::<Place>())
     }
 

@@ -7,9 +7,8 @@
 
 use core::mem::offset_of;
 
-use lizard_avr::{flash, mul_unsigned};
+use lizard_avr::{Region, flash, mul_unsigned};
 
-use super::Robot;
 use crate::calibration::Calibration;
 use crate::curve::Table;
 use crate::five_bar::{Bars, Range};
@@ -17,7 +16,8 @@ use crate::gait::{Channel, Gait, LONGEST_NAME, Wave};
 use crate::guard::Clearance;
 use crate::part::Servo;
 use crate::pose::Pose;
-use crate::section::{CURVES, MapHead, NUMBERS, Numbers, PARTS, Part, Place};
+use crate::robot::Robot;
+use crate::section::{self, CURVES, Damage, MapHead, NUMBERS, Numbers, PARTS, Part, Place};
 use crate::units::CYCLES_PER_US;
 
 /// The shortest and the longest pulse of a hobby servo, cycles, with one of rounding.
@@ -36,10 +36,24 @@ macro_rules! place {
     };
 }
 
-impl Robot<'_> {
+impl<'a> Robot<'a> {
+    /// The robot whose section is at the beginning of `flash`.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline(never)]
+    pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
+        let length = section::find(flash)?;
+        let robot = Self::at(flash);
+        match robot.is_possible(length) {
+            true => Ok(robot),
+            false => Err(Damage::Impossible),
+        }
+    }
+
     /// Whether a section of this length is a robot's.
     #[inline(never)]
-    pub(super) fn is_possible(&self, length: u16) -> bool {
+    fn is_possible(&self, length: u16) -> bool {
         self.has_parts(length)
             && self.has_pins()
             && self.has_gaits()
@@ -51,7 +65,7 @@ impl Robot<'_> {
     /// The two bytes at a place.
     #[inline(never)]
     fn word(&self, at: u16) -> u16 {
-        self.section.read(at)
+        self.section().read(at)
     }
 
     /// Every part is in the section, and the maps share out their rows.
