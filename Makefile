@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants random-robots explore fuzz package docs install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .random-robots .explore .fuzz .package .docs .install .release .release-test .parallel-test .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package docs install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .docs .install .release .release-test .parallel-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -65,8 +65,8 @@ physics: ## every gait by the contact model and the engines rapier and MuJoCo; W
 	$(call prepared,.physics)
 mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
 	$(call prepared,.mutants)
-random-robots: ## the image's tests on random valid robots; SEED=1 COUNT=10
-	$(call prepared,.random-robots)
+other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10
+	$(call prepared,.other-robots)
 trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
 explore: ## everything that may happen to the robot, in every order; STATES=10000000
@@ -158,6 +158,7 @@ TESTS ?= --workspace
 	@$(MAKE) -j2 .firmware .tests
 	@$(MAKE) .sweep
 	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test $(TESTS) --no-fail-fast --quiet
+	$(if $(ROBOT),,@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) walks)
 
 # FreeCAD and PrusaSlicer are large, so they are set up here alone.
 .parts-test:
@@ -192,8 +193,8 @@ TESTS ?= --workspace
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
 
-.random-robots:
-	@scripts/random-robots $(or $(SEED),1) $(or $(COUNT),10)
+.other-robots: .firmware
+	@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10)
 
 # ONLY=4711 plays one scenario of the seed again, and says all that was said.
 .trouble: .firmware

@@ -1,4 +1,4 @@
-//! `make random-robots`: writes random robots as files like robot.toml, for the
+//! `make other-robots`: writes random robots as files like robot.toml, for the
 //! image's tests to run on each.
 //!
 //! Arguments: a folder, a seed, how many. The same seed writes the same robots. Among
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(sentence) => {
-            eprintln!("random-robots: {sentence}");
+            eprintln!("other-robots: {sentence}");
             ExitCode::FAILURE
         }
     }
