@@ -1,11 +1,4 @@
-// What `make web` has put beside the page: robots, their images, the boot loader.
-
-export interface RobotFile {
-  /** The file's name without its end. */
-  name: string;
-  /** Whether it has an image. */
-  image: boolean;
-}
+// What `make web` has put beside the page: robots, the firmware's code, the boot loader.
 
 /** A robot.toml says in the comment at its top what it is for. */
 const FOR_TESTS = /\bIt is for the tests\b/;
@@ -28,9 +21,11 @@ const text = async (path: string): Promise<string> => (await get(path)).text();
 const compiled = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get(path)).arrayBuffer());
 
 export const files = {
-  robots: async (): Promise<RobotFile[]> => (await get('files/robots.json')).json() as Promise<RobotFile[]>,
+  /** The names of the robots' files, without their ends. */
+  robots: async (): Promise<string[]> => (await get('files/robots.json')).json() as Promise<string[]>,
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
-  image: (name: string): Promise<string> => text(`files/${name}.hex`),
+  /** The firmware without a robot, as a HEX file. */
+  code: (): Promise<string> => text('files/code.hex'),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),
   wasm: (): Promise<WebAssembly.Module> => compiled('files/lizard.wasm'),
   /** The parts, which only their panel asks for. */

@@ -6,7 +6,7 @@ import { hasSerial, NO_SERIAL } from './link/port-link';
 import { keepOffline } from './offline';
 import { Predictor } from './predictor';
 import { lags, Robot } from './robot';
-import { Session } from './session';
+import { type Has, Session } from './session';
 import { sentence } from './trouble';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
@@ -92,8 +92,6 @@ async function start(): Promise<void> {
   const health = new Health(now);
   const lengths = new Lengths(now);
   const parts = new PartsView(now);
-  const text = new RobotText(now);
-  const gaits = new GaitsView(module, now, (line) => drive.ask(line));
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
   let writing = false;
@@ -105,6 +103,8 @@ async function start(): Promise<void> {
     flash.update();
     setup.update();
   });
+  const text = new RobotText(now, writer);
+  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
@@ -148,17 +148,8 @@ async function start(): Promise<void> {
       keep.doing(gait);
       texts();
     },
-    tables(tables) {
-      const { link, description } = session;
-      const text: Record<string, string> = {
-        null: `on a ${link.name} without this firmware`,
-        unknown: `on a ${link.name} that has not begun anew: its reset button makes it say which robot it is`,
-        [description.hash]: `on a ${link.name}, tables ${tables}`,
-      };
-      element('where').textContent = !link.canFlash
-        ? `${link.name}: no image has these lengths, tables ${tables}`
-        : text[String(tables)] ??
-          `on a ${link.name} with the image of another robot, tables ${tables}: choose that robot, or flash this one's`;
+    found(has) {
+      element('where').textContent = whereOf(session.link.name, has, session.description.hash);
       setup.update();
     },
     speed: (percent) => pace.show(percent),
@@ -172,8 +163,8 @@ async function start(): Promise<void> {
     },
     trouble(cause, said) {
       // A board without this firmware can have it.
-      const remedy = { label: `Write the image of ${session.file}.toml to it`, act: () => flash.writeOwn() };
-      troubles.say(cause, said, cause === 'board' && session.image !== null ? remedy : null);
+      const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
+      troubles.say(cause, said, cause === 'board' ? remedy : null);
     },
   });
   let latest = 0;
@@ -207,9 +198,8 @@ async function start(): Promise<void> {
   }
 
   const choose = async () => {
-    const { name, image } = choice.robot;
     try {
-      await session.choose(name, image);
+      await session.choose(choice.robot);
       troubles.say('robot', null);
     } catch (error) {
       choice.show(session.file);
@@ -288,6 +278,16 @@ async function start(): Promise<void> {
       }
     },
   );
+}
+
+/** What runs where, in words. */
+function whereOf(name: string, has: Has, hash: string): string {
+  if (has === null) return `on a ${name} without this firmware`;
+  if (has === 'unknown') return `on a ${name} that has not begun anew: its reset button makes it say which robot it is`;
+  const { robot } = has;
+  if (!robot) return `on a ${name} with this firmware and no robot in it: write this one`;
+  const known = `robot ${robot.name} ${robot.hash}`;
+  return robot.hash === hash ? `on a ${name}, ${known}` : `on a ${name} with another robot, ${known}: choose that one, or write this one`;
 }
 
 start().catch((error: unknown) => {

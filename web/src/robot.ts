@@ -32,6 +32,12 @@ export interface Length {
 
 export interface Description {
   hash: string;
+  /** Its name, as a banner says it. */
+  name: string;
+  /** The version of the firmware that it is for. */
+  version: string;
+  /** Where in flash its section begins. */
+  start: number;
   servos: Four<Servo>;
   gaits: Gait[];
   lengths: Length[];
@@ -213,6 +219,7 @@ interface Exports {
   lizard_read(): void;
   lizard_edit(value: number): void;
   lizard_edit_floor(): void;
+  lizard_section(): void;
   lizard_pulses(a1: number, a2: number, a3: number, a4: number): void;
   lizard_pose(a1: number, a2: number, a3: number, a4: number, frames: number): void;
   lizard_restart(): void;
@@ -265,6 +272,15 @@ export class Robot {
     this.give(`${line(floor)}\n${toml}`);
     this.wasm.lizard_edit_floor();
     return this.answer();
+  }
+
+  /**
+   * What the robot that was read is to the firmware: its section of flash, with the certified cells of its guard. Takes
+   * some hundredths of a second.
+   */
+  section(): Uint8Array {
+    this.wasm.lizard_section();
+    return this.output().slice();
   }
 
   /** The next frame's pulse widths, CPU cycles; 0 for none. */
@@ -351,9 +367,12 @@ export class Robot {
     new Uint8Array(this.wasm.memory.buffer).set(bytes, at);
   }
 
-  private answer<T>(): T {
+  private output(): Uint8Array {
     const { wasm } = this;
-    const bytes = new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), wasm.lizard_output_length());
-    return JSON.parse(this.decoder.decode(bytes)) as T;
+    return new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), wasm.lizard_output_length());
+  }
+
+  private answer<T>(): T {
+    return JSON.parse(this.decoder.decode(this.output())) as T;
   }
 }

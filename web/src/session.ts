@@ -2,11 +2,10 @@
 // look at it and ask it to do things.
 import { files } from './files';
 import { type Kept, kept } from './kept';
-import { CoreLink } from './link/core-link';
 import { type Answer, Dialogue, Forgotten } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
-import { flash, identify, type Progress } from './link/stk500';
+import { flash, identify, imageOf, type Piece, type Progress, Unfit } from './link/stk500';
 import { UnoLink } from './link/uno-link';
 import {
   type Description,
@@ -17,9 +16,9 @@ import {
   type Refused,
   type Robot,
 } from './robot';
-import { type Status, status, watched } from './status';
+import { type Banner, banner, type Status, status, watched } from './status';
 import { type Cause, sentence } from './trouble';
-import { SimulatedBoard, FREQUENCY } from './uno/board';
+import { SimulatedBoard } from './uno/board';
 import { WORDS } from './words';
 
 /** How often a board on USB says where it is, in frames of 20 ms. */
@@ -38,8 +37,8 @@ const FRAME_SECONDS = 0.02;
 /** The way of the last seconds that is kept to measure a cycle. */
 const KEPT_SECONDS = 12;
 
-/** The hash that a banner says, `unknown` where the firmware answers but has not greeted, null without this firmware. */
-export type Tables = string | 'unknown' | null;
+/** What a board has, as it greets; `unknown` where this firmware answers but has not greeted, null where it does not. */
+export type Has = Banner | 'unknown' | null;
 
 export interface Listener {
   /** Another robot, or the same with other lengths. */
@@ -51,8 +50,8 @@ export interface Listener {
   came(line: string): void;
   /** What the robot does, as its answers say. */
   doing(gait: string): void;
-  /** The tables that the other end has. */
-  tables(tables: Tables): void;
+  /** What the other end has. */
+  found(has: Has): void;
   /** The pace that the robot has, percent. */
   speed(percent: number): void;
   /** Another end of the line. */
@@ -69,6 +68,8 @@ export interface Measured {
   lag: number;
 }
 
+const isBanner = (has: Has | undefined): has is Banner => typeof has === 'object' && has !== null;
+
 export class Session {
   description!: Description;
   /** The name of its file; empty until that is there. */
@@ -77,8 +78,8 @@ export class Session {
   toml = '';
   /** The robot.toml as its file has it. */
   original = '';
-  /** The HEX file of this very robot, if there is one. */
-  image: string | null = null;
+  /** What the robot is to the firmware: its section of flash. */
+  section: Uint8Array = new Uint8Array();
   last: Frame | null = null;
   gait = '';
   volts = 5;
@@ -90,15 +91,16 @@ export class Session {
   dialogue!: Dialogue;
   /** How often a board has greeted: one that begins anew has lost what was not saved. */
   beginnings = 0;
-  private originalImage: string | null = null;
+  /** The firmware, which is the same for every robot. */
+  private code: Uint8Array | null = null;
   private set: Floor | null = null;
   private bootLoader: string | null = null;
   private way: { time: number; frame: Frame }[] = [];
   private time = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
-  /** The tables of the image at the other end; undefined until that is known. */
-  private tables: Tables | undefined;
+  /** What is at the other end; undefined until that is known. */
+  private there: Has | undefined;
   /** Whether a board without this firmware has the boot loader of an UNO. */
   hasLoader = false;
   /** Whether a board on USB says where it is. */
@@ -112,21 +114,21 @@ export class Session {
   ) {}
 
   /**
-   * Takes a robot of the files, on a simulated UNO if it has an image; a board on USB stays connected. Throws
-   * a sentence, and then the robot of before stays.
+   * Takes a robot of the files, on a new simulated UNO; a board on USB stays connected. Throws a sentence, and then the
+   * robot of before stays.
    */
-  async choose(name: string, hasImage: boolean): Promise<void> {
+  async choose(name: string): Promise<void> {
     const choice = ++this.choices;
     const before = this.file;
     this.file = '';
     try {
-      const [toml, image] = await Promise.all([files.toml(name), hasImage ? files.image(name) : null]);
+      const [toml, code] = await Promise.all([files.toml(name), this.code ?? files.code().then(imageOf)]);
       if (choice !== this.choices) return;
-      const refused = this.take(toml, image, null);
+      this.code = code;
+      const refused = this.take(toml, null);
       if (refused) throw new Error(`${name}.toml: ${refused.refused}`);
       this.original = toml;
-      this.originalImage = image;
-      await this.begin();
+      await this.begin(false);
       this.file = name;
       this.keep();
     } catch (error) {
@@ -137,11 +139,11 @@ export class Session {
     }
   }
 
-  /** Takes a changed robot.toml; the core runs it, unless it is that of the file. */
+  /** Takes a changed robot.toml: the simulated UNO begins anew with it, and keeps what it has saved. */
   async change(toml: string): Promise<Refused | null> {
-    const refused = this.take(toml, toml === this.original ? this.originalImage : null);
+    const refused = this.take(toml);
     if (refused) return refused;
-    await this.begin();
+    await this.begin(true);
     this.keep();
     return null;
   }
@@ -151,8 +153,8 @@ export class Session {
     if (original !== this.original) return false;
     this.setServos(servos);
     this.setSupply(volts);
-    if (this.take(toml, toml === original ? this.originalImage : null, floor)) return false;
-    await this.begin();
+    if (this.take(toml, floor)) return false;
+    await this.begin(true);
     this.keep();
     return true;
   }
@@ -167,11 +169,12 @@ export class Session {
     await this.change(this.original);
   }
 
-  private take(toml: string, image: string | null, set = this.set): Refused | null {
+  private take(toml: string, set = this.set): Refused | null {
     const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
-    [this.toml, this.image, this.set] = [toml, image, set];
+    [this.toml, this.set] = [toml, set];
     this.description = answer;
+    this.section = this.robot.section();
     this.robot.setFloor(this.floor);
     this.way = [];
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
@@ -179,50 +182,54 @@ export class Session {
     return null;
   }
 
-  /** Has the robot at the other end: a simulation begins anew, a board goes on with its own tables. */
-  private async begin(): Promise<void> {
-    if (!this.isReal) await this.simulate();
+  /** Has the robot at the other end: a simulation begins anew, a board goes on with its own robot. */
+  private async begin(keepsSaved: boolean): Promise<void> {
+    if (!this.isReal) await this.simulate(keepsSaved && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
     else {
       this.listener.link(this.link);
-      if (this.tables !== undefined) this.listener.tables(this.tables);
+      if (this.there !== undefined) this.listener.found(this.there);
     }
+  }
+
+  /** Firmware and robot, as flash begins with them. */
+  get image(): Uint8Array {
+    const { code, section, description } = this;
+    if (!code) throw new Error('the firmware has not come yet');
+    const image = new Uint8Array(description.start + section.length).fill(0xff);
+    image.set(code);
+    image.set(section, description.start);
+    return image;
   }
 
   /** Whether this firmware answers at the other end. */
   get answers(): boolean {
-    return this.tables !== undefined && this.tables !== null;
+    return this.there !== undefined && this.there !== null;
   }
 
   /** What the other end has; undefined until that is known. */
-  get has(): Tables | undefined {
-    return this.tables;
+  get has(): Has | undefined {
+    return this.there;
+  }
+
+  /** Whether the other end has this very robot. */
+  get hasThis(): boolean {
+    return isBanner(this.there) && this.there.robot?.hash === this.description.hash;
   }
 
   get isReal(): boolean {
     return this.link instanceof PortLink;
   }
 
-  /** Begins anew at power-on: the image on a simulated UNO, or else the core. */
-  async simulate(): Promise<void> {
+  /** Begins anew at power-on, on a simulated UNO with this robot, and with what was saved on another one. */
+  async simulate(saved?: Uint8Array): Promise<void> {
+    this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
-    if (this.image !== null) {
-      this.bootLoader ??= await files.bootLoader();
-      const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail);
-      const events = {
-        frame: (widths: Four<number>) => this.widths(widths),
-        pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
-      };
-      await this.attach(new UnoLink(board, pins, events));
-    } else {
-      const core = new CoreLink(this.robot, (widths, cycle) => {
-        // The core has no pins: its pulses are shown where an UNO has them, a slot of 4 ms each.
-        widths.forEach((width, n) => {
-          if (width > 0) this.listener.pulse(pins[n], cycle + n * 0.004 * FREQUENCY, width);
-        });
-        this.widths(widths);
-      });
-      await this.attach(core);
-    }
+    const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
+    const events = {
+      frame: (widths: Four<number>) => this.widths(widths),
+      pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
+    };
+    await this.attach(new UnoLink(board, pins, events));
     this.simulated?.supply(this.volts);
   }
 
@@ -240,7 +247,7 @@ export class Session {
     if (this.link !== link) return false;
     if (!greeted && (await this.replies())) this.found('unknown');
     if (this.link !== link) return false;
-    if (this.tables) await this.watch();
+    if (this.there) await this.watch();
     else await this.identify(link);
     return this.link === link;
   }
@@ -295,14 +302,14 @@ export class Session {
   /** Whether a board walks that nobody would see any more if the page were closed. */
   get walksAlone(): boolean {
     const { stop, rest, center, pose } = WORDS;
-    // A board may have the image of another robot, with gaits that this one does not know.
+    // A board may have another robot, with gaits that this one does not know.
     const known = this.description.gaits.find(({ command }) => command === this.gait);
     return this.isReal && (known ? known.moves : !['', stop, rest, center, pose].includes(this.gait));
   }
 
   /** Stops a board that is about to be left; whether it says so, or was not of this firmware. */
   async stop(): Promise<boolean> {
-    if (!this.isReal || !this.tables) return true;
+    if (!this.isReal || !this.there) return true;
     const answer = await this.dialogue.ask(WORDS.stop, false, STOPS).catch(() => null);
     return answer !== null;
   }
@@ -311,7 +318,7 @@ export class Session {
     this.dialogue?.end();
     await this.link?.close();
     this.link = link;
-    this.tables = undefined;
+    this.there = undefined;
     this.watching = false;
     this.mayAsk = false;
     this.listen();
@@ -347,13 +354,13 @@ export class Session {
     else if (line.startsWith('# fault')) this.doing(stop);
   }
 
-  private greeted(banner: string): void {
+  private greeted(line: string): void {
     const { link } = this;
     this.beginnings += 1;
     this.doing('stand');
     this.watching = false;
     this.listener.trouble('board', null);
-    this.found(/ robot \S+ ([0-9a-f]{8})/.exec(banner)?.[1] ?? 'unknown');
+    this.found(banner(line) ?? 'unknown');
     this.onBanner();
     // A byte would call off what `boot` is set to.
     this.mayAsk = false;
@@ -364,9 +371,9 @@ export class Session {
     });
   }
 
-  private found(tables: Tables): void {
-    this.tables = tables;
-    this.listener.tables(tables);
+  private found(has: Has): void {
+    this.there = has;
+    this.listener.found(has);
   }
 
   private doing(gait: string): void {
@@ -404,13 +411,32 @@ export class Session {
 
   /** Writes an image by the boot loader and starts it. Throws a sentence. */
   async flash(image: Uint8Array, progress: Progress): Promise<void> {
+    await this.write({ at: 0, bytes: image }, progress, null);
+  }
+
+  /**
+   * Writes the page's robot behind the firmware that is there, and starts it. Throws a sentence; an `Unfit` where that
+   * firmware is another one than the page's, and then nothing was written.
+   */
+  async flashRobot(progress: Progress): Promise<void> {
+    const { there, code, section, description } = this;
+    if (!code) throw new Error('the firmware has not come yet');
+    if (there === null) throw new Unfit('this firmware is not on the board: write firmware and robot');
+    if (isBanner(there) && there.version !== description.version) {
+      throw new Unfit(`the board has firmware ${there.version}, and this robot is for ${description.version}: write firmware and robot`);
+    }
+    // A board that has not greeted has not said which firmware it has: its code itself is looked at.
+    await this.write({ at: description.start, bytes: section }, progress, isBanner(there) ? null : { at: 0, bytes: code });
+  }
+
+  private async write(piece: Piece, progress: Progress, under: Piece | null): Promise<void> {
     const { link } = this;
     this.dialogue.end();
-    this.tables = undefined;
+    this.there = undefined;
     this.watching = false;
     this.mayAsk = false;
     try {
-      await flash(link, image, progress);
+      await flash(link, piece, progress, under);
     } finally {
       if (this.link === link) {
         this.listen();
@@ -419,16 +445,18 @@ export class Session {
     }
   }
 
-  /** Whether a board whose image was just written greets; says so if not. */
-  async begins(): Promise<boolean> {
+  /** What is wrong with a board that was just written, perhaps the robot of a hash; null if nothing is. */
+  async begins(hash: string | null): Promise<string | null> {
     const { link } = this;
     const greeted = await this.greeting();
-    if (this.link !== link) return true;
+    if (this.link !== link) return null;
     if (!greeted) {
       this.found(null);
       this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it does not greet.`);
+      return 'it does not greet as this firmware does';
     }
-    return greeted;
+    const has = isBanner(this.there) ? this.there.robot?.hash : null;
+    return hash !== null && has !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
   private get simulated(): Simulated | null {

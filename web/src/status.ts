@@ -1,5 +1,19 @@
-// The answer to `status`, `# t=` lines and `cal` lines, read.
+// The banner, the answer to `status`, `# t=` lines and `cal` lines, read.
 import type { Four } from './robot';
+
+/** What the firmware says of itself when it begins. */
+export interface Banner {
+  version: string;
+  /** The robot in its flash; null where there is none, or one that is damaged. */
+  robot: { name: string; hash: string } | null;
+}
+
+/** Reads a banner; null for any other line, that of a firmware with its robot compiled in among them. */
+export function banner(line: string): Banner | null {
+  const [, version, name, hash] = /^# lizard (\S+) (?:robot (\S+) ([0-9a-f]{8})|without a robot),/.exec(line) ?? [];
+  if (version === undefined) return null;
+  return { version, robot: name === undefined || hash === undefined ? null : { name, hash } };
+}
 
 export interface Status {
   gait: string;

@@ -4,10 +4,10 @@ import assert from 'node:assert/strict';
 import { page } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
-/** The page with a board of this image, so long after it was connected. */
-export async function connected(image, ms) {
+/** The page with a board that has the firmware and this robot, or nothing where it is null, so long after it was connected. */
+export async function connected(robot, ms) {
   const opened = await page({}, fakeSerial);
-  await opened.evaluate((image) => (window.flashed = image), image);
+  await opened.evaluate((robot) => (window.flashed = robot), robot);
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(ms);

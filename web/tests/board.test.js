@@ -27,15 +27,15 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
   const opened = await connected(null, 5000);
   await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
-  await opened.getByRole('button', { name: 'Write the image of robot.toml to it' }).click();
+  await opened.getByRole('button', { name: 'Write firmware and robot to it' }).click();
   await opened.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
   for (const control of ['#robot', '#connect']) {
     assert.ok(await opened.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
   }
   for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
-  assert.match(await text(opened, '#flash-said'), /^written and verified in \d+ s$/);
+  assert.match(await text(opened, '#flash-said'), /^written and verified in [\d.]+ s$/);
   await opened.clock.runFor(8000);
-  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  assert.match(await text(opened, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await opened.locator(control).isEnabled(), control);
   assert.equal(await opened.locator('#trouble').isVisible(), false, 'it greets: the trouble is over');
   await opened.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
@@ -67,11 +67,11 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
   const opened = await walking();
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
-  assert.match(await text(opened, '#where'), /^on a board on USB with the image of another robot/);
+  assert.match(await text(opened, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that one, or write this one$/);
   await opened.getByRole('button', { name: 'Back to the simulation' }).waitFor();
   await opened.locator('#robot').selectOption('robot');
   await opened.waitForFunction(() => window.lizard.file === 'robot');
-  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  assert.match(await text(opened, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await opened.clock.runFor(500);
   assert.ok(await opened.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'it is still followed');
 });
@@ -148,7 +148,7 @@ test('a HEX file of another program is named, and written only when a person say
   for (let n = 0; n < 100 && !/^(not )?written/.test(await said.innerText()); n++) await opened.clock.runFor(100);
   await opened.clock.runFor(3000);
   await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();
-  await opened.getByRole('button', { name: 'Write the image of robot.toml to it' }).waitFor();
+  await opened.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -1,13 +1,25 @@
 // A Web Serial whose one port is a second simulated UNO; runs in the page, before anything else.
 
 /**
- * With `window.flashed` set to the name of an image, or to null for none, the board has that one;
+ * With `window.flashed` set to the name of a robot, or to null for an erased flash, the board has firmware and that one;
+ * `window.same` has the port open the board that it had before;
  * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
  * of the port; `window.garbage` has the board say bytes without a meaning. `window.pulses` has the last width of
  * each pin, us.
  */
 export function fakeSerial() {
   let board;
+  const image = async (name) => {
+    const { robot, image } = window.lizard;
+    // Another one than the page's, which stays as it is.
+    const other = await robot.constructor.load(await WebAssembly.compile(await (await fetch('files/lizard.wasm')).arrayBuffer()));
+    const { start } = other.read(await (await fetch(`files/${name}.toml`)).text());
+    const section = other.section();
+    const whole = new Uint8Array(start + section.length);
+    whole.set(image.subarray(0, start));
+    whole.set(section, start);
+    return whole;
+  };
   const port = {
     readable: null,
     writable: null,
@@ -15,8 +27,7 @@ export function fakeSerial() {
       window.openPort?.();
       const { board: first } = window.lizard.link;
       const name = window.flashed === undefined ? 'robot' : window.flashed;
-      const hex = async (name) => (await fetch(`files/${name}.hex`)).text();
-      board = new first.constructor(name && (await hex(name)), await hex('optiboot'));
+      if (!window.same) board = new first.constructor(name && (await image(name)), await (await fetch('files/optiboot.hex')).text());
       // What it says before the port is open goes nowhere.
       if (window.awake) board.run(16_000 * 4000);
       let out;

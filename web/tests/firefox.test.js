@@ -42,7 +42,7 @@ async function standing() {
 
 test('the image of the board walks the predicted way, and Esc stops it', async () => {
   await standing();
-  assert.match(await text('#where'), /^on a simulated UNO, tables [0-9a-f]{8}$/);
+  assert.match(await text('#where'), /^on a simulated UNO, robot [a-z-]+ [0-9a-f]{8}$/);
   await click('#gaits button[data-command="walk"]');
   await advance(5500);
   const { predicted, measured } = await firefox.evaluate(() => {

@@ -80,7 +80,7 @@ test('a gait that is tried walks as far as was predicted, and stands in robot.to
   await changes(page, 'way', before);
   const way = Number(/^([0-9.]+) mm$/.exec(await text(page, 'way'))[1]);
   await page.locator('#gait-try').click();
-  await page.waitForFunction(() => window.lizard.link.name === 'core in the page');
+  await page.waitForFunction(() => window.lizard.toml.includes('[gait.stride]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'stride');
   await advance(page, 5000);

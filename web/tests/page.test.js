@@ -5,12 +5,12 @@ import { after, afterEach, before, test } from 'node:test';
 
 import { advance, close, complaints, open, page, standing, tidy, type } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
+import { hexOf, imageOf } from './image.js';
 
 before(open);
 afterEach(tidy);
 after(close);
 
-const FILES = new URL('../dist/files/', import.meta.url);
 const text = (opened, selector) => opened.locator(selector).innerText();
 const gait = (opened, name) => opened.locator(`#gaits button[data-command="${name}"]`);
 
@@ -76,7 +76,8 @@ test('changed lengths build the gaits anew', async () => {
   const crank = opened.locator('input[name="leg.crank"]');
   await crank.fill('35');
   await crank.press('Enter');
-  await opened.waitForFunction((hash) => window.lizard.link.name === 'core in the page' && hash, hash);
+  const has = (value) => opened.waitForFunction((value) => window.lizard.description.lengths.find(({ key }) => key === 'leg.crank').value === value, value);
+  await has(35);
   assert.equal(await opened.locator('input[name="leg.follower"]').inputValue(), '35', 'its twin follows');
   await advance(opened, 2500);
   const { predicted, measured } = await walks(opened, 'walk');
@@ -95,12 +96,12 @@ test('changed lengths build the gaits anew', async () => {
   assert.equal((await ways(opened, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
 
   await opened.getByRole('button', { name: 'Lengths of the file' }).click();
-  await opened.waitForFunction(() => window.lizard.link.name === 'simulated UNO');
+  await has(45);
   assert.equal(await opened.evaluate(() => window.lizard.description.hash), hash);
   assert.equal(await crank.inputValue(), '45');
 });
 
-test('every robot of robots/ can be chosen, and runs its own image', async () => {
+test('every robot of robots/ can be chosen, and is in the image that runs', async () => {
   const opened = await page();
   const names = await opened.locator('#robot option').allInnerTexts();
   assert.ok(names.length >= 5, names.join());
@@ -108,8 +109,8 @@ test('every robot of robots/ can be chosen, and runs its own image', async () =>
     await opened.locator('#robot').selectOption({ label: name });
     await opened.waitForFunction((name) => `${window.lizard.file}.toml` === name, name);
     await advance(opened, 2500);
-    const hash = await opened.evaluate(() => window.lizard.description.hash);
-    assert.equal(await text(opened, '#where'), `on a simulated UNO, tables ${hash}`);
+    const { name: called, hash } = await opened.evaluate(() => window.lizard.description);
+    assert.equal(await text(opened, '#where'), `on a simulated UNO, robot ${called} ${hash}`);
     await opened.locator('#log div', { hasText: ` ${hash}, send help` }).last().waitFor();
   }
 });
@@ -171,7 +172,8 @@ test('a refused setting shows why and takes the slider back', async () => {
 /** Chooses the image of another robot, and waits until it is written and has begun. */
 async function flashes(opened, forward) {
   await opened.getByText('Flash', { exact: true }).click();
-  await opened.getByLabel('HEX file').setInputFiles(new URL('large.hex', FILES).pathname);
+  const buffer = Buffer.from(hexOf(await imageOf('large')));
+  await opened.getByLabel('HEX file').setInputFiles({ name: 'large.hex', mimeType: 'text/plain', buffer });
   await opened.locator('#flash-what', { hasText: /^large\.hex, \d+ bytes\. It is a firmware of a lizard\./ }).waitFor();
   await opened.getByRole('button', { name: 'Write it', exact: true }).click();
   const said = opened.locator('#flash-said');
@@ -179,7 +181,7 @@ async function flashes(opened, forward) {
     await forward(100);
     if (/written/.test(await said.innerText())) break;
   }
-  assert.match(await said.innerText(), /^written and verified in \d+ s$/);
+  assert.match(await said.innerText(), /^written and verified in [\d.]+ s$/);
   await forward(2500);
   const banners = await opened.locator('#log div', { hasText: '# lizard' }).allInnerTexts();
   return banners.at(-1);
@@ -190,12 +192,10 @@ test('an image is flashed by the real boot loader', async () => {
   const before = await text(opened, '#log');
   const banner = await flashes(opened, (ms) => advance(opened, ms));
   assert.ok(!before.includes(banner), banner);
-  assert.match(await text(opened, '#where'), /with the image of another robot/);
-  const written = await opened.evaluate(() => Array.from(window.lizard.link.board.flash.subarray(0, 256)));
-  const hex = await readFile(new URL('large.hex', FILES), 'utf8');
-  const first = hex.split('\n')[0].slice(9, -3);
-  const bytes = first.match(/../g).map((pair) => parseInt(pair, 16));
-  assert.deepEqual(written.slice(0, 16), bytes.slice(0, 16));
+  assert.match(await text(opened, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
+  const image = await imageOf('large');
+  const written = await opened.evaluate((length) => Array.from(window.lizard.link.board.flash.subarray(0, length)), image.length);
+  assert.deepEqual(written, Array.from(image));
 });
 
 test('a HEX file that is none is refused before anything is written', async () => {
@@ -213,7 +213,7 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await forward(4000);
-  assert.match(await text(opened, '#where'), /^on a board on USB, tables/);
+  assert.match(await text(opened, '#where'), /^on a board on USB, robot paper/);
   await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   await gait(opened, 'walk').click();
   await forward(5000);
@@ -222,11 +222,11 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
   await opened.keyboard.press('Escape');
   await forward(200);
   await calibrates(opened, forward);
-  assert.match(await flashes(opened, forward), /tables/);
-  assert.match(await text(opened, '#where'), /with the image of another robot/);
+  assert.match(await flashes(opened, forward), / robot large /);
+  assert.match(await text(opened, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
   await opened.getByRole('button', { name: 'Back to the simulation' }).click();
   await forward(2000);
-  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, robot paper/);
 });
 
 test('a board that is unplugged is said to be gone, and the simulation goes on', async () => {
@@ -237,7 +237,7 @@ test('a board that is unplugged is said to be gone, and the simulation goes on',
   await opened.evaluate(() => window.unplug());
   await opened.locator('#trouble', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
   await opened.clock.runFor(2000);
-  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
 });
 
 test('a supply that sinks stops the robot, and its fault is shown', async () => {

@@ -1,11 +1,13 @@
-// The pulses in the page against those of the simulated UNO on libsimavr, width for width.
+// The image in the page against the compiler's, byte for byte, and its pulses against those of the simulated UNO on
+// libsimavr, width for width, also for a robot that only the page has.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
+import { load } from '../../judge/src/hex.js';
 import { PATIENCE, close, complaints, open, page, tidy } from './browser.js';
 
 before(open);
@@ -13,9 +15,9 @@ afterEach(tidy);
 after(close);
 
 const ROOT = new URL('../../', import.meta.url).pathname;
-const ROBOT = join(ROOT, 'robot.toml');
-/** What the page's image of it was made of. */
-const ELF = join(ROOT, 'target/web/robot.elf');
+const FILE = join(ROOT, 'robot.toml');
+/** What the compiler makes of it. */
+const HEX = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
 
 /** ms since power-on, and what is said then. */
 const SCRIPT = [
@@ -32,13 +34,16 @@ const END = 16_011;
 const CYCLE = 1 / 160;
 
 /** The servo angles of each frame that `lizard sim` reads from the pins. */
-function simulated() {
+function simulated(toml) {
   const folder = mkdtempSync(join(tmpdir(), 'lizard-'));
   try {
     const script = join(folder, 'script');
     writeFileSync(script, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
-    const files = ['--robot', ROBOT, '--elf', ELF, '--svg', join(folder, 'x.svg')];
+    const robot = join(folder, 'robot.toml');
+    writeFileSync(robot, toml);
+    const files = ['--robot', robot, '--svg', join(folder, 'x.svg')];
     const said = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', script, ...files], {
+      cwd: ROOT,
       maxBuffer: 1 << 26,
       timeout: PATIENCE,
     });
@@ -51,9 +56,31 @@ function simulated() {
   }
 }
 
-test('every width is that of the simulated UNO', async () => {
+test('the image of robot.toml is what the compiler makes, to the byte', async () => {
+  const opened = await page();
+  const flash = new Uint8Array(32 * 1024).fill(0xff);
+  load(readFileSync(HEX, 'utf8'), flash);
+  const image = await opened.evaluate(() => Array.from(window.lizard.image));
+  assert.ok(image.length > 0x6a00 + 1000, `${image.length} bytes`);
+  assert.deepEqual(image, Array.from(flash.subarray(0, image.length)));
+  assert.ok(flash.subarray(image.length).every((byte) => byte === 0xff));
+});
+
+const TOML = readFileSync(FILE, 'utf8');
+/** With a shorter walk and a gait of its own. */
+const OWN = `${TOML.replace('amplitude = 20.0', 'amplitude = 17.0')}
+[gait.limp]
+period = 1.4
+waveform = "wave"
+duty = 0.7
+amplitude = 12.0
+start = { LF = 0.0, RF = 0.5, RH = 0.2, LH = 0.7 }
+`;
+
+for (const [what, toml] of [['robot.toml', TOML], ['a robot that was typed into the page', OWN]]) test(`every width of ${what} is that of the simulated UNO`, async () => {
   // With the page's timers at rest, only this test lets time pass.
   const opened = await page({}, () => {});
+  if (toml !== TOML) assert.equal(await opened.evaluate((toml) => window.lizard.change(toml), toml), null);
   const { frames, rises } = await opened.evaluate(
     ([script, end]) => {
       const { lizard } = window;
@@ -85,7 +112,7 @@ test('every width is that of the simulated UNO', async () => {
     },
     [SCRIPT, END],
   );
-  const expected = simulated();
+  const expected = simulated(toml);
   assert.ok(frames.length > 600, `${frames.length} frames`);
   assert.equal(frames.length, expected.length);
   frames.forEach((angles, frame) =>

@@ -50,8 +50,8 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
   const opened = await connected(null, 5000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
   await setup(opened).getByText('The board on USB is an UNO by its boot loader, and this firmware is not on it.').waitFor();
-  await does(opened, 'Write the firmware of robot.toml', /^written and verified in \d+ s$/);
-  await until(opened, 'it greets', async () => (await setup(opened).getByText('has the firmware of this robot, robot.toml').count()) > 0);
+  await does(opened, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
+  await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
   await press(opened, 'Go on');
 
   // Before the servos get power there are no pulses.
@@ -132,7 +132,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
     const kept = join(folder, 'calibration.toml');
     await writeFile(kept, await readFile(file));
     const root = new URL('../..', import.meta.url).pathname;
-    const robot = ['--sim', '--elf', 'target/web/robot.elf', '--robot', 'robot.toml'];
+    const robot = ['--sim', '--robot', 'robot.toml'];
     const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: 120_000 });
     assert.match(stdout, /has the calibration of .* and has saved it/);
   } finally {
@@ -140,10 +140,11 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
   }
 });
 
-test('a board with the firmware of another robot is told from this one, and can have this one\'s', async () => {
+test('a board with another robot is told from this one, and is given this one alone', async () => {
   const opened = await connected('large', 5000);
-  await setup(opened).getByText('has this firmware for another robot, tables').waitFor();
-  await setup(opened).getByRole('button', { name: 'Write the firmware of robot.toml', exact: true }).waitFor();
+  await setup(opened).getByText('has this firmware and another robot, large ').waitFor();
+  await does(opened, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
+  await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
 });
 
 test('a board that answers nothing is asked about, and no step is a dead end', async () => {
@@ -154,7 +155,7 @@ test('a board that answers nothing is asked about, and no step is a dead end', a
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(7000);
   await setup(opened).getByText('answers neither as this firmware nor as a boot loader').waitFor();
-  await does(opened, 'Write the firmware of robot.toml', /^not written: the board does not answer/);
+  await does(opened, 'Write firmware and robot', /^not written: the board does not answer/);
   await step(opened, 'Horns');
   await setup(opened).getByText('No robot with this firmware answers').waitFor();
   await press(opened, 'To the board');
@@ -168,7 +169,7 @@ test('a board that says bytes without a meaning is told from a robot', async () 
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await until(opened, 'it is asked about', async () => setup(opened).getByText('answers neither as this firmware nor as a boot loader').isVisible());
-  await does(opened, 'Write the firmware of robot.toml', /^not written: /);
+  await does(opened, 'Write firmware and robot', /^not written: /);
   const lengths = await opened.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
   assert.ok(Math.max(0, ...lengths) < 1000, 'a line that never ends is cut');
 });
@@ -198,7 +199,7 @@ test('a board that is unplugged at any step is said to be gone, and the path goe
 
 test('a board that is unplugged while it is written says so, and can be written when it is back', async () => {
   const opened = await connected(null, 5000);
-  await press(opened, 'Write the firmware of robot.toml');
+  await press(opened, 'Write firmware and robot');
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
   await until(opened, 'it is said', async () => /is not connected any more|not written/.test(await text(opened, '#setup-said')));
@@ -207,7 +208,7 @@ test('a board that is unplugged while it is written says so, and can be written 
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(5000);
-  await does(opened, 'Write the firmware of robot.toml', /^written and verified/);
+  await does(opened, 'Write firmware and robot', /^written and verified/);
 });
 
 test('a board that begins anew in between is said to have lost what was not saved', async () => {

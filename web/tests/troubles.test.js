@@ -14,9 +14,9 @@ const text = (opened, selector) => opened.locator(selector).innerText();
 
 test('a robot file that cannot be read stays said while the robot of before goes on', async () => {
   const opened = await standing();
-  await opened.route('**/files/large.hex', (route) => route.fulfill({ status: 404 }));
+  await opened.route('**/files/large.toml', (route) => route.fulfill({ status: 404 }));
   await opened.locator('#robot').selectOption('large');
-  const said = trouble(opened).getByText('files/large.hex is not there (404)');
+  const said = trouble(opened).getByText('files/large.toml is not there (404)');
   await said.waitFor();
   assert.equal(await opened.locator('#robot').inputValue(), 'robot', 'the choice is the robot that is there');
   await type(opened, 'walk', 'ok walk');
@@ -24,7 +24,7 @@ test('a robot file that cannot be read stays said while the robot of before goes
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible(), 'good answers and the poll of the status do not take it away');
   assert.equal(await opened.evaluate(() => window.lizard.file), 'robot');
-  await opened.unroute('**/files/large.hex');
+  await opened.unroute('**/files/large.toml');
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
   assert.equal(await trouble(opened).isVisible(), false, 'a robot that can be read ends it');
@@ -34,14 +34,14 @@ test('a robot file that cannot be read stays said while the robot of before goes
 
 test('a page whose first robot cannot be read says so, and takes another one', async () => {
   const opened = await blank();
-  await opened.route('**/files/robot.hex', (route) => route.fulfill({ status: 404 }));
+  await opened.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await opened.goto(address());
-  await trouble(opened).getByText('files/robot.hex is not there (404)').waitFor();
+  await trouble(opened).getByText('files/robot.toml is not there (404)').waitFor();
   assert.equal(await text(opened, '#where'), 'No robot could be read.');
   await opened.locator('#robot').selectOption('paper');
   await opened.waitForFunction(() => window.lizard?.file === 'paper');
   await advance(opened, 2500);
-  assert.match(await text(opened, '#where'), /^on a simulated UNO, tables/);
+  assert.match(await text(opened, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
   assert.equal(await trouble(opened).isVisible(), false);
 });
 

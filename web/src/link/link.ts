@@ -1,11 +1,8 @@
-// The serial link: one interface, and at its other end a simulated UNO, the core without a chip,
-// or a board on USB.
+// The serial link: one interface, and at its other end a simulated UNO or a board on USB.
 
 export interface Link {
   /** What is at the other end, for people. */
   readonly name: string;
-  /** Whether it is a board that a boot loader can write. */
-  readonly canFlash: boolean;
   /** Called with the bytes that come. */
   onBytes: (bytes: Uint8Array) => void;
   /** Called when the other end is gone. */

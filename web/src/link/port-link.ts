@@ -34,7 +34,6 @@ const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(do
 
 export class PortLink implements Link {
   readonly name = 'board on USB';
-  readonly canFlash = true;
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;

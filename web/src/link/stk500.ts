@@ -30,9 +30,12 @@ const CALL = 110;
 /** An answer that is late has come within this, ms. */
 const QUIET = 40;
 
-export type Progress = (done: number, of: number, what: 'writing' | 'verifying') => void;
+export type Progress = (done: number, of: number, what: 'comparing' | 'writing' | 'verifying') => void;
 
-/** Bytes of an image up to its end, in whole pages. Throws a sentence. */
+/** The board has not what it was to have, and nothing was written. */
+export class Unfit extends Error {}
+
+/** The bytes of a HEX file up to its end, in whole pages. Throws a sentence. */
 export function imageOf(hex: string): Uint8Array {
   const flash = new Uint8Array(FLASH_SIZE).fill(0xff);
   load(hex, flash);
@@ -126,24 +129,51 @@ export async function identify(link: Link): Promise<void> {
   await loader.command([LEAVE]);
 }
 
+/** Bytes of flash and where they are, from the beginning of a page on. */
+export interface Piece {
+  at: number;
+  bytes: Uint8Array;
+}
+
+/** Up to the end of its last page, as an erased flash has it. */
+function inPages({ bytes }: Piece): Uint8Array {
+  const pages = new Uint8Array(Math.ceil(bytes.length / PAGE) * PAGE).fill(0xff);
+  pages.set(bytes);
+  return pages;
+}
+
 /**
- * Resets the board, writes an image, reads it back and starts it. The link's bytes belong to
- * this until it is done. Throws a sentence.
+ * Resets the board, writes a piece of its flash, reads it back and starts the board. Where `under` is given, it is
+ * looked whether the board has that, and nothing is written where it has not. The link's bytes belong to this until it is
+ * done. Throws a sentence.
  */
-export async function flash(link: Link, image: Uint8Array, progress: Progress): Promise<void> {
+export async function flash(link: Link, piece: Piece, progress: Progress, under: Piece | null = null): Promise<void> {
   const loader = await begin(link);
   const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
+  /** The first byte that is another one; -1 where the board has all of it. */
+  const differs = async (wanted: Piece, what: 'comparing' | 'verifying') => {
+    const bytes = inPages(wanted);
+    for (let at = 0; at < bytes.length; at += PAGE) {
+      await goTo(wanted.at + at);
+      const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
+      // What is behind the end may be anything.
+      const wrong = read.findIndex((byte, i) => at + i < wanted.bytes.length && byte !== bytes[at + i]);
+      if (wrong >= 0) return wanted.at + at + wrong;
+      progress(at + PAGE, bytes.length, what);
+    }
+    return -1;
+  };
+  if (under && (await differs(under, 'comparing')) >= 0) {
+    await loader.command([LEAVE]);
+    throw new Unfit('the firmware of the board is another one, in which this robot may not fit: write firmware and robot');
+  }
+  const image = inPages(piece);
   for (let at = 0; at < image.length; at += PAGE) {
-    await goTo(at);
+    progress(at, image.length, 'writing');
+    await goTo(piece.at + at);
     await loader.command([PROGRAM_PAGE, 0, PAGE, FLASH, ...image.subarray(at, at + PAGE)]);
-    progress(at + PAGE, image.length, 'writing');
   }
-  for (let at = 0; at < image.length; at += PAGE) {
-    await goTo(at);
-    const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
-    const wrong = read.findIndex((byte, i) => byte !== image[at + i]);
-    if (wrong >= 0) throw new Error(`the flash does not keep byte ${at + wrong}: try another board`);
-    progress(at + PAGE, image.length, 'verifying');
-  }
+  const wrong = await differs(piece, 'verifying');
+  if (wrong >= 0) throw new Error(`the flash does not keep byte ${wrong}: try another board`);
   await loader.command([LEAVE]);
 }

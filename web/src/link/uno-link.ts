@@ -1,4 +1,4 @@
-// The link to a simulated UNO: the image that is flashed, cycle by cycle.
+// The link to a simulated UNO: firmware and robot as they would be flashed, cycle by cycle.
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY } from '../uno/board';
 import { Frames } from '../uno/frames';
@@ -15,7 +15,6 @@ export interface UnoEvents {
 
 export class UnoLink implements Simulated {
   readonly name = 'simulated UNO';
-  readonly canFlash = true;
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   private readonly waits = new Waits();

@@ -41,18 +41,19 @@ export class SimulatedBoard {
   private volts = 5;
 
   /**
-   * At power-on. `bootLoader` and `image` are HEX files; `rail` a channel of the converter and the volts
-   * that it measures.
+   * At power-on. `image` is what flash begins with, `bootLoader` a HEX file; `rail` a channel of the converter and
+   * the volts that it measures; `eeprom` what another board has saved.
    */
   constructor(
-    image: string | null,
+    image: Uint8Array | null,
     bootLoader: string | null,
     private readonly rail: [number, number] | null,
+    eeprom?: Uint8Array,
   ) {
     const flash = new Uint8Array(32 * 1024).fill(0xff);
-    if (image !== null) load(image, flash);
+    if (image !== null) flash.set(image);
     if (bootLoader !== null) load(bootLoader, flash);
-    this.begin('power', flash);
+    this.begin('power', flash, eeprom);
   }
 
   /** Cycles since power-on. */

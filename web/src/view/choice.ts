@@ -1,18 +1,18 @@
 // The robots that can be chosen: those that say that they are for the tests come last, under that name.
-import { files, isForTests, type RobotFile } from '../files';
+import { files, isForTests } from '../files';
 import { element } from './canvas';
 
 export class Choice {
   private readonly list = element<HTMLSelectElement>('robot');
 
   private constructor(
-    private readonly robots: RobotFile[],
+    private readonly robots: string[],
     forTests: boolean[],
   ) {
     const tests = document.createElement('optgroup');
     tests.label = 'for tests';
-    robots.forEach(({ name, image }, n) => {
-      const option = new Option(`${name}.toml${image ? '' : ' (no image)'}`, name);
+    robots.forEach((name, n) => {
+      const option = new Option(`${name}.toml`, name);
       if (forTests[n]) tests.append(option);
       else this.list.add(option);
     });
@@ -23,7 +23,7 @@ export class Choice {
   static async load(): Promise<Choice> {
     const robots = await files.robots();
     // One that cannot be read says so when it is chosen.
-    const tomls = await Promise.all(robots.map(({ name }) => files.toml(name).catch(() => '')));
+    const tomls = await Promise.all(robots.map((name) => files.toml(name).catch(() => '')));
     return new Choice(robots, tomls.map(isForTests));
   }
 
@@ -33,13 +33,13 @@ export class Choice {
   }
 
   /** What is chosen. */
-  get robot(): RobotFile {
-    return this.robots.find(({ name }) => name === this.list.value) ?? this.robots[0];
+  get robot(): string {
+    return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
 
   /** Shows another one, by the name of its file, if it is there. */
   show(name: string): void {
-    if (this.robots.some((robot) => robot.name === name)) this.list.value = name;
+    if (this.robots.includes(name)) this.list.value = name;
   }
 
   /** Whether a person may choose. */

@@ -1,25 +1,27 @@
-// Writing an image by the board's boot loader.
+// Writing firmware and robot by the board's boot loader.
 import { hasConsole, imageOf } from '../link/stk500';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
-import type { Writer } from './writer';
+import type { What, Writer } from './writer';
 
 export class FlashView {
   private readonly note = element('flash-note');
   private readonly file = element<HTMLInputElement>('flash-file');
-  private readonly write = element<HTMLButtonElement>('flash-write');
+  private readonly all = element<HTMLButtonElement>('flash-write');
+  private readonly robot = element<HTMLButtonElement>('flash-robot');
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
   readonly said = element('flash-said');
-  /** The image of the file that was chosen, until a person has decided about it. */
+  /** The image in the file that was chosen, until a person has decided about it. */
   private chosen: Uint8Array | null = null;
 
   constructor(
     private readonly session: () => Session,
     private readonly writer: Writer,
   ) {
-    this.write.addEventListener('click', () => this.writeOwn());
+    this.all.addEventListener('click', () => this.write('all'));
+    this.robot.addEventListener('click', () => this.write('robot'));
     this.file.addEventListener('change', () => {
       const file = this.file.files?.[0];
       if (file) void this.choose(file).finally(() => (this.file.value = ''));
@@ -27,33 +29,28 @@ export class FlashView {
     element('flash-yes').addEventListener('click', () => {
       const { chosen } = this;
       this.forget();
-      if (chosen) void this.flash(chosen);
+      if (chosen) this.write(chosen);
     });
     element('flash-no').addEventListener('click', () => this.forget());
   }
 
   /** Shows what can be written here. */
   update(): void {
-    const { link, image } = this.session();
+    const { link, section, description } = this.session();
     this.forget();
-    this.file.disabled = !link.canFlash || this.writer.isBusy;
-    this.write.disabled = !link.canFlash || image === null || this.writer.isBusy;
-    this.note.textContent = !link.canFlash
-      ? 'The core runs in the page, without a chip: there is nothing to flash. Build an image with `make firmware` and this robot.toml.'
-      : image === null
-        ? `No image of this robot was built with the page; choose a HEX file for the ${link.name}.`
-        : `Writes to the ${link.name} by its boot loader, verifies, and starts it. What its EEPROM holds stays.`;
+    for (const control of [this.file, this.all, this.robot]) control.disabled = this.writer.isBusy;
+    this.note.textContent =
+      `Writes to the ${link.name} by its boot loader, verifies, and starts it. The firmware is the same for every robot; what is saved in the board stays. ` +
+      `The robot alone is ${section.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
   }
 
-  /** Writes the image of the page's robot, in sight. */
-  writeOwn(): void {
-    const { image } = this.session();
-    if (image === null) return;
+  /** Writes the page's robot, in sight. */
+  write(what: What): void {
     const panel = this.note.closest('details');
     if (panel) panel.open = true;
     this.said.scrollIntoView({ block: 'nearest' });
     this.forget();
-    void this.flash(imageOf(image));
+    void this.writer.write(what, this);
   }
 
   /** Asks about a file, which is written only then. */
@@ -68,7 +65,7 @@ export class FlashView {
     }
     const what = hasConsole(this.chosen)
       ? 'It is a firmware of a lizard.'
-      : 'It is not this firmware: with it the board no longer is a lizard, until this robot\'s image is written again.';
+      : 'It is not this firmware: with it the board no longer is a lizard, until firmware and robot are written again.';
     element('flash-what').textContent =
       `${file.name}, ${this.chosen.length} bytes. ${what} Write it to the ${this.session().link.name}?`;
     this.question.hidden = false;
@@ -78,9 +75,5 @@ export class FlashView {
   private forget(): void {
     this.chosen = null;
     this.question.hidden = true;
-  }
-
-  private async flash(image: Uint8Array): Promise<void> {
-    await this.writer.write(image, this);
   }
 }

@@ -1,9 +1,10 @@
 // The panel in which gaits are made: each leg is a bar on a circle, which is the cycle.
 import { Trials } from '../gaits/trials';
-import { tryGait } from '../gaits/try';
+import { takeGait, tryGait } from '../gaits/try';
 import { type Bars, type Description, type Four, isRefused, type NoTrial, type Trial } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { NO_BOARD, type Writer } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
 /** The leg across. */
@@ -46,6 +47,7 @@ export class GaitsView {
     private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
     private readonly ask: (line: string) => Promise<unknown>,
+    private readonly writer: Writer,
   ) {
     this.panel.addEventListener('toggle', () => this.take());
     this.from.addEventListener('change', () => this.choose());
@@ -59,6 +61,7 @@ export class GaitsView {
     LEGS.forEach((_, leg) => this.leg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
     element('gait-try').addEventListener('click', () => void this.tryIt());
+    element('gait-write').addEventListener('click', () => void this.writeIt());
     element('gait-copy').addEventListener('click', () => void this.copy());
   }
 
@@ -204,7 +207,7 @@ export class GaitsView {
   private answered(bars: Bars, trial: Trial | NoTrial): void {
     const refused = isRefused(trial) ? trial : null;
     this.trial = refused ? null : (trial as Trial);
-    element<HTMLButtonElement>('gait-try').disabled = element<HTMLButtonElement>('gait-copy').disabled = refused !== null;
+    for (const id of ['gait-try', 'gait-write', 'gait-copy']) element<HTMLButtonElement>(id).disabled = refused !== null;
     const put = (id: string, text: string) => (element(id).textContent = text);
     const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
     const { trial: well } = this;
@@ -234,6 +237,19 @@ export class GaitsView {
     this.say('The robot begins anew with this gait…');
     const refused = await tryGait(this.session(), gait, this.ask);
     this.say(refused?.refused ?? `It walks ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
+  }
+
+  private async writeIt(): Promise<void> {
+    const { gait } = this;
+    if (!gait) return;
+    const session = this.session();
+    if (!session.isReal) return this.say(NO_BOARD);
+    const refused = await takeGait(session, gait);
+    if (refused) return this.say(refused.refused);
+    const said = element('gait-said');
+    const display = { said, progress: element<HTMLProgressElement>('gait-progress') };
+    if (!(await this.writer.write('robot', display))) return;
+    this.say(`${said.textContent}. The board has begun anew; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 
   private async copy(): Promise<void> {

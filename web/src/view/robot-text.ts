@@ -4,6 +4,7 @@ import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
+import { NO_BOARD, type Writer } from './writer';
 
 /** So many robots can be gone back to. */
 const STEPS = 50;
@@ -17,7 +18,11 @@ export class RobotText {
   private shown = '';
   private faulty: number | null = null;
 
-  constructor(private readonly session: () => Session) {
+  constructor(
+    private readonly session: () => Session,
+    private readonly writer: Writer,
+  ) {
+    element('robot-write').addEventListener('click', () => void this.write());
     element('robot-take').addEventListener('click', () => void this.give(this.box.value));
     this.box.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter' || !(event.ctrlKey || event.metaKey)) return;
@@ -86,6 +91,16 @@ export class RobotText {
     this.panel.open = true;
     this.box.value = toml;
     this.say(refused);
+  }
+
+  /** The text becomes the robot, also that of the board on USB. */
+  private async write(): Promise<void> {
+    const session = this.session();
+    if (this.box.value !== session.toml) await this.give(this.box.value);
+    if (this.box.value !== session.toml) return;
+    const said = element('robot-said');
+    if (!session.isReal) said.textContent = NO_BOARD;
+    else await this.writer.write('robot', { said, progress: element<HTMLProgressElement>('robot-progress') });
   }
 
   private async back(): Promise<void> {

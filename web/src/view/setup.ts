@@ -1,5 +1,4 @@
 // First connection, as one path: which step it is, and what a person sees of it. It can be left and entered at any step.
-import { imageOf } from '../link/stk500';
 import type { Link } from '../link/link';
 import type { Session } from '../session';
 import { calibrationIn } from '../setup/calibration-file';
@@ -19,7 +18,7 @@ import { Signs } from './setup/signs';
 import type { Step, Tools } from './setup/step';
 import { trims } from './setup/trims';
 import { walk } from './setup/walk';
-import type { Writer } from './writer';
+import type { What, Writer } from './writer';
 
 const STEPS: readonly Step[] = [board, firmware, horns, new Signs(), trims, new Scale(), new Limits(), walk, keep];
 const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
@@ -93,8 +92,8 @@ export class Setup implements Tools {
 
   /** A board was connected: what is missing on it comes first. */
   met(): void {
-    const { has, description } = this.session;
-    const step = has === null || (has !== 'unknown' && has !== description.hash) ? firmware : this.isNew ? horns : null;
+    const { has, hasThis } = this.session;
+    const step = has === null || (has !== 'unknown' && !hasThis) ? firmware : this.isNew ? horns : null;
     if (this.box.hidden) {
       if (!step) return;
       this.step = step;
@@ -176,13 +175,11 @@ export class Setup implements Tools {
     void this.connectBoard();
   };
 
-  readonly write = (): void => {
-    const { image } = this.session;
-    if (image === null) return;
+  readonly write = (what: What): void => {
     this.guide = null;
     this.act(async () => {
       const { said, progress } = this;
-      if (await this.writer.write(imageOf(image), { said, progress })) this.done('Firmware');
+      if (await this.writer.write(what, { said, progress })) this.done('Firmware');
       return said.textContent ?? '';
     });
   };

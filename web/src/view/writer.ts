@@ -1,4 +1,5 @@
-// An image on its way to a board: how far it is, and what became of it, wherever that is shown.
+// Firmware or robot on their way to a board: how far that is, and what became of it, wherever it is shown.
+import { Unfit } from '../link/stk500';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 
@@ -7,6 +8,14 @@ export interface Display {
   progress: HTMLProgressElement;
   said: HTMLElement;
 }
+
+/** The page's robot alone, the firmware with it, or an image of somebody's own. */
+export type What = 'robot' | 'all' | Uint8Array;
+
+/** Why there is nothing to write to. */
+export const NO_BOARD = 'No board is connected: Connect a board… is at the top of the page. The simulated board has this robot already.';
+
+const DOES = { comparing: 'looking at the firmware that is there…', writing: 'writing…', verifying: 'verifying…' };
 
 export class Writer {
   private isWriting = false;
@@ -22,33 +31,47 @@ export class Writer {
     return this.isWriting;
   }
 
-  /** Writes and verifies an image and waits for it to greet; whether all of that went well. */
-  async write(image: Uint8Array, { progress, said }: Display): Promise<boolean> {
+  /** Writes and verifies it and waits for the board to greet; whether all of that went well. */
+  async write(what: What, { progress, said }: Display): Promise<boolean> {
     if (this.isWriting) return false;
+    const session = this.session();
     const begun = performance.now();
+    const hash = typeof what === 'string' ? session.description.hash : null;
     this.isWriting = true;
     this.busy(true);
     progress.hidden = false;
     progress.value = 0;
     said.textContent = 'calling the boot loader…';
-    let written = false;
+    let isTouched = false;
+    let isWritten = false;
+    const show = (done: number, of: number, does: keyof typeof DOES) => {
+      isTouched ||= does === 'writing';
+      if (does !== 'comparing') progress.value = (50 * done) / of + (does === 'verifying' ? 50 : 0);
+      if (said.textContent !== DOES[does]) said.textContent = DOES[does];
+    };
     try {
-      await this.session().flash(image, (done, of, what) => {
-        progress.value = (50 * done) / of + (what === 'verifying' ? 50 : 0);
-        const text = what === 'writing' ? 'writing…' : 'verifying…';
-        if (said.textContent !== text) said.textContent = text;
-      });
-      written = true;
-      said.textContent = `written and verified in ${((performance.now() - begun) / 1000).toFixed(0)} s`;
+      await (what === 'robot' ? session.flashRobot(show) : session.flash(what === 'all' ? session.image : what, show));
+      isWritten = true;
+      said.textContent = `written and verified in ${written(performance.now() - begun)}`;
     } catch (error) {
-      said.textContent = `not written: ${sentence(error)}`;
+      said.textContent = `not written: ${sentence(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }
     progress.hidden = true;
     this.isWriting = false;
     this.busy(false);
-    if (!written) return false;
-    if (await this.session().begins()) return true;
-    said.textContent = 'written and verified; it does not greet as this firmware does';
+    if (!isWritten) return false;
+    const wrong = await session.begins(hash);
+    if (wrong === null) return true;
+    said.textContent = `written and verified; ${wrong}`;
     return false;
   }
 }
+
+/** What half of it means. */
+const TORN = {
+  robot: '. Only a part of the robot is on the board, which moves nothing until it is written again: try again',
+  all: '. Only a part of it is on the board: write it again before the servos get their supply',
+};
+
+/** A time in seconds; a second and a half is not two. */
+const written = (ms: number) => `${(ms / 1000).toFixed(ms < 9500 ? 1 : 0)} s`;

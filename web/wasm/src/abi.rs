@@ -2,8 +2,8 @@
 //!
 //! Texts come and go as UTF-8 in this module's own memory. The page asks for room
 //! (`lizard_input`), writes there, calls, and reads the answer at `lizard_output`,
-//! `lizard_output_length` bytes of JSON; `null` where there is nothing to say. One page has one robot, so there
-//! is one state. wasm-bindgen would do the same with a program of its own, whose
+//! `lizard_output_length` bytes of JSON; `null` where there is nothing to say. A robot's section is bytes as they are.
+//! One page has one robot, so there is one state. wasm-bindgen would do the same with a program of its own, whose
 //! version must be the crate's. The names have a prefix because on a host they would
 //! replace the C library's `read` and its kin.
 #![allow(unsafe_code)] // `no_mangle` needs it; there is no unsafe block here.
@@ -107,6 +107,12 @@ pub extern "C" fn lizard_pulses(a1: u32, a2: u32, a3: u32, a4: u32) {
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_pose(a1: f64, a2: f64, a3: f64, a4: f64, frames: u32) {
     answer(|page, _| page.pose([a1, a2, a3, a4], frames));
+}
+
+/// [`Page::section`]: the answer is its bytes; none without a robot.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_section() {
+    DOOR.with_borrow_mut(|door| door.output = door.page.section().unwrap_or_default());
 }
 
 /// [`Page::restart`].

@@ -1,8 +1,8 @@
-//! The firmware's core run in the page, for a robot that no image was built for.
+//! The firmware's core run in the page, for a second robot beside the first one.
 //!
-//! The core is plain integer Rust, so with the numbers of a changed robot it says and asks for
-//! what an UNO with that robot's image would, to the bit; only the cycles of the chip
-//! are missing.
+//! To simulate another chip would cost as much time again. The core is plain integer Rust, so
+//! it says and asks for what an UNO would, to the bit; only the cycles of the chip are
+//! missing.
 
 use lizard_core::restart::Restart;
 use lizard_core::supply::Reading;

@@ -1,5 +1,7 @@
 //! What the page has to know of a robot before anything moves.
 
+use lizard_core::section::START;
+use lizard_core::text::Text;
 use lizard_core::word::Word;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};
@@ -124,8 +126,14 @@ impl From<Plate> for PlateEntry {
 /// A robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
-    /// The hash of its tables, as a banner shows it.
+    /// By which it is told from other robots, as a banner says it.
     pub hash: String,
+    /// Its name, as a banner says it.
+    pub name: String,
+    /// The version of the firmware that it is for.
+    pub version: String,
+    /// Where in flash its section begins, bytes.
+    pub start: u16,
     /// Its servos, A1 to A4.
     pub servos: Vec<ServoEntry>,
     /// Its gaits in the order of the file.
@@ -182,6 +190,9 @@ impl Description {
         let board = lizard_core::robot::Robot::supplies(robot.firmware()).board;
         Self {
             hash: format!("{:08x}", robot.firmware().hash()),
+            name: robot.name().to_string(),
+            version: version(),
+            start: START,
             servos: servos.collect(),
             gaits: gaits.collect(),
             lengths: lengths(robot),
@@ -202,6 +213,13 @@ impl Description {
             words: words(),
         }
     }
+}
+
+/// The core's own.
+fn version() -> String {
+    let mut version = String::new();
+    let Ok(()) = Text::Version.print(&mut version);
+    version
 }
 
 /// The core's own list.

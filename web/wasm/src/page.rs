@@ -1,5 +1,5 @@
-//! What the page is doing: a robot, a body on the floor, and perhaps the core of a
-//! robot without an image.
+//! What the page is doing: a robot, a body on the floor, and perhaps the core, without a
+//! chip.
 
 use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
@@ -95,6 +95,13 @@ impl Page {
 
     fn robot(&self) -> Option<&Robot> {
         self.twin.as_ref().map(Twin::robot)
+    }
+
+    /// The robot's section of flash, as the firmware reads it; none without a robot. Its maps
+    /// of certified cells take some hundredths of a second to prove.
+    #[must_use]
+    pub fn section(&self) -> Option<Vec<u8>> {
+        Some(self.robot()?.section())
     }
 
     /// The text with another number, and whether the robot of it will do. The page's robot

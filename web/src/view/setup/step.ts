@@ -1,7 +1,7 @@
 // A step of the first connection, and what it may use.
 import type { Guide } from '../../setup/guide';
 import type { Session } from '../../session';
-import type { Writer } from '../writer';
+import type { What, Writer } from '../writer';
 import type { Shown } from './drawing';
 
 export interface Tools {
@@ -13,8 +13,8 @@ export interface Tools {
   servo: number;
   /** Takes or leaves a board on USB. */
   connect(): void;
-  /** Writes the image of the page's robot. */
-  write(): void;
+  /** Writes the page's robot, alone or with the firmware. */
+  write(what: What): void;
   /** Does something at the robot; what is returned is said, and so is why it was not done. */
   run(act: (guide: Guide) => Promise<string>): void;
   /** Gives the robot the calibration of a file, unsaved. */

@@ -1,0 +1,37 @@
+// Images of robots as the page makes them, made here from the files that it is served with.
+import { readFile } from 'node:fs/promises';
+
+import { load } from '../../judge/src/hex.js';
+import { DIST } from './browser.js';
+
+const file = (name, encoding) => readFile(new URL(`files/${name}`, `file://${DIST}`), encoding);
+
+/** What flash begins with for the robot of a file of the page. */
+export async function imageOf(name) {
+  const { instance } = await WebAssembly.instantiate(await file('lizard.wasm'), {});
+  const { memory, lizard_input, lizard_read, lizard_section, lizard_output, lizard_output_length } = instance.exports;
+  const said = () => new Uint8Array(memory.buffer, lizard_output(), lizard_output_length()).slice();
+  const toml = await file(`${name}.toml`);
+  const at = lizard_input(toml.length);
+  new Uint8Array(memory.buffer).set(toml, at);
+  lizard_read();
+  const { start } = JSON.parse(new TextDecoder().decode(said()));
+  lizard_section();
+  const section = said();
+  const flash = new Uint8Array(32 * 1024).fill(0xff);
+  load(await file('code.hex', 'utf8'), flash);
+  flash.set(section, start);
+  return flash.subarray(0, start + section.length);
+}
+
+/** Bytes from address 0 on as an Intel HEX file. */
+export function hexOf(bytes) {
+  const lines = [];
+  for (let at = 0; at < bytes.length; at += 16) {
+    const data = bytes.subarray(at, at + 16);
+    const record = [data.length, at >> 8, at & 0xff, 0, ...data];
+    const sum = record.reduce((sum, byte) => sum + byte, 0);
+    lines.push(`:${[...record, -sum & 0xff].map((byte) => byte.toString(16).padStart(2, '0')).join('')}`);
+  }
+  return [...lines, ':00000001FF', ''].join('\n');
+}

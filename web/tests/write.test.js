@@ -1,0 +1,146 @@
+// The robot alone, written behind the firmware that a board has.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { connected, until } from './board.js';
+import { close, complaints, open, page, standing, tidy } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
+import { imageOf } from './image.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const START = 0x6a00;
+const text = (opened, selector) => opened.locator(selector).innerText();
+const flash = async (opened, from, to) => Buffer.from(await opened.evaluate(([from, to]) => Array.from(window.otherBoard.flash.subarray(from, to)), [from, to]));
+const section = async (name) => Buffer.from((await imageOf(name)).subarray(START));
+/** Until this is said below a panel's buttons. */
+const said = (opened, what, of = '#flash-said') => until(opened, `${what} is said`, async () => what.test(await text(opened, of)));
+const robotAlone = (opened) => opened.locator('#flash-robot').click();
+
+/** Servo pins that a pulse was on; the LED has a pin, too. */
+const moved = (opened) => opened.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulses));
+
+async function panel(opened) {
+  await opened.getByText('Flash', { exact: true }).click();
+  return opened;
+}
+
+test('a robot is on a board in a second or two, and the firmware and what is saved stay as they are', async () => {
+  const opened = await panel(await connected('large', 8000));
+  await opened.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
+  await opened.clock.runFor(1500);
+  const code = await flash(opened, 0, START);
+  const saved = await opened.evaluate(() => Array.from(window.otherBoard.eeprom));
+  assert.ok(saved.some((byte) => byte !== 0xff), 'something is saved');
+  await robotAlone(opened);
+  await said(opened, /^written and verified in [\d.]+ s$/);
+  const seconds = Number(/in ([\d.]+) s/.exec(await text(opened, '#flash-said'))[1]);
+  assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
+  await until(opened, 'it greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(opened, '#where')));
+  const wanted = await section('robot');
+  assert.deepEqual(await flash(opened, START, START + wanted.length), wanted);
+  assert.deepEqual(await flash(opened, 0, START), code);
+  assert.deepEqual(await opened.evaluate(() => Array.from(window.otherBoard.eeprom)), saved);
+});
+
+test('a gait that was made is written to a board, and the board walks so', async () => {
+  const opened = await connected('robot', 8000);
+  await opened.locator('#gait-editor summary').click();
+  await opened.waitForFunction(() => /mm$/.test(document.querySelector('#gait-way').textContent));
+  await opened.locator('#gait-name').fill('stride');
+  await opened.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
+  await opened.locator('#gait-write').click();
+  await said(opened, /^written and verified in [\d.]+ s\. The board has begun anew; stride is a button of Drive\.$/, '#gait-said');
+  await opened.clock.runFor(3000);
+  assert.equal(await text(opened, '#doing'), 'stand', 'a board does not walk by itself');
+  await opened.evaluate(() => (window.pulses = {}));
+  await opened.locator('#gaits button[data-command="stride"]').click();
+  const place = () => opened.evaluate(() => window.lizard.last.place.y);
+  const before = await place();
+  await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
+  assert.ok(await opened.evaluate(() => window.heard.includes('stride\n')));
+});
+
+test('a text that was edited is written to the board by one button', async () => {
+  const opened = await connected('robot', 8000);
+  await opened.locator('#robot-editor summary').click();
+  const toml = (await opened.locator('#robot-text').inputValue()).replace('name = "paper"', 'name = "mine"').replace('period = 1.25', 'period = 1.5');
+  await opened.locator('#robot-text').fill(toml);
+  await opened.locator('#robot-write').click();
+  await said(opened, /^written and verified in [\d.]+ s$/, '#robot-said');
+  await until(opened, 'it greets', async () => /^on a board on USB, robot mine [0-9a-f]{8}$/.test(await text(opened, '#where')));
+});
+
+test('without a board the buttons say what is missing', async () => {
+  const opened = await standing();
+  await opened.locator('#robot-editor summary').click();
+  await opened.locator('#robot-write').click();
+  await opened.locator('#robot-said', { hasText: 'No board is connected: Connect a board…' }).waitFor();
+});
+
+test('behind a firmware of another version no robot is written', async () => {
+  const opened = await panel(await connected('large', 8000));
+  const before = await flash(opened, 0, 0x7e00);
+  await opened.evaluate(() => (window.lizard.description.version = '9.9.9'));
+  await robotAlone(opened);
+  await said(opened, /^not written: the board has firmware [\d.]+, and this robot is for 9\.9\.9: write firmware and robot$/);
+  assert.deepEqual(await flash(opened, 0, 0x7e00), before);
+  assert.match(await text(opened, '#where'), /^on a board on USB with another robot/, 'it goes on');
+});
+
+/** A board that its port has not reset: it has not said what firmware it has. */
+async function unasked() {
+  const opened = await page({}, fakeSerial);
+  await opened.evaluate(() => {
+    window.awake = true;
+    window.flashed = 'large';
+  });
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.waitForFunction(() => window.otherBoard);
+  await opened.clock.runFor(5000);
+  assert.match(await text(opened, '#where'), /that has not begun anew/);
+  await opened.evaluate(() => (window.awake = false));
+  return panel(opened);
+}
+
+test('where a board has not said its firmware, its code is read and compared', async () => {
+  const opened = await unasked();
+  await robotAlone(opened);
+  await said(opened, /^looking at the firmware that is there/);
+  await said(opened, /^written and verified in [\d.]+ s$/);
+  const wanted = await section('robot');
+  assert.deepEqual(await flash(opened, START, START + wanted.length), wanted);
+
+  const other = await unasked();
+  // A byte of the console's texts.
+  await other.evaluate((at) => (window.otherBoard.flash[at] ^= 1), START - 0x200);
+  const before = await flash(other, START, 0x7e00);
+  await robotAlone(other);
+  await said(other, /^not written: the firmware of the board is another one, in which this robot may not fit: write firmware and robot$/);
+  assert.deepEqual(await flash(other, START, 0x7e00), before);
+  await until(other, 'it goes on', async () => / robot large /.test(await text(other, '#where')));
+});
+
+test('a board that is unplugged half way has no robot, says so, moves nothing, and is written again', async () => {
+  const opened = await panel(await connected('large', 8000));
+  await robotAlone(opened);
+  await said(opened, /^writing/);
+  await opened.clock.runFor(100);
+  await opened.evaluate(() => window.unplug());
+  await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is written again: try again$/);
+  await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
+  await opened.evaluate(() => (window.same = true));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await until(opened, 'it greets', async () => (await text(opened, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
+  await opened.clock.runFor(5000);
+  assert.deepEqual(await moved(opened), []);
+  await opened.locator('#log div', { hasText: '# fault: the robot in the flash is damaged, write it again' }).first().waitFor();
+  await opened.locator('#setup').getByText('has this firmware and no robot, so it moves nothing.').waitFor();
+  await robotAlone(opened);
+  await said(opened, /^written and verified in [\d.]+ s$/);
+  await until(opened, 'it stands', async () => (await moved(opened)).length === 4);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
