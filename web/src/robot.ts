@@ -231,6 +231,7 @@ interface Exports {
   lizard_bars(gait: number): void;
   lizard_trial(): void;
   lizard_put_gait(): void;
+  lizard_turned_round(): void;
   lizard_run_core(): void;
   lizard_core_frame(volts: number): void;
 }
@@ -329,7 +330,14 @@ export class Robot {
     return this.answer();
   }
 
-  /** A gait as bars; null for one along a path, one that stands and one that is turned round. */
+  /** The gait whose time runs backwards. */
+  turnedRound(bars: Bars): Bars {
+    this.give(JSON.stringify(bars));
+    this.wasm.lizard_turned_round();
+    return this.answer();
+  }
+
+  /** A gait as bars; null for one along a path and one that stands. */
   bars(gait: number): Bars | null {
     this.wasm.lizard_bars(gait);
     return this.answer();

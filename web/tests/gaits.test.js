@@ -94,6 +94,23 @@ test('a gait that is tried walks as far as was predicted, and stands in robot.to
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
 });
 
+test('a gait that walks back can be changed, and any gait is turned round', async () => {
+  const page = await opened();
+  const ahead = Number.parseFloat(await text(page, 'way'));
+  await page.getByRole('button', { name: 'Turn its time round' }).click();
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
+  assert.ok(Math.abs(ahead + Number.parseFloat(await text(page, 'way'))) < 0.3);
+  assert.equal(await page.locator('#gait-circle .bar.against').count(), 4);
+  assert.equal(await page.getByLabel('LF share').inputValue(), '-1');
+  // `back` of robot.toml is walk in reverse.
+  await page.getByRole('button', { name: 'Turn its time round' }).click();
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) > 1);
+  await page.locator('#gait-from').selectOption({ label: 'back' });
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
+  const back = Number.parseFloat(await page.locator('#gaits button[data-command="back"] small').innerText());
+  assert.ok(Math.abs(back - Number.parseFloat(await text(page, 'way'))) < 0.3);
+});
+
 test('left and right are exchanged', async () => {
   const page = await opened();
   await page.locator('#gait-from').selectOption({ label: 'arc-left' });

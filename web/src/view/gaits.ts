@@ -60,6 +60,7 @@ export class GaitsView {
     }
     LEGS.forEach((_, leg) => this.leg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
+    element('gait-turn-round').addEventListener('click', () => this.gait && this.change(this.session().robot.turnedRound(this.gait)));
     element('gait-try').addEventListener('click', () => void this.tryIt());
     element('gait-write').addEventListener('click', () => void this.writeIt());
     element('gait-copy').addEventListener('click', () => void this.copy());
@@ -189,6 +190,8 @@ export class GaitsView {
         put(end, gait.gain[leg] ?? 1);
       }
       this.bars[leg]?.setAttribute('d', arc(radius, start, long));
+      // Against the others: the foot goes forward slowly, and pushes the robot back.
+      this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
       const [x, y] = at(radius, start + long);
       this.ends[leg]?.setAttribute('cx', String(x));
       this.ends[leg]?.setAttribute('cy', String(y));

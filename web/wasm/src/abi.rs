@@ -152,6 +152,15 @@ pub extern "C" fn lizard_bars(gait: usize) {
     answer(|page, _| page.bars(gait));
 }
 
+/// [`Bars::turned_round`](crate::Bars::turned_round): the input is the bars as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_turned_round() {
+    answer(|_, bars| {
+        let bars: crate::Bars = serde_json::from_str(bars).ok()?;
+        Some(bars.turned_round())
+    });
+}
+
 /// [`Bars::put_into`](crate::Bars::put_into): the input is as that of [`Page::trial`].
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_put_gait() {

@@ -17,7 +17,7 @@ use crate::page::Refused;
 /// Amplitudes that are offered, in tenths of a deg.
 const LEAST_AMPLITUDE: i64 = 5;
 /// The longest period that is offered, in hundredths of a second.
-const LONGEST: i64 = 1000;
+pub(crate) const LONGEST: i64 = 1000;
 
 /// What every robot.toml begins its gaits with.
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
@@ -43,11 +43,12 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Of a gait; none of one along a path, of one that stands, and of one that is turned round.
+    /// Of a gait; none of one along a path and of one that stands. One that is turned round
+    /// comes as the bars that walk so.
     #[must_use]
     pub fn of(gait: &CheckedGait) -> Option<Self> {
         let strides = gait.strides();
-        if gait.is_reversed() || !gait.moves() {
+        if !gait.moves() {
             return None;
         }
         let amplitude = strides
@@ -77,38 +78,41 @@ impl Bars {
                 _ => return None,
             }
         }
-        Some(bars)
+        Some(match gait.is_reversed() {
+            true => bars.turned_round(),
+            false => bars,
+        })
+    }
+
+    /// The gait whose time runs backwards, so that it walks back where this walks ahead.
+    ///
+    /// A wave's slow and fast part are each odd about their middle. So in reverse it is its own
+    /// negative, which begins where this one's stance ends. A held wave in reverse is the
+    /// negative of that in the opposite order; that all four begin at another time does
+    /// not matter.
+    #[must_use]
+    pub fn turned_round(&self) -> Self {
+        let start = |leg: usize| match self.held {
+            true => 1.0 - self.start[leg],
+            false => (-self.start[leg] - self.duty).rem_euclid(1.0),
+        };
+        let mut turned = Self {
+            start: std::array::from_fn(start),
+            gain: self.gain.map(|gain| -gain),
+            ..self.clone()
+        };
+        if self.held {
+            // As places in the order, which are quarters from 0.
+            let first = turned.start.into_iter().fold(f64::MAX, f64::min);
+            turned.start = turned.start.map(|start| start - first);
+        }
+        turned
     }
 
     /// The text with this gait: in place of the one of its name, or below all.
     #[must_use]
     pub fn put_into(&self, text: &str) -> String {
-        let (own, below) = (
-            format!("[gait.{}]", self.name),
-            format!("[gait.{}.", self.name),
-        );
-        let (mut kept, mut is_own, mut done) = (String::new(), false, false);
-        for line in text.lines() {
-            let head = line.trim_start();
-            if head.starts_with('[') {
-                is_own = head.starts_with(&own) || head.starts_with(&below);
-                if is_own && !done {
-                    done = true;
-                    kept += &self.table();
-                    kept.push('\n');
-                }
-            }
-            // What is said of a table stands above its head, or of the next one below this.
-            if !is_own || head.starts_with('#') {
-                kept += line;
-                kept.push('\n');
-            }
-        }
-        if !done {
-            kept.push('\n');
-            kept += &self.table();
-        }
-        kept
+        put_into(text, &self.name, &self.table())
     }
 
     /// Its table for robot.toml.
@@ -174,9 +178,9 @@ pub struct Trial {
 /// A value that would do in place of the one that was wanted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Instead {
-    /// `amplitude` or `period`.
+    /// `amplitude`, `size` or `period`.
     pub what: &'static str,
-    /// deg or s.
+    /// deg, a share or s.
     pub value: f64,
 }
 
@@ -190,8 +194,35 @@ pub struct NoTrial {
     pub instead: Vec<Instead>,
 }
 
+/// A robot.toml with the table of a gait: in place of the one of its name, or below all.
+pub(crate) fn put_into(text: &str, name: &str, table: &str) -> String {
+    let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
+    let (mut kept, mut is_own, mut done) = (String::new(), false, false);
+    for line in text.lines() {
+        let head = line.trim_start();
+        if head.starts_with('[') {
+            is_own = head.starts_with(&own) || head.starts_with(&below);
+            if is_own && !done {
+                done = true;
+                kept += table;
+                kept.push('\n');
+            }
+        }
+        // What is said of a table stands above its head, or of the next one below this.
+        if !is_own || head.starts_with('#') {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    if !done {
+        kept.push('\n');
+        kept += table;
+    }
+    kept
+}
+
 /// A robot.toml without its gaits.
-fn without_gaits(text: &str) -> String {
+pub(crate) fn without_gaits(text: &str) -> String {
     let mut is_gait = false;
     let mut kept = String::new();
     for line in text.lines() {
@@ -207,9 +238,9 @@ fn without_gaits(text: &str) -> String {
     kept
 }
 
-/// The robot of a text with this gait alone.
-fn with(rest: &str, bars: &Bars) -> Result<Robot, lizard_robot::Error> {
-    Robot::parse(&format!("{rest}\n{STAND}\n{}", bars.table()))
+/// The robot of a text without gaits, with the gait of this table alone.
+pub(crate) fn with(rest: &str, table: &str) -> Result<Robot, lizard_robot::Error> {
+    Robot::parse(&format!("{rest}\n{STAND}\n{table}"))
 }
 
 /// Tries a gait on the robot of a text, which stands on this twin's floor with its servos.
@@ -218,14 +249,19 @@ fn with(rest: &str, bars: &Bars) -> Result<Robot, lizard_robot::Error> {
 /// What the gait would break, with the nearest values that would not.
 pub fn trial(text: &str, bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
     let rest = without_gaits(text);
-    let robot = with(&rest, bars).map_err(|error| NoTrial {
-        // Its line is that of a text which nobody sees.
-        refused: Refused {
-            refused: format!("{}: {}", error.key, error.problem),
-            line: None,
-            key: error.key.clone(),
-        },
+    tried(&rest, &bars.table(), twin).map_err(|refused| NoTrial {
+        refused,
         instead: instead(&rest, bars),
+    })
+}
+
+/// Tries the gait of a table on the robot of a text without gaits.
+pub(crate) fn tried(rest: &str, table: &str, twin: &Twin) -> Result<Trial, Refused> {
+    // Its line is that of a text which nobody sees.
+    let robot = with(rest, table).map_err(|error| Refused {
+        refused: format!("{}: {}", error.key, error.problem),
+        line: None,
+        key: error.key.clone(),
     })?;
     let mut there = Twin::new(&robot, twin.servos());
     there.set_ground(*twin.ground());
@@ -242,7 +278,7 @@ pub fn trial(text: &str, bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
         .expect("three margins");
     Ok(Trial {
         outlook: Outlook::of(&there, gait),
-        table: bars.table(),
+        table: table.to_string(),
         margin: least.what.name(),
         least: least.value,
         limit,
@@ -261,7 +297,7 @@ fn instead(rest: &str, bars: &Bars) -> Vec<Instead> {
         period: hundredths as f64 / 100.0,
         ..bars.clone()
     };
-    let does = |bars: &Bars| with(rest, bars).is_ok();
+    let does = |bars: &Bars| with(rest, &bars.table()).is_ok();
     let wanted = (bars.amplitude * 10.0).ceil() as i64 - 1;
     let smaller = nearest(wanted, LEAST_AMPLITUDE, |tenths| does(&amplitude(tenths)));
     let wanted = (bars.period * 100.0).floor() as i64 + 1;
@@ -278,7 +314,7 @@ fn instead(rest: &str, bars: &Bars) -> Vec<Instead> {
 }
 
 /// The first of the numbers from one to another that does, where what is farther does as well.
-fn nearest(from: i64, to: i64, does: impl Fn(i64) -> bool) -> Option<i64> {
+pub(crate) fn nearest(from: i64, to: i64, does: impl Fn(i64) -> bool) -> Option<i64> {
     let way = (to - from).signum();
     if from == to || way == 0 || !does(to) {
         return None;
@@ -326,13 +362,42 @@ mod tests {
             assert_eq!(known.outlook, Outlook::of(&twin, gait), "{name}");
             assert_eq!(known.speed, gait.audit().peak.speed, "{name}");
         }
-        for name in ["stand", "back", "look"] {
+        for name in ["stand", "look"] {
             let gait = robot
                 .gaits()
                 .iter()
                 .find(|gait| gait.name() == name)
                 .expect("there");
             assert_eq!(Bars::of(gait), None, "{name}");
+        }
+    }
+
+    /// `back` is `walk` in reverse, so two programs know where it leads.
+    #[test]
+    fn a_gait_that_is_turned_round_walks_as_the_core_in_reverse() {
+        let (robot, twin) = paper();
+        let back = robot.gait("back").expect("there");
+        let known = Outlook::of(&twin, back).way.forward().expect("decided");
+        let tried = trial(TEXT, &bars(&robot, "back"), &twin).expect("it walks");
+        let way = tried.outlook.way.forward().expect("decided");
+        assert!(
+            known < -5.0 && (way - known).abs() < 0.1,
+            "{way} and {known} mm"
+        );
+        assert!((tried.speed - back.audit().peak.speed).abs() < 2.0);
+        for name in ["walk", "crawl", "arc-left"] {
+            let bars = bars(&robot, name);
+            let ahead = trial(TEXT, &bars, &twin).expect("it walks");
+            let turned = trial(TEXT, &bars.turned_round(), &twin).expect("it walks");
+            let [ahead, turned] = [ahead, turned].map(|t| t.outlook.way.forward());
+            let sum = ahead.expect("decided") + turned.expect("decided");
+            assert!(sum.abs() < 0.2, "{name}: {ahead:?} and {turned:?} mm");
+            let again = bars.turned_round().turned_round();
+            assert_eq!(again.gain, bars.gain, "{name}");
+            for (again, start) in again.start.into_iter().zip(bars.start) {
+                let off = (again - start).rem_euclid(1.0);
+                assert!(off.min(1.0 - off) < 1e-9, "{name}: {again} and {start}");
+            }
         }
     }
 
