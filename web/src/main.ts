@@ -24,6 +24,7 @@ import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
 import { PartsView } from './view/parts';
+import { PathView } from './view/path';
 import { RobotText } from './view/robot-text';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
@@ -105,6 +106,7 @@ async function start(): Promise<void> {
   });
   const text = new RobotText(now, writer);
   const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer);
+  const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
@@ -124,6 +126,7 @@ async function start(): Promise<void> {
       world.take();
       parts.take();
       gaits.take();
+      path.take();
       text.take();
       keep.take(description);
       predict();

@@ -205,10 +205,41 @@ export interface Trial extends Outlook {
   speed: number;
 }
 
+/** A gait whose head or tail goes round a line that was drawn. */
+export interface Drawn {
+  name: string;
+  end: End;
+  /** s */
+  period: number;
+  /** Over what was drawn, about the neutral point. */
+  size: number;
+  /** How many harmonics are kept of the line, 1 to 16. */
+  terms: number;
+  /** mm in the end's own frame: from the middle of its base, outward positive in y. */
+  points: [number, number][];
+}
+
+export type End = 'head' | 'tail';
+
+/** A gait that is being made. */
+export type Made = Bars | Drawn;
+
+/** Where the point of an end may be while the other stands: mm, as the points of `Drawn`. */
+export interface Room {
+  from: [number, number];
+  step: number;
+  columns: number;
+  allowed: boolean[];
+  neutral: [number, number];
+  shafts: [[number, number], [number, number]];
+}
+
 /** Why a gait will not do, and the nearest values of which each alone would. */
 export interface NoTrial extends Refused {
-  instead: { what: 'amplitude' | 'period'; value: number }[];
+  instead: { what: Instead; value: number }[];
 }
+
+export type Instead = 'amplitude' | 'size' | 'period';
 
 /** What wasm/src/abi.rs exports. */
 interface Exports {
@@ -231,6 +262,10 @@ interface Exports {
   lizard_bars(gait: number): void;
   lizard_trial(): void;
   lizard_put_gait(): void;
+  lizard_trial_drawn(): void;
+  lizard_put_drawn(): void;
+  lizard_path(): void;
+  lizard_room(end: number): void;
   lizard_turned_round(): void;
   lizard_run_core(): void;
   lizard_core_frame(volts: number): void;
@@ -343,17 +378,32 @@ export class Robot {
     return this.answer();
   }
 
-  /** Tries a gait on the robot of a robot.toml that was read; takes tenths of a second. */
-  trial(toml: string, bars: Bars): Trial | NoTrial {
-    this.give(`${JSON.stringify(bars)}\n${toml}`);
-    this.wasm.lizard_trial();
+  /** Tries a gait on the robot of a robot.toml that was read; takes tenths of a second. Null of a line without length. */
+  trial(toml: string, made: Made): Trial | NoTrial | null {
+    this.give(`${JSON.stringify(made)}\n${toml}`);
+    if ('points' in made) this.wasm.lizard_trial_drawn();
+    else this.wasm.lizard_trial();
     return this.answer();
   }
 
   /** A robot.toml with this gait, in place of the one of its name. */
-  putGait(toml: string, bars: Bars): string {
-    this.give(`${JSON.stringify(bars)}\n${toml}`);
-    this.wasm.lizard_put_gait();
+  putGait(toml: string, made: Made): string {
+    this.give(`${JSON.stringify(made)}\n${toml}`);
+    if ('points' in made) this.wasm.lizard_put_drawn();
+    else this.wasm.lizard_put_gait();
+    return this.answer();
+  }
+
+  /** The line that the point really goes along; null of a line without length. */
+  path(drawn: Drawn): [number, number][] | null {
+    this.give(JSON.stringify(drawn));
+    this.wasm.lizard_path();
+    return this.answer();
+  }
+
+  /** Where the point of an end may be. */
+  room(end: End): Room | null {
+    this.wasm.lizard_room(end === 'head' ? 0 : 1);
     return this.answer();
   }
 

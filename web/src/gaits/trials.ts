@@ -1,17 +1,18 @@
 // Where a gait would lead, asked of a worker while a person drags: of what is asked while it
 // is at work, only the last is answered.
-import type { Bars, Floor, NoTrial, Trial } from '../robot';
+import type { Floor, Made, NoTrial, Trial } from '../robot';
 
 export interface Question {
   toml: string;
   floor: Floor;
   servos: string;
-  bars: Bars;
+  made: Made;
 }
 
 export interface Answer {
-  bars: Bars;
-  trial: Trial | NoTrial;
+  made: Made;
+  /** Null of a line without length. */
+  trial: Trial | NoTrial | null;
 }
 
 export class Trials {

@@ -11,12 +11,12 @@ addEventListener('message', ({ data }: MessageEvent<WebAssembly.Module | Questio
   else void answer(data);
 });
 
-async function answer({ toml, floor, servos, bars }: Question): Promise<void> {
+async function answer({ toml, floor, servos, made }: Question): Promise<void> {
   const page = await robot;
   if (toml !== known) page.read(toml);
   known = toml;
   page.setFloor(floor);
   page.setServos(servos);
-  const said: Answer = { bars, trial: page.trial(toml, bars) };
+  const said: Answer = { made, trial: page.trial(toml, made) };
   postMessage(said);
 }

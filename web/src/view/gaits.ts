@@ -1,10 +1,9 @@
 // The panel in which gaits are made: each leg is a bar on a circle, which is the cycle.
-import { Trials } from '../gaits/trials';
-import { takeGait, tryGait } from '../gaits/try';
-import { type Bars, type Description, type Four, isRefused, type NoTrial, type Trial } from '../robot';
+import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
-import { NO_BOARD, type Writer } from './writer';
+import { TrialView } from './trial';
+import type { Writer } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
 /** The leg across. */
@@ -38,17 +37,17 @@ export class GaitsView {
   private readonly gain: HTMLInputElement[] = [];
   private readonly bars: SVGPathElement[] = [];
   private readonly ends: SVGCircleElement[] = [];
-  private trials: Trials | null = null;
+  private readonly trial: TrialView;
   private gait: Bars | null = null;
-  private trial: Trial | null = null;
   private toml = '';
 
   constructor(
-    private readonly module: WebAssembly.Module,
+    module: WebAssembly.Module,
     private readonly session: () => Session,
-    private readonly ask: (line: string) => Promise<unknown>,
-    private readonly writer: Writer,
+    ask: (line: string) => Promise<unknown>,
+    writer: Writer,
   ) {
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (what, value) => this.change({ [what]: value }) });
     this.panel.addEventListener('toggle', () => this.take());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
@@ -61,9 +60,6 @@ export class GaitsView {
     LEGS.forEach((_, leg) => this.leg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
     element('gait-turn-round').addEventListener('click', () => this.gait && this.change(this.session().robot.turnedRound(this.gait)));
-    element('gait-try').addEventListener('click', () => void this.tryIt());
-    element('gait-write').addEventListener('click', () => void this.writeIt());
-    element('gait-copy').addEventListener('click', () => void this.copy());
   }
 
   /** Takes the session's robot, if the panel is open; a gait that is being made stays. */
@@ -73,7 +69,7 @@ export class GaitsView {
     if (toml === this.toml) return;
     this.toml = toml;
     this.fill(description);
-    if (this.gait && this.from.value !== '') this.predict();
+    if (this.gait && this.from.value !== '') this.trial.predict();
     else this.choose();
   }
 
@@ -95,17 +91,17 @@ export class GaitsView {
   /** Begins with a gait of the robot. */
   private choose(): void {
     const bars = this.from.value === '' ? null : this.session().robot.bars(Number(this.from.value));
-    if (!bars) return this.say('This robot has no gait of four bars to begin with.');
+    if (!bars) return this.trial.say('This robot has no gait of four bars to begin with.');
     this.gait = { ...bars, name: this.name.value || 'mine' };
     this.show();
-    this.predict();
+    this.trial.predict();
   }
 
   private change(part: Partial<Bars>): void {
     if (!this.gait) return;
     this.gait = { ...this.gait, ...part };
     this.show();
-    this.predict();
+    this.trial.predict();
   }
 
   private setLeg(key: 'start' | 'gain', leg: number, value: number): void {
@@ -198,74 +194,6 @@ export class GaitsView {
       const handle = this.ends[leg];
       if (handle) handle.style.display = gait.held ? 'none' : '';
     });
-  }
-
-  private predict(): void {
-    const { toml, floor, servos } = this.session();
-    if (!this.gait || toml === '') return;
-    this.trials ??= new Trials(this.module, ({ bars, trial }) => this.answered(bars, trial));
-    this.trials.ask({ toml, floor, servos, bars: this.gait });
-  }
-
-  private answered(bars: Bars, trial: Trial | NoTrial): void {
-    const refused = isRefused(trial) ? trial : null;
-    this.trial = refused ? null : (trial as Trial);
-    for (const id of ['gait-try', 'gait-write', 'gait-copy']) element<HTMLButtonElement>(id).disabled = refused !== null;
-    const put = (id: string, text: string) => (element(id).textContent = text);
-    const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
-    const { trial: well } = this;
-    put('gait-way', well ? number(well.forward, ' mm') : '–');
-    put('gait-speed', well?.forward != null ? number(well.forward / bars.period, ' mm/s') : '–');
-    put('gait-turn', well ? number(well.turn, '°') : '–');
-    put('gait-least', well ? `${well.least.toFixed(3)} of ${well.limit} (${well.margin.replaceAll('_', ' ')})` : '–');
-    put('gait-fastest', well ? `${well.servo}, ${well.speed.toFixed(0)} °/s` : '–');
-    put('gait-table', well?.table ?? '');
-    element('gait-no').hidden = refused === null;
-    put('gait-refusal', refused?.refused ?? '');
-    element('gait-instead').replaceChildren(
-      ...(refused?.instead ?? []).map(({ what, value }) => {
-        const button = document.createElement('button');
-        button.type = 'button';
-        button.textContent = what === 'amplitude' ? `Amplitude ${value}° would do` : `A cycle of ${value} s would do`;
-        button.addEventListener('click', () => this.change({ [what]: value }));
-        return button;
-      }),
-    );
-    this.say('');
-  }
-
-  private async tryIt(): Promise<void> {
-    const { gait } = this;
-    if (!gait) return;
-    this.say('The robot begins anew with this gait…');
-    const refused = await tryGait(this.session(), gait, this.ask);
-    this.say(refused?.refused ?? `It walks ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
-  }
-
-  private async writeIt(): Promise<void> {
-    const { gait } = this;
-    if (!gait) return;
-    const session = this.session();
-    if (!session.isReal) return this.say(NO_BOARD);
-    const refused = await takeGait(session, gait);
-    if (refused) return this.say(refused.refused);
-    const said = element('gait-said');
-    const display = { said, progress: element<HTMLProgressElement>('gait-progress') };
-    if (!(await this.writer.write('robot', display))) return;
-    this.say(`${said.textContent}. The board has begun anew; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
-  }
-
-  private async copy(): Promise<void> {
-    try {
-      await navigator.clipboard.writeText(this.trial?.table ?? '');
-      this.say('The table for robot.toml is copied.');
-    } catch {
-      this.say('The browser does not let the page copy; mark the table and copy it by hand.');
-    }
-  }
-
-  private say(text: string): void {
-    element('gait-said').textContent = text;
   }
 }
 

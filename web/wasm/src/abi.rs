@@ -181,6 +181,37 @@ pub extern "C" fn lizard_trial() {
     });
 }
 
+/// [`Page::trial_drawn`]: the input is the line as JSON on one line, and then the text of the robot.toml.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_trial_drawn() {
+    answer(|page, input| {
+        let (drawn, text) = input.split_once('\n')?;
+        page.trial_drawn(text, &serde_json::from_str(drawn).ok()?)
+            .map(either)
+    });
+}
+
+/// [`Page::put_drawn`]: the input is as that of [`Page::trial_drawn`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_put_drawn() {
+    answer(|page, input| {
+        let (drawn, text) = input.split_once('\n')?;
+        page.put_drawn(text, &serde_json::from_str(drawn).ok()?)
+    });
+}
+
+/// [`Page::path`]: the input is the line as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_path() {
+    answer(|page, drawn| page.path(&serde_json::from_str(drawn).ok()?));
+}
+
+/// [`Page::room`].
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_room(end: usize) {
+    answer(|page, _| page.room(end));
+}
+
 /// [`Page::map`].
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_map(end: usize) {

@@ -10,11 +10,13 @@
 mod abi;
 mod core_run;
 mod description;
+mod drawn;
 mod edit;
 mod floor;
 mod map;
 mod page;
 mod place;
+mod room;
 mod scene;
 mod trial;
 
@@ -22,10 +24,12 @@ pub use core_run::{CoreRun, Said};
 pub use description::{
     Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Outlook, ServoEntry, Way,
 };
+pub use drawn::Drawn;
 pub use edit::{NoSuchLength, with_number};
 pub use floor::Floor;
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page, Refused};
 pub use place::Place;
+pub use room::Room;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};
 pub use trial::{Bars, Instead, NoTrial, Trial};

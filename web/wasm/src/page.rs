@@ -10,10 +10,12 @@ use serde::Serialize;
 
 use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Outlook, SERVO_MODELS};
+use crate::drawn::Drawn;
 use crate::edit::{NoSuchLength, with_number, with_word, without};
 use crate::floor::Floor;
 use crate::map::Map;
 use crate::place::Place;
+use crate::room::Room;
 use crate::scene::Scene;
 use crate::trial::{Bars, NoTrial, Trial, trial};
 
@@ -249,6 +251,30 @@ impl Page {
     /// What the gait would break, and what would not.
     pub fn trial(&self, text: &str, bars: &Bars) -> Option<Result<Trial, NoTrial>> {
         Some(trial(text, bars, self.twin.as_ref()?))
+    }
+
+    /// Tries a gait that was drawn on the page's robot, whose text this is; none without a robot
+    /// or a line.
+    ///
+    /// # Errors
+    /// What the gait would break, and what would not.
+    pub fn trial_drawn(&self, text: &str, drawn: &Drawn) -> Option<Result<Trial, NoTrial>> {
+        drawn.trial(text, self.twin.as_ref()?)
+    }
+
+    /// The line that the point of an end goes along in a gait that was drawn.
+    pub fn path(&self, drawn: &Drawn) -> Option<Vec<[f64; 2]>> {
+        drawn.path(self.robot()?)
+    }
+
+    /// The text of the page's robot with a gait that was drawn.
+    pub fn put_drawn(&self, text: &str, drawn: &Drawn) -> Option<String> {
+        drawn.put_into(text, self.robot()?)
+    }
+
+    /// Where the point of the head (0) or the tail (1) may be.
+    pub fn room(&self, end: usize) -> Option<Room> {
+        Some(Room::of(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// The map of singularities of the head (0) or the tail (1).

@@ -1,0 +1,215 @@
+// The panel in which a gesture is drawn: the point of head or tail goes round a closed line.
+import type { Drawn, End, Instead, Room } from '../robot';
+import type { Session } from '../session';
+import { element } from './canvas';
+import { TrialView } from './trial';
+import type { Writer } from './writer';
+
+const SVG = 'http://www.w3.org/2000/svg';
+/** A point that is nearer to the one before is not taken, mm. */
+const NEAR = 0.3;
+/** A line with fewer points was a tap. */
+const FEW = 8;
+/** Points of a shape. */
+const POINTS = 96;
+/** mm around what is shown. */
+const RIM = 4;
+
+type Spot = [number, number];
+
+/** Lines to begin with, by the share of a round, in tenths of the way from the base to the neutral point. */
+const SHAPES: Record<string, (turn: number) => Spot> = {
+  circle: (turn) => [Math.sin(turn), Math.cos(turn) - 1],
+  eight: (turn) => [1.4 * Math.sin(turn), 0.6 * Math.sin(2 * turn)],
+  side: (turn) => [1.4 * Math.sin(turn), 0],
+  nod: (turn) => [0, Math.sin(turn)],
+};
+
+type Plain = 'period' | 'size' | 'terms';
+const NUMBERS: Record<Plain, { min: number; max: number; step: number }> = {
+  period: { min: 0.2, max: 20, step: 0.1 },
+  size: { min: 5, max: 200, step: 1 },
+  terms: { min: 1, max: 16, step: 1 },
+};
+
+export class PathView {
+  private readonly panel = element<HTMLDetailsElement>('path-editor');
+  private readonly plane = element<HTMLElement>('path-plane') as unknown as SVGSVGElement;
+  private readonly end = element<HTMLSelectElement>('path-end');
+  private readonly shape = element<HTMLSelectElement>('path-shape');
+  private readonly name = element<HTMLInputElement>('path-name');
+  private readonly trial: TrialView;
+  private readonly allowed = this.part('path', 'allowed');
+  private readonly base = this.part('path', 'base');
+  private readonly line = this.part('path', 'line');
+  private readonly rounded = this.part('path', 'rounded');
+  private readonly neutral = this.part('circle', 'neutral');
+  private drawn: Drawn = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
+  private room: Room | null = null;
+  private toml = '';
+
+  constructor(
+    module: WebAssembly.Module,
+    private readonly session: () => Session,
+    ask: (line: string) => Promise<unknown>,
+    writer: Writer,
+  ) {
+    const made = () => (this.drawn.points.length === 0 ? null : this.drawn);
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made, change: (what, value) => this.instead(what, value) });
+    this.panel.addEventListener('toggle', () => this.take());
+    this.end.addEventListener('change', () => {
+      this.drawn = { ...this.drawn, end: this.end.value as End };
+      this.begin();
+    });
+    this.shape.addEventListener('change', () => this.begin());
+    this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
+    for (const plain of Object.keys(NUMBERS) as Plain[]) {
+      const input = element<HTMLInputElement>(`path-${plain}`);
+      Object.assign(input, Object.fromEntries(Object.entries(NUMBERS[plain]).map(([name, value]) => [name, String(value)])));
+      input.addEventListener('input', () => {
+        const { min, max } = NUMBERS[plain];
+        const value = input.valueAsNumber;
+        if (!(value >= min && value <= max)) return;
+        this.change({ [plain]: plain === 'size' ? value / 100 : plain === 'terms' ? Math.round(value) : value });
+      });
+    }
+    this.draws();
+  }
+
+  /** Takes the session's robot, if the panel is open; a line that was drawn stays. */
+  take(): void {
+    if (!this.panel.open) return;
+    const { toml } = this.session();
+    if (toml === this.toml) return;
+    this.toml = toml;
+    this.begin(this.drawn.points.length > 0);
+  }
+
+  /** The plane of the end that is chosen, with the shape that is chosen unless a line is kept. */
+  private begin(isKept = false): void {
+    this.room = this.session().robot.room(this.drawn.end);
+    if (!this.room) return;
+    this.ground(this.room);
+    const shape = SHAPES[this.shape.value];
+    if (!isKept && shape) {
+      const [x, y] = this.room.neutral;
+      const tenth = Math.hypot(x, y) / 10;
+      const points = Array.from({ length: POINTS }, (_, n): Spot => {
+        const [across, out] = shape((2 * Math.PI * n) / POINTS);
+        return [x + tenth * across, y + tenth * out];
+      });
+      this.change({ points, size: 1 });
+    } else if (!isKept) this.change({ points: [], size: 1 });
+    else this.change({});
+  }
+
+  private instead(what: Instead, value: number): void {
+    if (what !== 'amplitude') this.change({ [what]: value });
+  }
+
+  private change(part: Partial<Drawn>): void {
+    this.drawn = { ...this.drawn, ...part };
+    this.show();
+    this.trial.predict();
+  }
+
+  /** A part of the picture. */
+  private part<K extends 'path' | 'circle'>(kind: K, name: string): SVGElementTagNameMap[K] {
+    const part = this.plane.appendChild(document.createElementNS(SVG, kind));
+    part.classList.add(name);
+    return part;
+  }
+
+  /** Outward is up for the head and down for the tail, as the robot is seen from above. */
+  private at([x, y]: Spot): Spot {
+    return [x, this.drawn.end === 'head' ? -y : y];
+  }
+
+  private path(points: Spot[], end = 'Z'): string {
+    return points.length === 0 ? '' : `M ${points.map((point) => this.at(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
+  }
+
+  /** What does not change while one draws: the room, the base, the neutral point. */
+  private ground({ from, step, columns, allowed, neutral, shafts }: Room): void {
+    const rows = allowed.length / columns;
+    const corner = (column: number, row: number): Spot => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];
+    const cells: string[] = [];
+    for (let row = 0; row < rows; row++) {
+      for (let column = 0; column < columns; column++) {
+        if (!allowed[row * columns + column]) continue;
+        let end = column;
+        while (end < columns && allowed[row * columns + end]) end += 1;
+        cells.push(this.path([corner(column, row), corner(end, row), corner(end, row + 1), corner(column, row + 1)]));
+        column = end;
+      }
+    }
+    this.allowed.setAttribute('d', cells.join(' '));
+    this.base.setAttribute('d', this.path(shafts, ''));
+    const [x, y] = this.at(neutral);
+    this.neutral.setAttribute('cx', String(x));
+    this.neutral.setAttribute('cy', String(y));
+    this.neutral.setAttribute('r', '1.5');
+    const far = from[1] + rows * step;
+    const [left, wide] = [Math.min(from[0], shafts[0][0]) - RIM, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * RIM];
+    const high = far + 2 * RIM;
+    this.plane.setAttribute('viewBox', `${left} ${this.drawn.end === 'head' ? -far - RIM : -RIM} ${wide} ${high}`);
+  }
+
+  private show(): void {
+    const { drawn } = this;
+    const put = (name: Plain, value: number) => {
+      const input = element<HTMLInputElement>(`path-${name}`);
+      // What is being typed is not written over.
+      if (document.activeElement !== input) input.value = String(Number(value.toFixed(2)));
+    };
+    put('period', drawn.period);
+    put('size', drawn.size * 100);
+    put('terms', drawn.terms);
+    if (document.activeElement !== this.name) this.name.value = drawn.name;
+    this.end.value = drawn.end;
+    this.line.setAttribute('d', this.path(drawn.points));
+    this.rounded.setAttribute('d', this.path((drawn.points.length > 0 && this.session().robot.path(drawn)) || []));
+  }
+
+  /** A finger or a mouse draws. */
+  private draws(): void {
+    let points: Spot[] | null = null;
+    const spot = ({ clientX, clientY }: PointerEvent): Spot | null => {
+      const place = this.plane.getScreenCTM();
+      if (!place) return null;
+      const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
+      return this.at([x, y]);
+    };
+    const add = (event: PointerEvent) => {
+      const next = spot(event);
+      const last = points?.at(-1);
+      if (!points || !next || (last && Math.hypot(next[0] - last[0], next[1] - last[1]) < NEAR)) return;
+      points.push(next);
+      this.line.setAttribute('d', this.path(points, ''));
+    };
+    this.plane.addEventListener('pointerdown', (event) => {
+      if (!this.room) return;
+      this.plane.setPointerCapture(event.pointerId);
+      points = [];
+      this.rounded.setAttribute('d', '');
+      add(event);
+    });
+    this.plane.addEventListener('pointermove', add);
+    this.plane.addEventListener('pointerup', (event) => {
+      add(event);
+      const line = points;
+      points = null;
+      if (!line) return;
+      if (line.length < FEW) {
+        this.show();
+        return this.trial.say('A tap is no line: hold and draw it.');
+      }
+      this.shape.value = 'own';
+      this.change({ points: line, size: 1 });
+    });
+    this.plane.addEventListener('pointercancel', () => {
+      points = null;
+      this.show();
+    });
+  }
+}

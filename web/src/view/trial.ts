@@ -1,0 +1,114 @@
+// What becomes of a gait that is being made: its numbers, what would do in its place, and the buttons that use it.
+import { Trials } from '../gaits/trials';
+import { takeGait, tryGait } from '../gaits/try';
+import { type Instead, isRefused, type Made, type NoTrial, type Trial } from '../robot';
+import type { Session } from '../session';
+import { element } from './canvas';
+import { NO_BOARD, type Writer } from './writer';
+
+/** What a panel in which a gait is made gives to its lower half. */
+export interface Maker {
+  /** What its elements' names begin with. */
+  prefix: 'gait' | 'path';
+  /** What is being made; null where there is nothing yet. */
+  made(): Made | null;
+  /** Takes another value, which would do. */
+  change(what: Instead, value: number): void;
+}
+
+const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
+
+const OFFERS: Record<Instead, (value: number) => string> = {
+  amplitude: (value) => `Amplitude ${value}° would do`,
+  size: (value) => `A size of ${(100 * value).toFixed(0)} % would do`,
+  period: (value) => `A cycle of ${value} s would do`,
+};
+
+export class TrialView {
+  private trials: Trials | null = null;
+  private trial: Trial | null = null;
+
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly session: () => Session,
+    private readonly ask: (line: string) => Promise<unknown>,
+    private readonly writer: Writer,
+    private readonly maker: Maker,
+  ) {
+    this.element('try').addEventListener('click', () => void this.tryIt());
+    this.element('write').addEventListener('click', () => void this.write());
+    this.element('copy').addEventListener('click', () => void this.copy());
+  }
+
+  /** Asks what becomes of what is being made, as it is now. */
+  predict(): void {
+    const { toml, floor, servos } = this.session();
+    const made = this.maker.made();
+    if (!made || toml === '') return;
+    this.trials ??= new Trials(this.module, ({ made, trial }) => this.answered(made, trial));
+    this.trials.ask({ toml, floor, servos, made });
+  }
+
+  say(text: string): void {
+    this.element('said').textContent = text;
+  }
+
+  private element<E extends HTMLElement = HTMLElement>(name: string): E {
+    return element<E>(`${this.maker.prefix}-${name}`);
+  }
+
+  private answered(made: Made, trial: Trial | NoTrial | null): void {
+    const refused = trial && isRefused(trial) ? trial : null;
+    const well = trial && !isRefused(trial) ? trial : null;
+    this.trial = well;
+    for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !well;
+    const put = (name: string, text: string) => (this.element(name).textContent = text);
+    put('way', well ? number(well.forward, ' mm') : '–');
+    put('speed', well?.forward != null ? number(well.forward / made.period, ' mm/s') : '–');
+    put('turn', well ? number(well.turn, '°') : '–');
+    put('least', well ? `${well.least.toFixed(3)} of ${well.limit} (${well.margin.replaceAll('_', ' ')})` : '–');
+    put('fastest', well ? `${well.servo}, ${well.speed.toFixed(0)} °/s` : '–');
+    put('table', well?.table ?? '');
+    this.element('no').hidden = refused === null;
+    put('refusal', refused?.refused ?? '');
+    this.element('instead').replaceChildren(
+      ...(refused?.instead ?? []).map(({ what, value }) => {
+        const button = document.createElement('button');
+        button.type = 'button';
+        button.textContent = OFFERS[what](value);
+        button.addEventListener('click', () => this.maker.change(what, value));
+        return button;
+      }),
+    );
+    this.say('');
+  }
+
+  private async tryIt(): Promise<void> {
+    const made = this.maker.made();
+    if (!made) return;
+    this.say('The robot begins anew with this gait…');
+    const refused = await tryGait(this.session(), made, this.ask);
+    this.say(refused?.refused ?? `It does ${made.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
+  }
+
+  private async write(): Promise<void> {
+    const made = this.maker.made();
+    if (!made) return;
+    const session = this.session();
+    if (!session.isReal) return this.say(NO_BOARD);
+    const refused = await takeGait(session, made);
+    if (refused) return this.say(refused.refused);
+    const said = this.element('said');
+    if (!(await this.writer.write('robot', { said, progress: this.element<HTMLProgressElement>('progress') }))) return;
+    this.say(`${said.textContent}. The board has begun anew; ${made.name.replaceAll('-', ' ')} is a button of Drive.`);
+  }
+
+  private async copy(): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(this.trial?.table ?? '');
+      this.say('The table for robot.toml is copied.');
+    } catch {
+      this.say('The browser does not let the page copy; mark the table and copy it by hand.');
+    }
+  }
+}

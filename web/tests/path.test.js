@@ -1,0 +1,114 @@
+// A gesture is drawn: the point of head or tail goes along the line, and what cannot be is refused with what would do.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { advance, close, complaints, open, standing, tidy } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const text = (page, id) => page.locator(`#path-${id}`).innerText();
+const isAsked = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
+
+async function opened(options) {
+  const page = await standing(options);
+  await page.locator('#path-editor summary').click();
+  await isAsked(page, 'least');
+  return page;
+}
+
+/** Where a point of the plane, mm in the head's own frame, is on the screen. */
+const onScreen = (page, [x, y]) =>
+  page.evaluate(([x, y]) => {
+    const at = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());
+    return [at.x, at.y];
+  }, [x, y]);
+
+/** Draws a closed line about the head's neutral point with the mouse. */
+async function draw(page, radius, corners = 40) {
+  await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
+  const [x, y] = await page.evaluate(() => window.lizard.robot.room('head').neutral);
+  for (let n = 0; n <= corners; n++) {
+    const turn = (2 * Math.PI * n) / corners;
+    await page.mouse.move(...(await onScreen(page, [x + radius * Math.cos(turn), y + radius * Math.sin(turn)])));
+    if (n === 0) await page.mouse.down();
+  }
+  await page.mouse.up();
+  return [x, y];
+}
+
+/** The head's point in the chassis' own middle line, mm, as the page draws it. */
+const head = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
+
+test('a circle that was drawn is the way of the head, and stands in robot.toml', async () => {
+  const page = await opened();
+  await draw(page, 6);
+  await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
+  assert.equal(await page.locator('#path-shape').inputValue(), 'own');
+  assert.match(await text(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
+  const neutral = await head(page);
+  await page.locator('#path-try').click();
+  await page.waitForFunction(() => window.lizard.toml.includes('[gait.gesture.head]'));
+  await advance(page, 3000);
+  await page.waitForFunction(() => window.lizard.gait === 'gesture');
+  await advance(page, 3000);
+  const away = [];
+  for (let n = 0; n < 20; n++) {
+    await advance(page, 200);
+    const now = await head(page);
+    away.push(Math.hypot(now[0] - neutral[0], now[1] - neutral[1]));
+  }
+  // A servo's dead band is a fraction of a mm there.
+  for (const mm of away) assert.ok(Math.abs(mm - 6) < 0.8, `${away.map((mm) => mm.toFixed(2))} mm from the middle of a circle of 6 mm`);
+});
+
+test('a line that is too large is refused, and a button has the largest size that would do', async () => {
+  const page = await opened();
+  await draw(page, 45);
+  const button = page.locator('#path-instead button', { hasText: 'A size of' });
+  await button.waitFor();
+  assert.notEqual(await text(page, 'refusal'), '');
+  for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#path-${id}`).isDisabled(), id);
+  const size = Number(/A size of (\d+) %/.exec(await button.innerText())[1]);
+  await button.click();
+  await isAsked(page, 'least');
+  await page.waitForFunction(() => document.querySelector('#path-no').hidden);
+  assert.equal(Number(await page.locator('#path-size').inputValue()), size);
+  await page.locator('#path-size').fill(String(size + 1));
+  await button.waitFor();
+});
+
+test('by the keyboard a shape is chosen, for the tail as well', async () => {
+  const page = await opened();
+  const before = await text(page, 'table');
+  await page.locator('#path-end').selectOption('tail');
+  await page.waitForFunction((before) => document.querySelector('#path-table').textContent !== before, before);
+  assert.match(await text(page, 'table'), /\[gait\.gesture\.tail\]/);
+  for (const shape of ['circle', 'side', 'nod', 'eight']) {
+    const table = await text(page, 'table');
+    await page.locator('#path-shape').selectOption(shape);
+    await page.waitForFunction((table) => document.querySelector('#path-table').textContent !== table, table);
+    assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await text(page, 'refusal')}`);
+  }
+});
+
+test('a tap is no line, and that is said', async () => {
+  const page = await opened();
+  const before = await text(page, 'table');
+  await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
+  await page.locator('#path-plane').click();
+  assert.equal(await text(page, 'said'), 'A tap is no line: hold and draw it.');
+  assert.equal(await text(page, 'table'), before);
+});
+
+test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {
+  const page = await opened({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  assert.equal(await page.locator('#path-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
+  await draw(page, 6);
+  await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
+  const { wide, seen } = await page.evaluate(() => ({ wide: document.documentElement.scrollWidth, seen: document.documentElement.clientWidth }));
+  assert.ok(wide <= seen, `${wide} of ${seen} pixels`);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -1,0 +1,134 @@
+//! Where the point of an end may be: the part of its plane that a path can be drawn in.
+//!
+//! With the other end at neutral a point is allowed where the inverse kinematics has crank
+//! angles for it and the guard accepts the pose with these.
+
+use lizard_kinematics::{End, Vector, wrap};
+use lizard_robot::Robot;
+use serde::Serialize;
+
+/// Points of the plane across the whole reach.
+const POINTS: i32 = 160;
+/// Points around what is allowed.
+const RIM: i32 = 2;
+/// Two points are the same within so many mm.
+const NEAR: f64 = 1e-6;
+
+/// The plane of an end's point: mm in the end's own frame, from the middle of its base, outward
+/// positive in y.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Room {
+    /// The first point of the first row.
+    pub from: [f64; 2],
+    /// mm between two points.
+    pub step: f64,
+    /// Points in a row.
+    pub columns: usize,
+    /// Whether the end may be there, row by row.
+    pub allowed: Vec<bool>,
+    /// Where the point is in the neutral pose.
+    pub neutral: [f64; 2],
+    /// The shafts of its two cranks.
+    pub shafts: [[f64; 2]; 2],
+}
+
+impl Room {
+    /// Of an end of a robot.
+    #[must_use]
+    pub fn of(robot: &Robot, end: End) -> Self {
+        let bars = robot.lizard().end(end);
+        let reach = bars.base / 2.0
+            + bars.crank_left.max(bars.crank_right)
+            + bars.coupler_left.max(bars.coupler_right);
+        let step = 2.0 * reach / f64::from(POINTS);
+        let at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
+        let half = POINTS / 2;
+        let row = |row: i32| -> Vec<bool> {
+            let columns = -half..=half;
+            columns
+                .map(|column| allows(robot, end, at(column, row)))
+                .collect()
+        };
+        let plane: Vec<Vec<bool>> = (-half..=half).map(row).collect();
+        let is_allowed = |column: i32, row: i32| {
+            let row = usize::try_from(row + half)
+                .ok()
+                .and_then(|row| plane.get(row));
+            let column = usize::try_from(column + half).ok();
+            row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
+        };
+        // As much as is allowed, and a little around it.
+        let span = |has: &dyn Fn(i32) -> bool| {
+            let least = (-half..=half).find(|at| has(*at)).unwrap_or(0);
+            let most = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
+            (least - RIM)..=(most + RIM)
+        };
+        let columns = span(&|column| (-half..=half).any(|row| is_allowed(column, row)));
+        let rows = span(&|row| (-half..=half).any(|column| is_allowed(column, row)));
+        let row = |row| columns.clone().map(move |column| (column, row));
+        let allowed = rows
+            .clone()
+            .flat_map(row)
+            .map(|(column, row)| is_allowed(column, row));
+        let half = bars.base / 2.0;
+        Self {
+            from: at(*columns.start(), *rows.start()),
+            step,
+            columns: columns.clone().count(),
+            allowed: allowed.collect(),
+            neutral: neutral(robot, end),
+            shafts: [[-half, 0.0], [half, 0.0]],
+        }
+    }
+}
+
+/// Where the point of an end is in the neutral pose, mm.
+pub fn neutral(robot: &Robot, end: End) -> [f64; 2] {
+    let solution = robot.lizard().solve(&robot.neutral());
+    let point = solution.map(|solution| solution.end(end).end_point);
+    point.map_or([0.0; 2], |point| [point.x, point.y])
+}
+
+fn allows(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
+    let Ok(pair) = robot.lizard().point_angles(end, Vector::new(x, y)) else {
+        return false;
+    };
+    let mut angles: [f64; 4] = robot.neutral().into();
+    for servo in end.servos() {
+        angles[servo] += wrap(pair[servo % 2] - angles[servo]);
+    }
+    // Cranks may put the point elsewhere than the inverse had it, where it would be on the
+    // other side of them.
+    robot.accepted(angles).is_some_and(|solution| {
+        let there = solution.end(end).end_point;
+        (there.x - x).hypot(there.y - y) < NEAR
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_neutral_point_is_allowed_and_what_no_crank_reaches_is_not() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        for end in End::ALL {
+            let room = Room::of(&robot, end);
+            let place = |[x, y]: [f64; 2]| {
+                let [column, row] = [
+                    (x - room.from[0]) / room.step,
+                    (y - room.from[1]) / room.step,
+                ];
+                room.allowed[row.round() as usize * room.columns + column.round() as usize]
+            };
+            assert!(place(room.neutral), "{end}");
+            assert_eq!(room.allowed.len() % room.columns, 0);
+            // A rim of points that are not, so that its shape is seen.
+            assert!(room.allowed[..room.columns].iter().all(|allowed| !allowed));
+            // The gesture of robot.toml lies in it: 10 mm to either side of 54 mm outward.
+            for x in [-10.0, 0.0, 10.0] {
+                assert!(place([x, 54.0]), "{end} {x}");
+            }
+        }
+    }
+}
