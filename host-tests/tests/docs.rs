@@ -3,8 +3,12 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 
+use lizard_core::curve::Table;
+use lizard_core::gait::{Gait, Wave};
+use lizard_core::section::{Header, Numbers, SPACE, START};
 use lizard_host_tests::root;
 
 #[test]
@@ -31,6 +35,78 @@ fn every_fault_in_the_documentation_has_a_test_that_exists() {
         count += 1;
     }
     assert!(count > 20, "{count}");
+}
+
+/// The rows `| offset | bytes | field |` of a type, in the order in which they are
+/// written here. The pattern names every field, so none can be forgotten.
+macro_rules! rows {
+    ($type:ident, $start:expr, [$($field:ident),+ $(,)?]) => {{
+        let _ = |$type { $($field: _),+ }: &$type| ();
+        [$(
+            format!(
+                "| {} | {} | `{}` |",
+                $start + offset_of!($type, $field),
+                size(|value: &$type| &value.$field),
+                stringify!($field)
+            )
+        ),+]
+    }};
+}
+
+fn size<T, F>(_: fn(&T) -> &F) -> usize {
+    size_of::<F>()
+}
+
+#[test]
+fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
+    let header = rows!(
+        Header,
+        0,
+        [magic, format, length, crc, name, hash, servo_hash]
+    );
+    let numbers = rows!(
+        Numbers,
+        size_of::<Header>(),
+        [
+            ends,
+            sides,
+            neutral,
+            calibration,
+            reach,
+            limits,
+            slew,
+            supplies,
+            curves,
+            parts,
+            rail,
+            pins,
+            maps
+        ]
+    );
+    let part = |name: &str, each: usize| format!("| {name} | {each} each |");
+    let parts = [
+        format!("| header | {} |", size_of::<Header>()),
+        format!("| numbers | {} |", size_of::<Numbers>()),
+        part("curves", size_of::<Table>()),
+        part("gaits", size_of::<Gait>()),
+        part("waveforms", size_of::<Wave>()),
+    ];
+    let flash = [
+        format!("{START:#x}"),
+        format!("{:#x}", START + SPACE),
+        format!("{SPACE} bytes"),
+    ];
+    let page = fs::read_to_string(root().join("docs/firmware.md")).expect("the page");
+    let missing: Vec<String> = [&header[..], &numbers[..], &parts[..], &flash[..]]
+        .concat()
+        .into_iter()
+        .filter(|said| !page.contains(said))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "docs/firmware.md lacks:\n{}",
+        missing.join("\n")
+    );
 }
 
 /// What is said of crates and items is held by their names.
