@@ -18,7 +18,7 @@ pub fn expected(robot: &Robot) -> String {
     let rows = [
         (
             "1",
-            "more on the scale for each mm that the foot is pressed down",
+            "increase of the scale's reading for each mm that the foot is pressed down",
             format!(
                 "{:.0} g, that is {stiffness:.1} N; {:.0} to {:.0} g will do",
                 grams(stiffness),
@@ -29,7 +29,7 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "1",
-            "pull along the floor at which a pad slides that is loaded with 100 g",
+            "pull along the floor at which a pad with a load of 100 g slides",
             format!("{:.0} g; 40 to 100 g will do", 100.0 * ground.friction),
             "[ground] friction",
         ),
@@ -41,13 +41,13 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "2",
-            "the coupon's first column into which everything goes by hand",
+            "first column of the coupon into which everything can be pushed by hand",
             format!("{:.1} mm", robot.parts().fit),
             "[parts] fit",
         ),
         (
             "2",
-            "free way of the foot to either side, link held still",
+            "free play of the foot to either side, with the link held still",
             format!(
                 "{:.1} mm for each deg; 0 to 1 deg will do",
                 reach * 1f64.to_radians()
@@ -56,13 +56,13 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "2",
-            "pull of the spring in the strut, where there is one",
+            "pull of the spring in the strut, if there is one",
             format!("{:.0} g; 200 g or more will do", grams(strut.force)),
             "[leg.drive] force",
         ),
         (
             "3",
-            "us of pulse for each deg that the horn turns, over 60 deg at the least",
+            "us of pulse for each deg that the horn turns, measured over at least 60 deg",
             format!(
                 "{:.1}; 9 to 11 will do",
                 robot.servos()[0].us_per_degree.abs()
@@ -71,7 +71,7 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "3",
-            "time of a turn of 60 deg, foot in the air",
+            "time for a turn of 60 deg, with the foot in the air",
             format!(
                 "{:.2} s; up to {:.2} s will do",
                 60.0 / ServoModel::SG90.rate,
@@ -81,7 +81,7 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "3",
-            "torque that the floor asks of the servo, by load and friction",
+            "torque that the servo needs on the floor, from load and friction",
             format!(
                 "{:.0} N mm of the {:.0} N mm at which an SG-90 stalls",
                 ground.grip() * reach,
@@ -91,7 +91,7 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "built",
-            "weight, wires and all",
+            "weight with wires",
             format!(
                 "{:.0} g, {:.0} g on each foot",
                 ground.body.mass,
@@ -101,7 +101,7 @@ pub fn expected(robot: &Robot) -> String {
         ),
         (
             "built",
-            "what LF and RH together carry more than RF and LH, over the first line's g for a mm",
+            "load of LF and RH less that of RF and LH, divided by the g for each mm of the first line",
             format!("0 mm, to {:.1} mm either way", ground.stance.level),
             "[feet] twist",
         ),
