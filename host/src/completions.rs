@@ -24,7 +24,7 @@ pub struct CompletionsArgs {
 #[command(after_help = "Example:
   lizard man ~/.local/share/man/man1 && man lizard-console")]
 pub struct ManArgs {
-    /// The folder, made if need be
+    /// The folder; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

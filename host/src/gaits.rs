@@ -12,14 +12,14 @@ use crate::pose_args::ANGLES;
 use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
 
-/// Check every gait of robot.toml and predict where it goes.
+/// Check every gait of robot.toml and predict how far it walks.
 ///
-/// For each gait: the time of a cycle, its fastest frame, the error of its
-/// table over all 65536 phases, the smallest margins and the slider travel over
-/// every sample, and the displacement of one cycle by the contact model; a dash
-/// where two feet pull against two and the model leaves it undecided. A gait
-/// that breaks a limit is named with its phase, the margin, its value and the
-/// limit, exit code 2; so is any other mistake in the file.
+/// Prints for each gait: the time of a cycle, its fastest frame, the error of its table
+/// over all 65536 phases, the smallest margins and the slider travel over every sample,
+/// and the displacement of one cycle by the contact model. A dash means that two feet
+/// pull against two, so the model cannot decide. If a gait breaks a limit, the program
+/// names the gait, its phase, the margin, its value and the limit, and ends with exit
+/// code 2. It does the same for any other mistake in the file.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard gaits
@@ -27,16 +27,16 @@ use crate::{Failure, RobotFile};
   lizard gaits --trace walk > walk.csv
   lizard gaits --trace walk | lizard solve")]
 pub struct Args {
-    /// One JSON object a gait and line
+    /// Print one JSON object a line, one for each gait
     #[arg(long)]
     json: bool,
-    /// Instead, the servo angles of one gait over a cycle as CSV, with the header
-    /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees
-    /// in the chassis frame, as `lizard solve` reads them
+    /// Print instead the servo angles of one gait over a cycle as CSV, with the header
+    /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees in the
+    /// chassis frame, as `lizard solve` reads them
     #[arg(long, value_name = "GAIT", conflicts_with = "json")]
     trace: Option<String>,
-    /// Instead, where each gait leads on other pads (friction backward over
-    /// forward) and with the legs mounted otherwise
+    /// Print instead how far each gait walks on other pads (friction backward over
+    /// forward), with the legs mounted differently, and on other feet
     #[arg(long, conflicts_with_all = ["json", "trace"])]
     sensitivity: bool,
     #[command(flatten)]

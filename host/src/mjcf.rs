@@ -22,8 +22,8 @@ const MOST: f64 = 5.0;
 ///
 /// The file holds everything: the shapes of all parts, their masses and inertias, hinges
 /// and slides, the loops that they close, the springs of struts and feet, a floor, and
-/// servos whose speed and torque are limited. With --drive the firmware is run on the
-/// simulated UNO, and the file gets a keyframe for each frame of its pulses; the program
+/// servos whose speed and torque are limited. With --drive the firmware runs on the
+/// simulated UNO, and the file gets a keyframe for each frame of its pulses. The program
 /// `physics/view.py` plays them in MuJoCo's window (docs/judges.md).
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
@@ -32,17 +32,19 @@ const MOST: f64 = 5.0;
   lizard mjcf out/rocks.xml --drive walk --long-foot LF=0.6
   lizard mjcf out/large.xml --robot robots/large.toml")]
 pub struct Args {
-    /// The file, replaced as a whole
+    /// The file to write; an existing file is replaced
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Also write what the firmware tells the servos in three cycles of this gait
+    /// Also write the servo angles of three cycles of this gait, from the firmware's
+    /// pulses
     #[arg(long, value_name = "GAIT")]
     drive: Option<String>,
     /// The firmware for --drive [default: target/avr-atmega328p/release/lizard.elf in this
     /// folder or one above it]
     #[arg(long, value_name = "FILE", requires = "drive")]
     elf: Option<PathBuf>,
-    /// Make a foot longer by so many mm, or shorter with a minus; LF, RF, RH or LH
+    /// Make the foot LF, RF, RH or LH longer by this many mm; a negative number makes it
+    /// shorter
     #[arg(long, value_name = "LEG=MM")]
     long_foot: Vec<LongFoot>,
     #[command(flatten)]

@@ -107,7 +107,7 @@ impl Part {
 /// `--part`, and how a computation takes part in it.
 #[derive(clap::Args, Debug, Default)]
 pub struct Spread {
-    /// Compute one of N parts only, and print what `lizard merge` puts together
+    /// Compute only one of N parts, and print it for `lizard merge`
     #[arg(long, value_name = "K/N", help_heading = "Spread over machines")]
     part: Option<Part>,
     /// What parts have found, where they are merged.
@@ -201,16 +201,17 @@ fn other_pieces() -> Failure {
 
 /// Put the parts of a long computation together
 ///
-/// `prove`, `fit`, `tune` and `design --search` take `--part K/N`. This takes what all N parts
-/// have printed, in any order, and prints what the command prints without `--part`, byte for
-/// byte. Robot and options are in the parts.
+/// `prove`, `fit`, `tune` and `design --search` take `--part K/N`. This command takes the
+/// output of all N parts, in any order, and prints the same bytes as the command without
+/// `--part`. The parts contain the robot and the options.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   parallel lizard prove --part {}/8 ::: 1 2 3 4 5 6 7 8 | lizard merge
   lizard fit --part $SLURM_ARRAY_TASK_ID/20 > part-$SLURM_ARRAY_TASK_ID
   lizard merge part-*")]
 pub struct MergeArgs {
-    /// What parts have printed, one or more in a file; standard input if none is named
+    /// Files with the output of the parts, one or more parts a file [default: standard
+    /// input]
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
 }

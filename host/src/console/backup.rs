@@ -9,22 +9,22 @@ use super::file;
 use super::link::{Link, LinkError};
 use crate::{Failure, whole_file};
 
-/// Keep the robot's calibration in a file
+/// Save the robot's calibration to a file
 ///
-/// Writes trims, limits, signs and scales of the servos, `boot` and `deadman` as
-/// TOML. Opening the port resets the board, so it is what was saved last.
+/// Writes trims, limits, signs and scales of the servos, `boot` and `deadman` as TOML.
+/// Opening the port resets the board, so these are the values that were saved last.
 #[derive(clap::Args, Debug)]
 pub struct BackupArgs {
-    /// The file to write; it is replaced if it is there
+    /// The file to write; an existing file is replaced
     file: PathBuf,
     #[command(flatten)]
     connect: Connect,
 }
 
-/// Give the robot a calibration from a file, and save it
+/// Send a calibration from a file to the robot, and save it there
 ///
-/// The robot checks it: if it refuses a part, nothing is saved and the robot has
-/// what it had before.
+/// The robot checks it: if it refuses any value, nothing is saved and the robot keeps its
+/// old calibration.
 #[derive(clap::Args, Debug)]
 pub struct RestoreArgs {
     /// A file that `lizard backup` wrote

@@ -10,20 +10,19 @@ use super::port;
 use crate::plain::plain;
 use crate::{Failure, RobotFile};
 
-/// Which board a subcommand is about.
+/// Which board a command talks to.
 #[derive(clap::Args, Debug)]
 pub struct Connect {
     /// The board's serial port [default: the one that has a UNO, or the only one]
     port: Option<String>,
-    /// Take a simulated UNO instead, in real time
+    /// Use a simulated UNO instead, in real time
     #[arg(long, conflicts_with = "port")]
     sim: bool,
     /// With --sim: the firmware [default: target/avr-atmega328p/release/lizard.elf
     /// in this folder or one above it]
     #[arg(long, value_name = "FILE", requires = "sim")]
     elf: Option<PathBuf>,
-    /// With --sim: the robot whose firmware that is [default: robot.toml in this
-    /// folder or one above it]
+    /// With --sim: the robot [default: robot.toml in this folder or one above it]
     #[arg(long, value_name = "FILE", requires = "sim")]
     robot: Option<PathBuf>,
 }

@@ -24,22 +24,21 @@ use crate::Failure;
 /// Talk to the robot
 ///
 /// Finds the board, waits for it to start, and passes lines to it; `help` lists its
-/// commands. Arrows bring back older lines; Ctrl-C, Ctrl-D or `quit` leave. The line
-/// at the bottom shows gait, pose, smallest margin, supply and faults; for that the
-/// robot is asked for its `status` twice a second, which also keeps `boot` and
-/// `deadman` from acting. With standard input from a file or a pipe its lines are
-/// sent one after another; if the robot does not take one, the exit code is 1.
+/// commands. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit` end the
+/// program. The line at the bottom shows gait, pose, smallest margin, supply and faults.
+/// For that the program asks the robot for its `status` twice a second, so `boot` and
+/// `deadman` do not act. If standard input is a file or a pipe, its lines are sent one
+/// after another, and the exit code is 1 if the robot refuses one.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
     #[command(flatten)]
     connect: Connect,
 }
 
-/// Talk to the robot, and keep all of it in a file
+/// Talk to the robot, and record the session in a file
 ///
-/// As `lizard console`; the file gets commands, answers, the pose of every frame
-/// and faults, each as a JSON object in a line with its time in ms. `lizard replay`
-/// draws it.
+/// Works like `lizard console`. The file gets commands, answers, the pose of every frame,
+/// and faults: a JSON object a line, each with its time in ms. `lizard replay` draws it.
 #[derive(clap::Args, Debug)]
 pub struct RecordArgs {
     /// A new file for the session

@@ -19,23 +19,22 @@ pub use labels::pin_name;
 pub use top_view::top_view;
 pub use wiring::wiring;
 
-/// Draw the robot from above as SVG, or what its builder needs
+/// Draw the robot from above as SVG, or its wiring, or its cranks
 ///
-/// From above, at neutral or at the pose given by --theta1 and so on; or the wiring;
-/// or the angles at which the cranks are fitted.
+/// The view from above shows the neutral pose, or the pose given by --theta1 and so on.
+/// --wiring and --horns draw what a builder needs.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// Where the picture goes [default: standard output,
-    /// unless that is a terminal]
+    /// The file for the picture [default: standard output, unless that is a terminal]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Leave out names and measures
+    /// Leave out names and dimensions
     #[arg(long)]
     plain: bool,
     /// Draw the wiring: servos, supply, board
     #[arg(long, conflicts_with_all = ["plain", "theta1", "horns"])]
     wiring: bool,
-    /// Draw the cranks at the angles where they are fitted, and what a trim is for
+    /// Draw the cranks at the angles at which to fit them, and what a trim corrects
     #[arg(long, conflicts_with_all = ["plain", "theta1"])]
     horns: bool,
     #[command(flatten)]

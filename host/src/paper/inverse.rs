@@ -14,10 +14,10 @@ use crate::{Failure, RobotFile};
 
 /// Servo angles for a head point, a tail point, or both.
 ///
-/// Lists all four working modes (each arm bent outward or inward), and for each
-/// whether this robot can take it: its servos must reach the angles, its assembly
-/// mode must be the robot's (end point ahead of the crank tips), and its margins
-/// must hold. Then the whole robot's pose is judged, as `lizard solve` does.
+/// Lists all four working modes (each arm bent outward or inward), and says for each
+/// whether this robot can take it: its servos must reach the angles, its assembly mode
+/// must be the robot's (end point ahead of the crank tips), and its margins must hold.
+/// Then it judges the pose of the whole robot, as `lizard solve` does.
 #[derive(clap::Args)]
 #[command(
     allow_negative_numbers = true,
@@ -32,7 +32,7 @@ pub struct Args {
     /// End point of the tail in mm, chassis frame
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length)]
     tail: Option<Vec<f64>>,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -29,16 +29,16 @@ const STILL: f64 = 1e-3;
 /// A unit of length that makes rows in mm and in radians comparable.
 const LENGTH: f64 = 50.0;
 
-/// Degrees of freedom of body and legs, counted and by the rank of the constraints
+/// Degrees of freedom of body and legs, by counting and by the rank of the constraints
 ///
-/// The rank is taken twice, with the driven cranks free and with them locked:
-/// what can move in spite of locked servos is loose, as the end point is at a
-/// type-2 singularity, and is named. The pose is the neutral one unless given.
+/// The rank is computed twice, with the driven cranks free and with them locked. What can
+/// still move with locked servos is loose, such as the end point at a type-2 singularity,
+/// and is named. The default pose is the neutral one.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]

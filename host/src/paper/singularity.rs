@@ -14,11 +14,11 @@ use crate::paper::verdict;
 use crate::pose_args::ANGLES;
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// The velocity matrices of a pose and the nearest singularities, or a map of them
+/// The velocity matrices of a pose and its nearest singularities, or a map of the margins
 ///
 /// K (8x4) holds the derivatives of the loop equations by the servo angles theta1,
-/// theta4, theta8, theta5, K* (8x8) those by the passive joints; rows and columns
-/// are named in text and JSON. The pose is the neutral one unless given.
+/// theta4, theta8, theta5, K* (8x8) those by the passive joints; text and JSON name the
+/// rows and columns. The default pose is the neutral one.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard singularity
@@ -26,11 +26,11 @@ use crate::{Failure, PoseArgs, RobotFile};
 pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
-    /// Print the head's margins over theta1 and theta4 from 0 to 180 at this
-    /// step in degrees
+    /// Print the head's margins for theta1 and theta4 from 0 to 180, in steps of this
+    /// many degrees
     #[arg(long, value_name = "STEP", value_parser = step)]
     map: Option<f64>,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -19,15 +19,14 @@ const BATCH: usize = 8192;
 /// Blocks of lines, a sixteenth of a batch each, that may wait to be written.
 const AHEAD: usize = 32;
 
-/// Where every joint is, for one pose or a stream of them.
+/// The position of every joint, for one pose or for many.
 ///
-/// Give one pose with the four flags, or many as CSV on standard input: with the
-/// header theta1,theta4,theta8,theta5 (degrees, chassis frame, any order), or
-/// without a header in that order. A column named seconds is passed through, so
-/// that the output of `lizard gaits --trace` can be solved. A pose is safe if it
-/// keeps the robot's limits and each servo's travel. A pose that is singular or
-/// cannot be reached gets its reason; a malformed line ends the run with its line
-/// and column and exit code 2.
+/// Give one pose with the four flags, or many as CSV on standard input: with the header
+/// theta1,theta4,theta8,theta5 (degrees, chassis frame, any order), or without a header
+/// in that order. A column named seconds is passed through, so that the output of `lizard
+/// gaits --trace` can be solved. A pose is safe if it keeps the robot's limits and each
+/// servo's travel. If a pose is singular or cannot be reached, the reason is printed. A
+/// malformed line ends the run with its line and column, and exit code 2.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard solve --theta1 138.59 --theta4 41.41 --theta8 318.59 --theta5 221.41
@@ -36,7 +35,7 @@ const AHEAD: usize = 32;
 pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
-    /// One JSON object a line
+    /// Print one JSON object a line
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -17,12 +17,11 @@ const STEP: f64 = 2e-4;
 /// another pose.
 const SWEEP: f64 = 0.04;
 
-/// How fast every passive joint moves when the servos move.
+/// How fast each passive joint moves when the servos move.
 ///
-/// Rates and accelerations follow in closed form from K and K* (the paper
-/// announces the acceleration analysis and omits it); beside each stands its
-/// deviation from finite differences of the position solution. The pose is the
-/// neutral one unless given.
+/// Rates and accelerations follow in closed form from K and K* (the paper announces the
+/// acceleration analysis and omits it). Each is printed with its deviation from finite
+/// differences of the position solution. The default pose is the neutral one.
 #[derive(clap::Args)]
 #[command(
     allow_negative_numbers = true,
@@ -34,7 +33,7 @@ pub struct Args {
     pose: PoseArgs,
     #[command(flatten)]
     drive: DriveArgs,
-    /// One JSON array, an object for each joint
+    /// Print one JSON array, an object for each joint
     #[arg(long, help_heading = "Options")]
     json: bool,
     #[command(flatten)]

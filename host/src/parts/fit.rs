@@ -12,17 +12,17 @@ use crate::{Failure, RobotFile};
 
 /// Prove that no two parts meet at any pose that the guard accepts
 ///
-/// Servos, screws, nuts, springs, board and battery are parts, too. Not some poses are
-/// tried but all: the servos' angles are cut into regions, and in each either the guard
-/// refuses every pose, or no part can come nearer than is printed. Clearances up to 2 mm
-/// are measured. docs/fit.md says what that is worth, and what it leaves out. Exit code
-/// 1 if two parts overlap or come nearer than 0.2 mm.
+/// Servos, screws, nuts, springs, board and battery are parts, too. The proof covers all
+/// poses, not samples: the servos' angles are divided into regions, and in each region
+/// either the guard refuses every pose, or no two parts can come closer than is printed.
+/// Clearances up to 2 mm are measured. docs/fit.md says what is proved and what is not.
+/// The exit code is 1 if two parts overlap or come closer than 0.2 mm.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard fit
   lizard fit --robot robots/unequal.toml --all")]
 pub struct Args {
-    /// Print every pair that comes nearer than 2 mm, not only the nearest
+    /// Print every pair that comes closer than 2 mm, not only the closest
     #[arg(long)]
     all: bool,
     /// Print one JSON object

@@ -14,11 +14,11 @@ use crate::{Failure, RobotFile, whole_file};
 
 /// Make the parts of the robot: files to print and to cut, what to buy, how to build it
 ///
-/// Into DIR go step/ (solids for a drawing program), stl/ (lying as they are printed),
-/// cut/ (DXF and SVG, 1:1 in mm, of what can be cut from a sheet), guide/ (how to build
-/// it, as HTML and Markdown, and placements.json, where each part is) and bill.json (what to
-/// print and to buy). Links, servos,
-/// screws and fits are taken from robot.toml; a robot whose parts would meet is refused.
+/// Writes into DIR: step/ (solids for a drawing program), stl/ (lying as they are
+/// printed), cut/ (DXF and SVG, 1:1 in mm, of the parts that can be cut from a sheet),
+/// guide/ (how to build the robot, as HTML and Markdown; placements.json says where each
+/// part is) and bill.json (what to print and to buy). Links, servos, screws and fits come
+/// from robot.toml. A robot whose parts would meet is refused.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard parts out/parts
@@ -30,13 +30,13 @@ Print the coupon first: the first column into which everything goes by hand is t
 of your printer, and belongs under [parts] in robot.toml. Then print one corner: a seat
 for A1, its link, leg, strut and foot.")]
 pub struct Args {
-    /// Folder for the files; made if need be
+    /// Folder for the files; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Only the fit coupon
+    /// Make only the fit coupon
     #[arg(long)]
     coupon: bool,
-    /// Only one corner, to be tried before everything is printed
+    /// Make only one corner, to try before you print everything
     #[arg(long, conflicts_with = "coupon")]
     corner: bool,
     /// Print the list of parts as JSON

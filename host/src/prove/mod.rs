@@ -22,26 +22,26 @@ use crate::{Failure, RobotFile};
 
 pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 
-/// Compare the firmware's guard with floating point at every pose there is.
+/// Compare the firmware's guard with floating point at every possible pose.
 ///
-/// Every condition of a safe pose depends on one servo or on two: so every pair of
-/// positions of the two servos of the head, the tail, the left and the right side
-/// is decided by the firmware's integers and by floating point, in the firmware's
-/// own steps of 1/65536 turn. In the robot's maps of cells, where the firmware does
-/// not measure a pose, the guard must accept every pair. Prints the largest error of each margin (of an end
-/// whose type-2 margin keeps its limit), and how far from its limit a pose may be
-/// that the two decide differently. Exit code 1 if one
-/// is farther than the band that the documentation states, or refused in a cell.
+/// Every condition of a safe pose depends on one servo or on two. So this command takes
+/// every pair of positions of the two servos of the head, the tail, the left and the
+/// right side, in the firmware's own steps of 1/65536 turn, and decides it both with the
+/// firmware's integers and in floating point. In certified cells, where the firmware does
+/// not measure a pose, the guard must accept every pair. The command prints the largest
+/// error of each margin (of an end whose type-2 margin keeps its limit), and how far from
+/// its limit a pose is at most if the two decide differently. The exit code is 1 if that
+/// is farther than the documentation says, or if a pose in a cell is refused.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard prove
   lizard prove --robot robots/unequal.toml
   lizard prove --one-in 64 --offset 5")]
 pub struct Args {
-    /// Look at one pair in so many, evenly spread
+    /// Check only one pair in N, evenly spread
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     one_in: u32,
-    /// Which of them; other numbers below N look at other pairs
+    /// Which pairs to check; each number below N selects other ones
     #[arg(long, value_name = "K", default_value_t = 0)]
     offset: u32,
     /// Print one JSON object

@@ -35,10 +35,10 @@ use session::{DialogueLine, Event, Recording};
 
 /// Run the firmware on a simulated Arduino UNO
 ///
-/// Plays boot, the first gait that moves, the gait that turns most, stop, rest
-/// unless told otherwise; prints the dialogue, a table of the servos and the
-/// predicted way, and draws servo angles and footfalls. Time is simulated: ten
-/// minutes take a few seconds.
+/// By default it plays boot, the first gait that moves, the gait that turns most, stop
+/// and rest. It prints the dialogue, a table of the servos and the predicted distance,
+/// and draws servo angles and footfalls. Time is simulated: ten minutes take a few
+/// seconds.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
@@ -48,35 +48,35 @@ pub struct Args {
     /// Play one gait of robot.toml
     #[arg(long, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
-    /// Play a file of lines `<ms since power-on> <command>`
+    /// Play a file with lines of the form `<ms since power-on> <command>`
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
     /// Simulated time in seconds [default: 12, or a second after the script]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
-    /// Print every line of the dialogue, also each of a long run of `# t=` lines
+    /// Print every line of the dialogue, including long runs of `# t=` lines
     #[arg(long)]
     all: bool,
-    /// Print everything, each frame's angles included, as one JSON object
+    /// Print everything as one JSON object, including the angles of each frame
     #[arg(long)]
     json: bool,
-    /// Where the picture goes
+    /// The file for the picture
     #[arg(long, value_name = "FILE", default_value = "out/lizard-sim.svg")]
     svg: PathBuf,
-    /// How faithful the chip is
+    /// How exactly the chip is simulated
     #[arg(long, value_enum, default_value_t)]
     fidelity: FidelityArg,
-    /// Take as long as the robot would
+    /// Run in real time
     #[arg(long)]
     realtime: bool,
-    /// Be a board on USB instead: in real time at a pseudo terminal, for other
-    /// programs to open, until Ctrl-C. LINK becomes a link to it
+    /// Act as a board on USB instead: in real time at a pseudo terminal that other
+    /// programs can open, until Ctrl-C. LINK becomes a link to it
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "LINK", num_args = 0..=1,
           conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg", "realtime"])]
     pty: Option<Option<PathBuf>>,
-    /// With --pty: a board as sold, with this boot loader in flash (ELF) and no
-    /// firmware, for `make flash` to write it
+    /// With --pty: a new board, with this boot loader in flash (ELF) and no firmware, so
+    /// that `make flash` can write it
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
     boot_loader: Option<PathBuf>,

@@ -7,9 +7,10 @@ use lizard_robot::{Coil, Drive, Kind, Robot, Spring, Strut};
 pub enum Geometry {
     /// Two springs that pull against each other along the arc of their anchors
     Pair,
-    /// One spring in line with the crank: it holds by its tension
+    /// One spring in line with the crank, which holds by its tension
     Radial,
-    /// A strut with a slot and the spring inside: rigid up to its preload, and one way
+    /// A strut with a slot and the spring inside: rigid up to its preload; yields only
+    /// one way
     #[default]
     Strut,
 }

@@ -11,13 +11,13 @@ use crate::json;
 use crate::{Failure, RobotFile};
 use geometry::{Geometry, Hung};
 
-/// Turn a tension spring and its anchors into what the legs feel
+/// Compute what the legs feel of a tension spring and its anchors
 ///
-/// The paper pulls each leg along by a tension spring and gives nothing but its size,
-/// 5.55 x 25.4 mm. Whether the robot walks depends on it: each leg lags behind its servo
-/// where the friction of its pad is more than the spring holds. This prints both, which
-/// gaits keep 90 % of the way of rigid legs, what would do, and what to write into
-/// robot.toml.
+/// In the paper a tension spring pulls each leg along; only its size is given, 5.55 x
+/// 25.4 mm. The spring decides whether the robot walks: if the friction of a pad is more
+/// than the spring holds, the leg lags behind its servo. This command prints both, which
+/// gaits keep 90 % of the distance of rigid legs, which spring would do, and what to
+/// write into robot.toml.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard spring --wire 0.6
@@ -35,18 +35,18 @@ pub struct Args {
     /// Length inside the hooks without load, mm
     #[arg(long, value_name = "MM", value_parser = length, default_value_t = 25.4)]
     length: f64,
-    /// Length inside the hooks where it is hung, mm [default: from screw to screw of the
+    /// Length inside the hooks when mounted, mm [default: from screw to screw of the
     /// robot's struts]
     #[arg(long, value_name = "MM", value_parser = length)]
     installed: Option<f64>,
-    /// From the leg's pivot to the anchor on the leg, mm [default: robot.toml's, `[parts]
-    /// anchor`]
+    /// From the leg's pivot to the anchor on the leg, mm [default: `[parts] anchor` of
+    /// robot.toml]
     #[arg(long, value_name = "MM", value_parser = length)]
     radius: Option<f64>,
-    /// How it is hung
+    /// How the spring is mounted
     #[arg(long, value_enum, default_value_t)]
     geometry: Geometry,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]

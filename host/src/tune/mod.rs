@@ -28,14 +28,15 @@ const FRESH: u64 = 1 << 40;
 /// Servos slower than this do not walk, deg/s.
 const SLOWEST: f64 = 10.0;
 
-/// Search gait parameters that lead faster at the same rate of the servos
+/// Search a gait that walks faster with the same servo rate
 ///
-/// Takes a gait of robot.toml that goes ahead or turns on the spot, and looks for a wave or
-/// a held gait that gets further in a second while its fastest servo turns no faster. Each
-/// is built and checked against robot.toml's limits as `make firmware` does it, and
-/// judged by the contact model with SG-90 servos on random robots and floors: by what 95 %
-/// of them exceed. At last it is compared with the gait on other random ones, and its table
-/// for robot.toml is printed. The same seed finds the same on every machine.
+/// Takes a gait of robot.toml that goes straight ahead or turns on the spot, and searches
+/// a wave or a held gait that goes farther in a second while its fastest servo turns no
+/// faster. Each candidate is checked against robot.toml's limits and judged by the
+/// contact model with SG-90 servos on random robots and floors: 95 % of them exceed its
+/// score. Finally the best one is compared with the given gait on other random robots,
+/// and its table for robot.toml is printed. The same seed gives the same result on every
+/// machine.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard tune
@@ -46,19 +47,19 @@ const SLOWEST: f64 = 10.0;
 In a terminal or a file, what is not the table is a comment, so the output may be appended to
 a robot.toml as it is.")]
 pub struct Args {
-    /// The gait to surpass: one that goes straight on or turns on the spot
+    /// The gait to improve; it goes straight ahead or turns on the spot
     #[arg(long, value_name = "NAME", default_value = "walk")]
     gait: String,
-    /// How fast a servo may turn, deg/s [default: as fast as in that gait]
+    /// How fast a servo may turn, deg/s [default: as in that gait]
     #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
     rate: Option<f64>,
-    /// The name of the gait that is found
+    /// The name for the gait that is found
     #[arg(long, value_name = "NAME", default_value = "tuned")]
     name: String,
     /// Rounds of the search, 40 trials each
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
-    /// Random robots and floors to compare on
+    /// Number of random robots and floors for the comparison
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 200, value_parser = clap::value_parser!(u32).range(20..=100_000))]
     robots: u32,
     /// Seed of the random numbers
@@ -69,7 +70,7 @@ pub struct Args {
         default_value_t = 1
     )]
     seed: u64,
-    /// One JSON object instead
+    /// Print one JSON object instead
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -23,12 +23,12 @@ use crate::{Failure, RobotFile, firmware, whole_file};
 use replay::Replay;
 use report::Report;
 
-/// Walk the real firmware: servos, linkage, springs, feet, the way over the floor
+/// Let the firmware walk: servos, linkage, springs, feet, the path over the floor
 ///
 /// Runs the image on the simulated UNO and gives its pulses to servos that turn the
-/// linkage; springs pull the legs, and the contact model says how the body moves.
-/// Without a script every gait of robot.toml is walked for some cycles. Beside each
-/// gait's last whole cycle stands what `lizard gaits` predicts for it.
+/// linkage; springs pull the legs, and the contact model computes how the body moves.
+/// Without a script, every gait of robot.toml walks for some cycles. The table compares
+/// each gait's last whole cycle with the prediction of `lizard gaits`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard twin
@@ -38,7 +38,7 @@ use report::Report;
 
 A script is a file of lines `<ms since power-on> <command>`.")]
 pub struct Args {
-    /// What is said to the robot, and when [default: every gait]
+    /// A file of commands and their times, as for `lizard sim` [default: every gait]
     #[arg(value_name = "SCRIPT")]
     script: Option<PathBuf>,
     /// Walk one gait of robot.toml
@@ -51,17 +51,17 @@ pub struct Args {
     /// What the servos can do
     #[arg(long, value_enum, default_value_t)]
     servo: ServoArg,
-    /// One JSON object a command and line
+    /// Print one JSON object a line, one for each command
     #[arg(long)]
     json: bool,
-    /// Write a replay to look at in a browser: one file, no network
+    /// Write a replay for the browser: one file that needs no network
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
     /// Write a moving picture (APNG) of the first gait, two cycles of it
     #[arg(long, value_name = "FILE")]
     apng: Option<PathBuf>,
-    /// Then walk each gait again N times with random friction, loads, mounting, hips,
-    /// feet, springs and play, and say how far its way spreads
+    /// Then walk each gait N more times with random friction, loads, mounting, hips,
+    /// feet, springs and play, and print the spread of the distances
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     robust: Option<u32>,
     #[command(flatten)]
@@ -73,7 +73,7 @@ enum ServoArg {
     /// 60 degrees in 0.12 s, dead band 10 us
     #[default]
     Sg90,
-    /// Where its pulse says, at once
+    /// Follows its pulse at once
     Ideal,
 }
 

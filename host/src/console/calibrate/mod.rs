@@ -19,9 +19,9 @@ use guide::{Guide, Key, View};
 
 /// Calibrate the robot, step by step
 ///
-/// Centres the servos for fitting the horns, proves which way each turns, trims
-/// each with the arrow keys, walks, and saves. Nothing is kept before the last step;
-/// who leaves earlier leaves the robot as it was.
+/// Centres the servos for fitting the horns, finds out which way each of them turns,
+/// trims each with the arrow keys, walks, and saves. Nothing is saved before the last
+/// step; if you leave earlier, the robot keeps its old calibration.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     #[command(flatten)]

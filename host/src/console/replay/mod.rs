@@ -15,7 +15,7 @@ use crate::{Failure, RobotFile};
 use super::recorder::Event;
 use session::Session;
 
-/// Draw a session that `lizard record` kept
+/// Draw a session that `lizard record` has recorded
 ///
 /// Prints the dialogue and a summary, and draws servo angles and footfalls over
 /// time.
@@ -23,7 +23,7 @@ use session::Session;
 pub struct Args {
     /// The session
     file: PathBuf,
-    /// Where the picture goes
+    /// The file for the picture
     #[arg(long, value_name = "FILE", default_value = "out/lizard-replay.svg")]
     svg: PathBuf,
     #[command(flatten)]

@@ -32,10 +32,10 @@ const RINGS: usize = 16;
 #[command(after_help = "Example:
   lizard charts docs/charts --svg-only")]
 pub struct Args {
-    /// Folder for the files; made if need be
+    /// Folder for the files; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Write no PNG
+    /// Write SVG only, no PNG
     #[arg(long)]
     svg_only: bool,
     /// Print the list of files as JSON

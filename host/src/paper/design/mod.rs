@@ -45,7 +45,7 @@ pub struct Args {
     /// Distance between the two servo shafts, mm [default: 20]
     #[arg(long, value_name = "MM", value_parser = base)]
     l0: Option<f64>,
-    /// Crank; of r1, r2, r3 give two or three [default: 0.3]
+    /// Crank; give two or three of r1, r2, r3 [default: 0.3]
     #[arg(long, value_parser = share)]
     r1: Option<f64>,
     /// Coupler [default: 0.5]
@@ -57,22 +57,22 @@ pub struct Args {
     /// Print the performance charts over the whole triangle, as CSV
     #[arg(long, conflicts_with = "search")]
     chart: bool,
-    /// Rank all designs under the servos' travel and the margins
+    /// Rank all designs that keep the servos' travel and the margins
     #[arg(long)]
     search: bool,
-    /// Grid of --chart and --search
+    /// Step of the grid of --chart and --search
     #[arg(long, default_value_t = 0.02, value_parser = step)]
     step: f64,
-    /// Sweep that --search demands of every servo, degrees to either side
+    /// Sweep that --search requires of every servo, degrees to either side
     #[arg(long, default_value_t = 20.0, value_parser = sweep)]
     sweep: f64,
-    /// Shortest link that --search admits, mm; two M3 joints need about this
+    /// Shortest link that --search allows, mm; two M3 joints need about this length
     #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = length)]
     shortest: f64,
-    /// How many designs --search prints
+    /// Number of designs that --search prints
     #[arg(long, default_value_t = 12)]
     top: usize,
-    /// JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -22,10 +22,10 @@ use sample::Sample;
 
 /// Which of the paper's equations hold.
 ///
-/// Each is evaluated at random poses (theta1, -theta5 in 90..180, theta4, -theta8
-/// in 0..90; the same poses on every run) and compared with the geometric
-/// solution, as printed and as corrected. Where the drawings suggest it, it is
-/// also tried with right-hand angles measured clockwise from -x.
+/// Each is evaluated at random poses (theta1, -theta5 in 90..180, theta4, -theta8 in
+/// 0..90; the same poses on every run) and compared with the geometric solution, as
+/// printed and as corrected. If the drawings suggest it, an equation is also tried with
+/// right-hand angles measured clockwise from -x.
 #[derive(clap::Args)]
 #[command(after_help = "docs/errata.md is made by:
   lizard errata --markdown > docs/errata.md")]
@@ -33,10 +33,10 @@ pub struct Args {
     /// Number of random poses
     #[arg(long, default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     samples: u32,
-    /// The table as Markdown
+    /// Print the table as Markdown
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
-    /// JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

@@ -24,18 +24,19 @@ const ROUNDING: f64 = 1e-9;
 /// Passes over all poses; the fastest counts.
 const PASSES: usize = 5;
 
-/// Measure poses solved per second on one core, beside numpy and the floor.
+/// Measure how many poses are solved per second on one core, compared with numpy and a
+/// lower bound of the time.
 ///
-/// The same poses are solved here and by the same closed form in numpy (python3
-/// with numpy, if there is one), and the results are compared; a difference above
-/// 1e-9 ends with exit code 1. The floor is the time of the four sine-cosine pairs
+/// The same poses are solved here and by the same closed form in numpy (python3 with
+/// numpy, if there is one), and the results are compared; if they differ by more than
+/// 1e-9, the exit code is 1. The lower bound is the time of the four sine-cosine pairs
 /// and six arc tangents of each pose, computed in the same way.
 #[derive(clap::Args)]
 pub struct Args {
     /// Number of poses
     #[arg(long, default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1..=20_000_000))]
     poses: u32,
-    /// One JSON object
+    /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]
