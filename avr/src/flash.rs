@@ -1,15 +1,15 @@
 //! Constants that stay in flash.
 //!
-//! An AVR has two address spaces. A Rust `static` lives in the one for data:
-//! it is copied to RAM at start, and this chip has 2 KiB of that. Tables and
-//! sentences belong in the other, which only the `lpm` instruction reads.
-//! [`flash!`](crate::flash!) puts a constant there; a [`Flash`] is its address, and the only
-//! way to it. On any other machine it is an ordinary reference, so the same
-//! code runs there, also with tables that are made at run time.
+//! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied
+//! to RAM at start, and this chip has 2 KiB of that. Tables and sentences belong in the
+//! other, which only the `lpm` instruction reads. [`flash!`](crate::flash!) puts a
+//! constant there; a [`Flash`] is its address, and the only way to read it. On any other
+//! machine it is an ordinary reference, so the same code runs there, also with tables
+//! that are made at run time.
 //!
-//! Reads are total: an index past the end reads the last element, so that no
-//! panic path is compiled in. (The crate avr-progmem does the same job but
-//! wants a nightly compiler on the host, too, and panics on a bad index.)
+//! Reads are total: an index past the end reads the last element, so that there is no
+//! panic path. (The crate avr-progmem does the same job, but it needs a nightly compiler
+//! on the host, too, and panics on a bad index.)
 
 use core::marker::PhantomData;
 #[cfg(target_arch = "avr")]

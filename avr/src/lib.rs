@@ -1,11 +1,11 @@
 //! What an AVR can do and Rust does not reach.
 //!
-//! The firmware's core is plain Rust without `unsafe`, so that it runs and is
-//! tested on any machine. Two things of this processor are worth more than
-//! that allows: its second address space, which keeps tables out of the scarce
-//! RAM, and its multiplier, which the compiler leaves idle when it calls a
-//! 32-bit library routine for a product of two 16-bit factors. Both are here,
-//! behind safe functions that are plain Rust everywhere else.
+//! The firmware's core is plain Rust without `unsafe`, so that it runs and is tested on
+//! any machine. Two features of this processor need more than that: its second address
+//! space, which keeps tables out of the scarce RAM, and its multiplier, which the
+//! compiler leaves idle when it calls a 32-bit library routine for a product of two
+//! 16-bit factors. Both are here, behind safe functions that are plain Rust everywhere
+//! else.
 
 #![no_std]
 #![allow(unsafe_code)] // Reaching flash and the multiplier is; see flash.rs, multiply.rs.

@@ -1,8 +1,8 @@
 //! What a person may set of a servo while the robot runs.
 //!
-//! A horn goes on its spline every 14 degrees, servos of one type differ in their
-//! gain, and some are mounted upside down. So the four numbers here are found at the
-//! robot, by looking at it, and kept in its EEPROM.
+//! A horn goes on its spline every 14 degrees, servos of one type differ in their gain,
+//! and some are mounted upside down. So a person finds the four numbers here by looking
+//! at the robot, and the robot keeps them in its EEPROM.
 
 use lizard_avr::mul_unsigned;
 

@@ -1,7 +1,7 @@
 //! Answers: what the robot replies to a line.
 //!
-//! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`; some get
-//! others before it.
+//! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`; some
+//! answers have other lines before it.
 
 use crate::gait::GaitId;
 use crate::refusal::Refusal;

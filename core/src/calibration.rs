@@ -1,9 +1,8 @@
 //! How one servo turns a pulse into an angle.
 //!
-//! Servos of one type differ, and a horn goes on its spline only every 14
-//! degrees. So this is no constant of the robot but a value that the motion
-//! holds, made of robot.toml's and of what a person has set
-//! ([`crate::adjustment`]).
+//! Servos of one type differ, and a horn goes on its spline only every 14 degrees. So
+//! this is not a constant of the robot. It is a value in the motion, made from
+//! robot.toml's numbers and from what a person has set ([`crate::adjustment`]).
 
 use lizard_avr::{mul, mul_unsigned};
 

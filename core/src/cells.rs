@@ -1,12 +1,12 @@
 //! Poses that need no measuring: cells of two servos' sweeps in which the guard is
 //! known to accept every pose.
 //!
-//! To measure how clear of every hazard a pose is takes most of a frame's time, and far
-//! from all limits the answer is always the same. Every condition of the guard depends
-//! on one servo or on two, so four small maps over pairs of servos can say where that
-//! is. Whoever makes the numbers of a robot also makes its maps, and proves that the
-//! integers of [`crate::guard`] accept every pose of every cell; a pose outside of the
-//! cells is not unsafe, it is measured.
+//! Measuring all margins of a pose takes most of a frame's time, and far from all limits
+//! the result is always "safe". Every condition of the guard depends on one servo or on
+//! two, so four small maps over pairs of servos can say where that is. The host makes
+//! these maps with the numbers of a robot, and proves that the integers of
+//! [`crate::guard`] accept every pose of every cell. A pose outside of the cells is not
+//! unsafe; the device measures it.
 
 use lizard_avr::{Flash, flash};
 

@@ -1,9 +1,10 @@
-//! The sum by which what is kept is known to be whole: the CRC of sixteen bits of
-//! polynomial x^16 + x^12 + x^5 + 1 that begins with ones (CRC-16/IBM-3740).
+//! The checksum of everything that is stored: the 16-bit CRC with the polynomial x^16 +
+//! x^12 + x^5 + 1 that begins with ones (CRC-16/IBM-3740).
 //!
 //! It finds every change of one or two bits in a row of 32 751 bits, every odd number of
-//! changed bits, and all changes within sixteen neighbouring bits; of others it misses one
-//! in 65 536. The crate `crc` takes six times the flash for it; the tests compare with it.
+//! changed bits, and all changes within sixteen neighbouring bits; of all other changes
+//! it misses one in 65 536. The crate `crc` takes six times the flash for it; the tests
+//! compare with it.
 
 /// The sum of bytes that come one after another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Lines into commands.
 //!
-//! A line is one command: a word of the console, or the name of a gait in
-//! `robot.toml`. Nothing here acts; a line that is not wholly understood is an
-//! error and changes nothing.
+//! A line is one command: a word of the console, or the name of a gait in `robot.toml`.
+//! This module only parses. A line that is not understood completely is an error and
+//! changes nothing.
 
 use lizard_avr::flash;
 

@@ -1,9 +1,8 @@
 //! The console: one line in, one answer out.
 //!
-//! The caller passes bytes on while the console has nothing to write, and lets it
-//! write a line while the serial line has room for a whole one. So nothing waits:
-//! a long list comes line by line between the frames, and a frame is never
-//! late because of a listener who is slow.
+//! While the console has nothing to write, the caller passes bytes to it. When the serial
+//! line has room for a whole line, the caller lets it write one. So nothing waits: a long
+//! list comes line by line between the frames, and a slow listener never delays a frame.
 
 use ufmt::uWrite;
 

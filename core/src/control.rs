@@ -1,9 +1,9 @@
-//! What the robot does, order by order and frame by frame, without a word.
+//! What the robot does, order by order and frame by frame. It knows no text.
 //!
-//! Whoever speaks to the robot, a console on a serial line or something else, gives it
-//! orders and is told what is refused; fifty times a second it computes a frame,
-//! watches what may go wrong, and does something for the memory in between. Nothing
-//! here knows of lines or answers.
+//! A console on a serial line, or something else, gives orders to the robot and learns
+//! which of them are refused. Fifty times a second the robot computes a frame and watches
+//! for faults; in between it does the work of the memory. Nothing here knows of lines or
+//! answers.
 
 use lizard_avr::Region;
 

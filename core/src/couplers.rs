@@ -1,21 +1,21 @@
 //! The triangle of the two couplers over the line between the crank tips.
 //!
-//! Couplers of lengths `a` (left) and `b` (right) meet in the end point, the head
-//! or the tail. How they lean depends on the squared distance `s` of the crank
-//! tips alone. Two functions of `s` say all that the margins need:
+//! Couplers of lengths `a` (left) and `b` (right) meet in the end point, the head or the
+//! tail. How they lean depends only on the squared distance `s` of the crank tips. The
+//! margins need just two functions of `s`:
 //!
 //! ```text
 //! rise = 2 height / distance    = sqrt((R - s) (s - N)) / s    R = (a + b)^2, N = (a - b)^2
 //! skew = 2 foot / distance - 1  = (a^2 - b^2) / s              0 for equal couplers
 //! ```
 //!
-//! (height and foot of the end point over the line, the foot counted from the left
-//! crank tip; Heron's formula gives the height.) Both are read from a [`Curve`].
-//! At either end of its range the rise falls to zero as a root does, too steeply
-//! for a table over `s`: there it is a function of the distance from that end,
-//! `R - s` or `s - N`, with a table of its own. A robot that cannot get there does
-//! without. The rise is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over
-//! `s` is read from there on, where it falls, and stays at the largest rise below.
+//! (height and foot of the end point over the line, the foot counted from the left crank
+//! tip; Heron's formula gives the height.) Both are read from a [`Curve`]. At either end
+//! of its range the rise falls to zero like a square root, too steeply for a table over
+//! `s`. There it is a function of the distance from that end, `R - s` or `s - N`, with
+//! its own table. A robot that cannot reach that end does not have this table. The rise
+//! is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over `s` is read from
+//! there on, where it falls, and stays at the largest rise below.
 
 use core::mem::offset_of;
 

@@ -1,10 +1,10 @@
 //! A smooth function of a squared length, from a table in flash.
 //!
-//! A root and a quotient cost 2 800 cycles in every frame. What the five-bar
-//! needs of them depends on one squared length alone, so a table does it: sixteen
-//! steps to an octave of the argument, a straight line in between. Any function
-//! that goes with a power of its argument is then right to a few parts in ten
-//! thousand, near zero as well as far from it.
+//! A root and a quotient cost 2 800 cycles in every frame. What the five-bar needs of
+//! them depends on a single squared length, so a table is enough: sixteen steps to an
+//! octave of the argument, with straight lines in between. Any function that varies as a
+//! power of its argument is then accurate to a few parts in ten thousand, near zero as
+//! well as far from it.
 
 use lizard_avr::{Flash, mul_unsigned};
 

@@ -1,8 +1,8 @@
 //! What has gone wrong, as a code, a word and a pattern of the LED.
 //!
-//! Somebody without a cable has only the LED on D13. It beats slowly while all is
-//! well; after a fault it flashes as many times as the fault's code says, pauses,
-//! and begins again, until the robot is told to move.
+//! Without a cable, the LED on D13 is all that a person sees. It blinks slowly while all
+//! is well. After a fault it flashes as many times as the fault's code, pauses, and
+//! repeats that until the robot is told to move.
 
 use crate::text::Text;
 

@@ -1,11 +1,10 @@
 //! How far a five-bar linkage is from its singularities, without a float.
 //!
-//! Two cranks hold the ends of two couplers whose common joint is the end point,
-//! the head or the tail. Where the couplers line up, the end point is free to
-//! move although both servos hold: a type-2 singularity. Where a crank lines up
-//! with its coupler, the elbow can change to its other working mode: type 1. The
-//! margins are the sines of the angles between the bars, so 0 is singular and 1 is
-//! a right angle.
+//! Two cranks hold the ends of two couplers whose common joint is the end point, the head
+//! or the tail. If the couplers line up, the end point can move although both servos
+//! hold: a type-2 singularity. If a crank lines up with its coupler, the elbow can change
+//! to its other working mode: type 1. The margins are the sines of the angles between the
+//! bars, so 0 is singular and 1 is a right angle.
 //!
 //! With `k` the vector from the left crank tip to the right one, couplers `a`
 //! (left) and `b` (right), the rise and the skew of [`crate::couplers`] at

@@ -1,10 +1,10 @@
 //! A gait: four sweeps as a function of one phase.
 //!
-//! Feet are not lifted; each leg swings and drags its pad. What makes the
-//! robot go is the shape of the swing and the order of the legs, so a gait is
-//! a waveform read at four offsets with four gains. Waveforms are tables of
-//! 128 samples in flash; between samples a straight line is within 0.1 deg of
-//! the real curve, which whoever makes the tables has checked.
+//! Feet are never lifted; each leg swings and drags its pad. The shape of the swing and
+//! the order of the legs make the robot go, so a gait is a waveform read at four offsets
+//! with four gains. Waveforms are tables of 128 samples in flash; between samples a
+//! straight line is within 0.1 deg of the real curve. The host that makes the tables
+//! checks that.
 
 use lizard_avr::{Flash, mul};
 

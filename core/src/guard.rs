@@ -1,12 +1,12 @@
 //! The singularity guard: how clear of every hazard a pose is.
 //!
-//! No frame reaches a servo before it has passed here, be it from a gait, a
-//! point-to-point move or a pose that somebody typed. The decision is a point
-//! test for any pose within the servos' travel, not a box, and holds for head and
-//! tail alike: in its own frame the tail is built as the head.
+//! Every frame passes the guard before it reaches a servo, whether it comes from a gait,
+//! a point-to-point move or a typed pose. The guard tests the pose itself, for any pose
+//! within the servos' travel, and does not use a box. It is the same for head and tail,
+//! because in its own frame the tail is built like the head.
 //!
-//! Every condition depends on one servo or on two, so all poses can be checked
-//! against floating point by walking every pair of angles: `make prove`.
+//! Every condition depends on one servo or on two, so `make prove` can compare all poses
+//! with floating point, by trying every pair of angles.
 
 use lizard_avr::flash;
 

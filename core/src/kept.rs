@@ -1,15 +1,15 @@
-//! What a reset of the processor cannot take away: a few bytes of RAM that the
-//! start of the program leaves alone.
+//! What a reset of the processor leaves: a few bytes of RAM that the start of the program
+//! does not clear.
 //!
-//! RAM keeps its contents as long as there is power, and the boot loader of the UNO
-//! clears the register that says why the chip was reset, and passes it on nowhere.
-//! So these bytes tell the next program, by a mark and checksums, that power was not
-//! lost, whether the program hung, and what the servos were doing. Of random bytes one
-//! in 32 768 passes for a mark, and of these one in 256 for a stance.
+//! RAM keeps its contents as long as there is power. The boot loader of the UNO clears
+//! the register that says why the chip was reset, and does not pass its value on. So
+//! these bytes tell the next program, by a mark and checksums, that power was not lost,
+//! whether the program hung, and what the servos were doing. Of random bytes one in 32
+//! 768 passes for a mark, and of these one in 256 for a stance.
 //!
-//! A reset may come between any two stores, and nothing is lost by that. There are two
-//! copies of the stance, written in turn; one byte says which of them is whole, and it
-//! is stored last.
+//! A reset may come between any two stores, and nothing is lost. There are two copies of
+//! the stance, which are written alternately. One byte says which of them is complete,
+//! and it is stored last.
 //!
 //! | cell | what |
 //! |---|---|

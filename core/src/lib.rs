@@ -1,12 +1,12 @@
 //! The core of a robotic lizard's firmware, for any such robot and any board.
 //!
-//! Four hobby servos drive two five-bar linkages; four dragging feet follow
-//! them. A line of text asks for a gait or a pose; fifty times a second the
-//! core turns what was asked for into four pulse widths that a servo can follow
-//! and that no linkage of the robot can be broken by.
+//! Four hobby servos drive two five-bar linkages; four dragging feet follow them. A line
+//! of text asks for a gait or a pose; fifty times a second the core turns the request
+//! into four pulse widths that the servos can follow and that cannot break a linkage of
+//! the robot.
 //!
-//! Values move one way. Whoever speaks to the robot gives it orders; it computes a
-//! frame fifty times a second, and what it answers goes back the same way:
+//! Values move one way. A console gives orders to the robot, the robot computes a frame
+//! fifty times a second, and its answers go back the same way:
 //!
 //! ```text
 //!         Console                     Control                                Board
@@ -15,13 +15,13 @@
 //! ```
 //!
 //! [`step::Main`] holds a [`console::Console`] and a [`control::Control`] and does one
-//! thing at a time. The console knows bytes and lines and gives orders; the control
-//! knows none of that, owns motion, settings and safety, and says why it refuses. What
-//! it does in which state at which event is one table, [`supervisor`].
+//! thing at a time. The console knows bytes and lines and gives orders; the control knows
+//! none of that, owns motion, settings and safety, and says why it refuses. One table,
+//! [`supervisor`], says what it does at each event in each state.
 //!
-//! Two pieces of it, which need no robot: bytes become a line, and an angle becomes the
-//! pulse that turns a servo there. All of it, on a board without a chip, is in
-//! `virtual_board` (feature `host`).
+//! This example shows two pieces that need no robot: bytes become a line, and an angle
+//! becomes the pulse that turns a servo there. All of it, on a board without a chip, is
+//! in `virtual_board` (feature `host`).
 //!
 //! ```
 //! use lizard_core::calibration::Calibration;
@@ -45,15 +45,15 @@
 //! assert_eq!(servo.width(sweep), Width(1800 * CYCLES_PER_US), "300 us longer");
 //! ```
 //!
-//! What counts, in this order, where two of these meet:
+//! The goals, in this order, if two of them conflict:
 //!
-//! 1. **Safe.** No frame leaves without the guard, no servo is woken beside another, a
+//! 1. **Safe.** No frame is sent without the guard, no two servos wake together, and a
 //!    fault ends in a robot that stands still and says why.
-//! 2. **Exact.** A pulse is right to the cycle, and a frame on the host is the chip's to
-//!    the bit.
+//! 2. **Exact.** A pulse is right to the cycle, and a frame on the host equals the chip's
+//!    to the bit.
 //! 3. **Plain.** A type for a thing, an enum for a choice, a sentence for a refusal.
-//! 4. **Small.** Flash and RAM are counted last; where a few bytes cost a type, the
-//!    type wins as long as the whole fits.
+//! 4. **Small.** Flash and RAM come last: a type that costs a few bytes stays, as long as
+//!    the program fits.
 //!
 //! Everything here is integer arithmetic and runs unchanged on the
 //! microcontroller and on the host, where the tests compare it with floating

@@ -1,7 +1,7 @@
 //! Bytes into lines.
 //!
-//! Terminals disagree about line ends: some send CR, some LF, some both. Each
-//! ends a line here, and since an empty line is no line, CRLF ends just one.
+//! Terminals disagree about line ends: some send CR, some LF, some both. Here each of
+//! them ends a line. An empty line is ignored, so CRLF ends only one.
 
 use heapless::Vec;
 

@@ -1,9 +1,9 @@
 //! A memory that keeps its bytes without power, and may lose power at any time.
 //!
-//! An EEPROM writes one byte in 3.4 ms. Cut short, that byte may hold anything. So a
-//! record has a mark that is taken away before its first byte changes and put
-//! back after the last one: between the two the record is no record. A CRC finds
-//! what else may happen to it in the years.
+//! An EEPROM writes one byte in 3.4 ms. If power fails meanwhile, that byte may hold
+//! anything. So a record has a mark that is removed before its first byte changes and
+//! written again after the last one; without the mark the record does not count. A CRC
+//! finds other damage, such as bits that change over the years.
 
 use crate::checksum::Checksum;
 

@@ -1,14 +1,14 @@
 //! From commands to frames: one pose every 20 ms, whatever happens.
 //!
-//! A servo that is told to be elsewhere goes there as fast as it can, all of
-//! them at once, and the supply sags. So nothing here ever jumps. A change
-//! from any motion to any other has three parts, each continuous in speed:
+//! A servo that gets a distant angle turns as fast as it can. If all four do, the supply
+//! sags. So nothing here ever jumps. A change from any motion to any other has three
+//! parts, each continuous in speed:
 //!
-//! 1. the old motion brakes along its own path (a gait within its cycle, a
-//!    move within its line), so that it cannot leave ground it has checked;
+//! 1. the old motion brakes along its own path (a gait within its cycle, a move within
+//!    its line), so that it passes only poses that have been checked;
 //! 2. one point-to-point move, at most at the slew limit, leads to where the new
 //!    motion begins, all servos arriving together;
-//! 3. the new gait gathers pace.
+//! 3. the new gait reaches its pace gradually.
 //!
 //! `stop` alone skips the braking: it freezes the pose in the next frame.
 //!
@@ -24,14 +24,14 @@
 //! | `Cycling` through a gait | another gait or a pose: that next; the same gait: - | brakes if there is a next, and once it stands still is `Moving` towards that |
 //! | any but `Resting` | `stop`: `Holding`; `rest`: `Resting`; nothing next | an unsafe pose: `Holding` the last one, nothing next, with the reason |
 //!
-//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in
-//! whatever state, until the pulses have come, at the slew limit, to those that the
-//! pose has now; after that a motion gathers pace anew.
+//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every
+//! state, while the pulses change at the slew limit to the new ones of this pose. After
+//! that a motion starts again gradually.
 //!
-//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard;
-//! a pose that has not is never sent, the last safe one is held instead, and
-//! the reason is kept for the console. Time is a call: the 50 Hz tick is the
-//! only clock, so pace cannot depend on how busy the processor is.
+//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that
+//! has not passed is never sent; the last safe pose is held instead, and the reason is
+//! kept for the console. Time is a call: the 50 Hz tick is the only clock, so the pace
+//! cannot depend on how busy the processor is.
 
 use lizard_avr::Region;
 

@@ -1,9 +1,9 @@
 //! A pose of the robot: where the four servos stand, as sweeps from neutral.
 //!
-//! The horns are fitted while the servos hold their neutral pulse, so that a
-//! sweep is what the servo really turns and a chassis angle is what a person
-//! can read off the robot. Order everywhere: A1 = theta1 front left,
-//! A2 = theta4 front right, A3 = theta8 back right, A4 = theta5 back left.
+//! The horns are fitted while the servos hold their neutral pulse. So a sweep is the
+//! angle that the servo really turns, and a chassis angle can be read off the robot.
+//! Order everywhere: A1 = theta1 front left, A2 = theta4 front right, A3 = theta8 back
+//! right, A4 = theta5 back left.
 
 use crate::calibration::Calibration;
 use crate::part::Servo;

@@ -1,9 +1,9 @@
 //! What the robot keeps in its EEPROM: two copies of the settings, and where it
 //! rested last.
 //!
-//! The two copies are written in turn, so that the one before is whole while the
-//! other is being written; the one with the later turn counts. What is not wholly
-//! right is not used, and robot.toml's numbers take its place.
+//! The two copies are written alternately, so that one is complete while the other is
+//! being written; the newer one counts. A copy that is not completely
+//! right is not used. If neither is, robot.toml's numbers are.
 //!
 //! | address | what |
 //! |---|---|

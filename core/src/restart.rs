@@ -1,8 +1,7 @@
 //! Why the program began, and what it did until then.
 //!
-//! A robot that begins again in mid-step does not have to fall over: the servos
-//! are where they were, and a few bytes of memory that survive a reset can say where
-//! that is ([`crate::kept`]).
+//! A robot that restarts in mid-step need not fall over: the servos are where they were,
+//! and a few bytes of memory that survive a reset say where that is ([`crate::kept`]).
 
 use crate::pose::{Pose, Pulses};
 use crate::text::Text;

@@ -1,9 +1,9 @@
-//! What the core has to know of a robot, read from its section of flash.
+//! What the core knows of a robot, read from its section of flash.
 //!
 //! The same core walks any lizard: bars, limits, servos and gaits come from a section
-//! ([`crate::section`]) that lies in the flash of a microcontroller or in the memory of
-//! a host. Where its parts are is worked out once, when the section is opened; a number
-//! is fetched when it is asked for.
+//! ([`crate::section`]) that lies in the flash of a microcontroller or in the memory of a
+//! host. The section is checked once, when it is opened; each number is fetched when it
+//! is needed.
 
 use core::fmt;
 use core::mem::offset_of;

@@ -1,7 +1,7 @@
 //! A square root and a quotient, in integers and bit by bit.
 //!
 //! The five-bar's closed form needs one root; a voltage and the end of a travel are
-//! quotients. The chip has neither, and the compiler's own division of 32 bits takes a
+//! quotients. The chip can compute neither, and the compiler's 32-bit division takes a
 //! kilobyte.
 
 use lizard_avr::mul_unsigned;

@@ -1,10 +1,9 @@
-//! What may go wrong beside a pose, watched every frame: the supply, the line, the
-//! pulses, the stack. And what the robot does unasked after power-on.
+//! The faults other than an unsafe pose, which are watched in every frame: the supply,
+//! the line, the pulses, the stack. And what the robot does by itself after power-on.
 //!
-//! What follows from what is the [`supervisor`]'s table. A fault stops the motion and
-//! is kept until somebody tells the robot to move again. Nothing here ever begins a
-//! motion by itself, but for the one that `boot` asks for, three seconds after the
-//! start.
+//! The table of [`supervisor`] says what each event causes. A fault stops the motion and
+//! stays until a command moves the robot again. Nothing here begins a motion by itself,
+//! except the one that `boot` asks for, three seconds after the start.
 
 use crate::fault::{Fault, Led};
 use crate::supervisor::{self, Event, Response, State};

@@ -1,10 +1,9 @@
-//! Robots for the tests of this crate, made at run time from measurements in
-//! floating point, which are also the truth that the integers are held against.
+//! Robots for the tests of this crate, made at run time from measurements in floating
+//! point. The integers are compared with the same measurements.
 //!
-//! [`Sample::odd`] and the random ones have no symmetry at all: no two bars are
-//! equally long, each kind of limit differs, every servo has a gain, a neutral
-//! width and a travel of its own. What one part is measured by instead of another
-//! shows.
+//! [`Sample::odd`] and the random ones have no symmetry at all: no two bars are equally
+//! long, each kind of limit differs, every servo has a gain, a neutral width and a travel
+//! of its own. So a test fails if the code uses one part's number for another part.
 
 pub mod bounds;
 mod measures;

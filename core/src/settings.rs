@@ -1,7 +1,7 @@
-//! All that a person may set and the robot keeps: the servos' adjustments, what it
-//! does after power-on, and how long it walks without hearing anything.
+//! All settings that a person may change and the robot keeps: the servos' adjustments,
+//! what the robot does after power-on, and how long it walks without a line.
 //!
-//! Settings are held as the bytes that the EEPROM keeps, so that neither saving nor
+//! In RAM the settings have the same bytes as in the EEPROM, so neither saving nor
 //! loading converts anything.
 //!
 //! | byte | what |

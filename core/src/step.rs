@@ -1,12 +1,11 @@
 //! The one step that a firmware's main loop repeats.
 //!
-//! Woken by the tick of the pulses or by a byte, main does one thing at a time
-//! and looks for a tick first: a frame waits for one byte or one line at most. While
-//! it writes its memory, which takes 3.4 ms a byte, it takes no input, and neither
-//! while an answer waits for the serial line to have room for all of it; so it
-//! never waits for a listener. It computes one frame for a tick. A tick that it was too
-//! late for is left out: several frames at once would be played as one, and servos would
-//! leap.
+//! The tick of the pulses or a byte wakes main. It does one thing at a time and looks for
+//! a tick first, so a frame waits for one byte or one line at most. It takes no input
+//! while it writes its memory (3.4 ms a byte), or while an answer waits for room in the
+//! serial line; so it never waits for a listener. It computes one frame for a tick. If it
+//! is too late for a tick, it leaves that tick out: several frames at once would be
+//! played as one, and the servos would leap.
 
 use core::convert::Infallible;
 

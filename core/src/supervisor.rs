@@ -1,7 +1,7 @@
 //! What the robot does when something happens: one table.
 //!
-//! A person orders, a supply sinks, a line breaks, a program hangs, and any two of
-//! these may happen in the same frame. So what follows is written down once, for
+//! A person sends a command, the supply falls, the line breaks, the program hangs, and
+//! any two of these may happen in the same frame. So one table has the consequence of
 //! every event in every state, and the code that acts looks it up here. docs/faults.md
 //! prints the same tables.
 

@@ -1,13 +1,13 @@
 //! The supply: measured every frame, and what the robot still does when it is low.
 //!
-//! Four servos that start at once pull a weak supply down; below 2.7 V the chip
-//! resets, and long before that a servo loses its place and an EEPROM write its
-//! data. The chip can measure its own supply without any part: it compares the supply
-//! with a reference of about 1.1 V on the chip. A rail of the servos' own can be
-//! measured where a divider leads it to an analogue pin.
+//! Four servos that start at once pull a weak supply down; below 2.7 V the chip resets,
+//! and well above that a servo loses its position and an EEPROM write its data. The chip
+//! can measure its own supply without any external part: it compares the supply with a
+//! reference of about 1.1 V on the chip. The servos' own rail can be measured if a
+//! divider connects it to an analogue pin.
 //!
-//! A reference is off by up to a tenth from chip to chip; robot.toml holds its
-//! measured value, and the voltages below which the robot reacts.
+//! The reference differs by up to a tenth from chip to chip. robot.toml has its measured
+//! value, and the voltages below which the robot reacts.
 
 use lizard_avr::mul_unsigned;
 

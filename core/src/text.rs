@@ -1,9 +1,9 @@
 //! Every sentence that the robot prints, kept in flash.
 //!
-//! A string literal of an AVR program is copied to its 2 KiB of RAM at start.
-//! The sentences here stay in flash, packed: a character is a code of four bits or
-//! of eight, and so is a phrase that several sentences have in common. They are
-//! unpacked one by one when they are printed.
+//! A string literal of an AVR program is copied to its 2 KiB of RAM at start. The
+//! sentences here stay in flash and are packed: a character has a code of four or eight
+//! bits, and so has a phrase that several sentences share. They are unpacked one by one
+//! when they are printed.
 
 use lizard_avr::flash;
 use ufmt::uWrite;

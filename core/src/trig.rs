@@ -1,8 +1,8 @@
 //! Sine and cosine of an angle, from a quarter wave in flash.
 //!
-//! The guard needs the directions of four cranks in every frame. A table of
-//! 129 points with linear interpolation is within 4.5e-5 of the sine (one
-//! step of Q15 is 3.1e-5), two orders below what the margins can notice.
+//! The guard needs the directions of four cranks in every frame. A table of 129 points
+//! with linear interpolation is within 4.5e-5 of the sine (one step of Q15 is 3.1e-5),
+//! two orders of magnitude below what affects the margins.
 
 use lizard_avr::flash;
 

@@ -1,9 +1,8 @@
 //! The units of the core, and every conversion between them.
 //!
-//! An 8-bit processor has no use for floating point, so each quantity gets an
-//! integer whose step is finer than the robot can show. A number that crosses
-//! the border of a module has a type of its own; inside a formula it is a plain
-//! integer.
+//! An 8-bit processor has no use for floating point, so each quantity gets an integer
+//! whose step is finer than the robot can show. A number that one module gives to another
+//! has its own type; inside a formula it is a plain integer.
 //!
 //! | quantity | type | step |
 //! |---|---|---|

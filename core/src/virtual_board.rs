@@ -1,10 +1,10 @@
-//! The one board for hosts: what the UNO's registers, pins and interrupts do, without
-//! any.
+//! The one board for hosts: it does what the UNO's registers, pins and interrupts do, but
+//! has none.
 //!
-//! Whoever runs the core away from the chip (tests, the fuzzer, the page in a
-//! browser, the simulation's comparison) runs [`Main::step`] on this board, so
-//! what is tried is the loop that the UNO repeats and not another one like it.
-//! [`Running`] holds the two together and speaks of them in sentences.
+//! Every program that runs the core on a host (tests, the fuzzer, the page in a browser,
+//! the comparison with the simulated UNO) runs [`Main::step`] on this board. So they all
+//! test the loop that the UNO repeats, and not a similar one. [`Running`] combines the
+//! two, and its methods read like sentences.
 //!
 //! Time is a call, [`VirtualBoard::pass`], by the millisecond. What a frame of 20 ms
 //! is made of:
@@ -15,7 +15,7 @@
 //! | 4 | the frame that main handed over is taken over, and A1's pulse begins |
 //! | 8, 12, 16 | the pulses of A2, A3 and A4 begin |
 //!
-//! It is compact: cloned and hashed by the million.
+//! It is compact, because it is cloned and hashed by the million.
 //!
 //! [`Main::step`]: crate::step::Main::step
 

@@ -1,8 +1,8 @@
 //! The EEPROM: 1024 bytes that outlast power.
 //!
-//! The chip erases and writes a byte by itself, in 3.4 ms, while the program runs
-//! on. A write must begin within four cycles of its being enabled (data sheet,
-//! section 8.6.3), so interrupts are off for those: about ten cycles.
+//! The chip erases and writes a byte by itself, in 3.4 ms, while the program continues. A
+//! write must begin within four cycles after it is enabled (data sheet, section 8.6.3),
+//! so interrupts are off for about ten cycles.
 
 use core::arch::asm;
 

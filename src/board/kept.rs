@@ -1,5 +1,5 @@
-//! The bytes of RAM that the start of the program leaves alone: what is in them is
-//! [`lizard_core::kept`]'s.
+//! The bytes of RAM that the start of the program does not clear; [`lizard_core::kept`]
+//! defines what is in them.
 
 use core::arch::global_asm;
 

@@ -1,4 +1,4 @@
-//! The LED on D13, with which the board shows that it is alive.
+//! The LED on D13, which shows that the board is alive.
 //!
 //! It shares PORTB with servo pins, whose interrupts may change the port
 //! between any two instructions. So it is set by `sbi` and `cbi`, spelled out:

@@ -1,24 +1,24 @@
 //! The board: the one place that knows registers, pins and interrupts.
 //!
-//! An Arduino UNO has one processor for everything, and the servos see every
-//! cycle by which it misses an edge. So the interrupts do as little as the
-//! hardware allows and run to fixed rules:
+//! An Arduino UNO has one processor for everything, and the servos react to every cycle
+//! by which an edge is late. So the interrupts do as little as the hardware allows and
+//! follow fixed rules:
 //!
 //! - [`pulses`] owns Timer1 and the four servo pins, and is the robot's clock:
 //!   a tick every 20 ms.
 //! - [`serial`] owns the USART and its two rings.
 //! - [`led`] owns D13.
 //! - [`eeprom`] owns the EEPROM, [`supply`] the analogue converter.
-//! - [`watchdog`] begins the program anew when it hangs; [`kept`] is what it knows
-//!   then of the program before, [`stack`] a guard of the data against the stack.
+//! - [`watchdog`] restarts the program when it hangs; [`kept`] is what the new program
+//!   knows of the one before; [`stack`] protects the data from the stack.
 //! - [`sleep`] stops the processor until a tick or a byte.
 //!
-//! Main never switches interrupts off for more than the few cycles that `sleep`, a
-//! 16-bit load and the begin of an EEPROM write take: what it shares with an interrupt is a byte at a time,
-//! with one writer. Interrupts do not nest. Of the interrupts in use Timer1's
-//! come first in the vector table; INT0, INT1, PCINT, TIMER2 and TIMER1_CAPT would
-//! come before them and are not to be used, and WDT only comes to a program that hangs, and does
-//! not return to it.
+//! Main never switches interrupts off for more than the few cycles that `sleep`, a 16-bit
+//! load and the beginning of an EEPROM write take. It shares only single bytes with an
+//! interrupt, and each byte has one writer. Interrupts do not nest. Of the interrupts in
+//! use, Timer1's come first in the vector table. INT0, INT1, PCINT, TIMER2 and
+//! TIMER1_CAPT would come before them, so do not use them. WDT fires only if the program
+//! hangs, and does not return to it.
 
 pub mod eeprom;
 mod kept;

@@ -1,10 +1,10 @@
 //! The serial line, 115200 8N1, buffered both ways by interrupts.
 //!
-//! A byte takes 1389 cycles on the line and the receiver holds two, while main
-//! may be busy with a frame for 12 000. So each direction has a ring: one side
-//! only ever moves the head, the other only the tail, both single bytes, and so
-//! neither has to lock the other out. The handlers are short because the servos'
-//! edges may have to wait for one of them.
+//! A byte takes 1389 cycles on the line and the receiver holds two, while main may be
+//! busy with a frame for 12 000 cycles. So each direction has a ring. One side moves only
+//! the head, the other only the tail; both are single bytes, so neither side has to lock
+//! the other out. The handlers are short, because the servos' edges may have to wait for
+//! one of them.
 
 use core::convert::Infallible;
 

@@ -1,8 +1,8 @@
 //! Sleep until there is something to do.
 //!
-//! An interrupt between the look for work and the `sleep` instruction would be
-//! slept over, up to 4 ms. So the look is taken with interrupts off; `sei`
-//! lets them in only after one more instruction, which is `sleep`.
+//! If an interrupt came between the check for work and the `sleep` instruction, the
+//! program would sleep through it, for up to 4 ms. So the check is made with interrupts
+//! off. `sei` allows them only after one more instruction, which is `sleep`.
 
 use core::arch::asm;
 

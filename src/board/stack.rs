@@ -1,8 +1,8 @@
 //! The stack's guard: a word at the end of the data that the stack must not reach.
 //!
-//! The stack grows down from the end of RAM towards the data, and nothing in the
-//! chip stops it there. `make bench` computes how deep it can get; the word between
-//! the two is there for what nobody has thought of. It is looked at every frame.
+//! The stack grows down from the end of RAM towards the data, and nothing in the chip
+//! stops it there. `make bench` computes how deep it can get. The word between the two is
+//! for cases that nobody has foreseen; it is checked in every frame.
 
 use core::arch::global_asm;
 

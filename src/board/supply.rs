@@ -1,10 +1,10 @@
-//! The supplies, by the analogue converter.
+//! The supplies, measured by the analogue converter.
 //!
-//! The converter compares a voltage with its own supply, AVcc. Turned round, its
-//! reading of the chip's 1.1 V reference tells AVcc: without any part outside. A
-//! conversion takes 104 us, and the reference wants 70 us after it is chosen
-//! (data sheet, sections 24.6 and 28.8), so a conversion is begun in one frame,
-//! its channel having been chosen in the frame before, and read in the next.
+//! The converter compares a voltage with its own supply, AVcc. So its reading of the
+//! chip's 1.1 V reference gives AVcc, without any external part. A conversion takes 104
+//! us, and the reference needs 70 us after it is selected (data sheet, sections 24.6 and
+//! 28.8). So the channel is selected in one frame, the conversion is started in the next,
+//! and it is read in the one after that.
 
 use avr_device::atmega328p::ADC;
 use lizard_core::supply::Reading;

@@ -1,14 +1,14 @@
-//! The watchdog: begins the program anew when it hangs.
+//! The watchdog: restarts the program when it hangs.
 //!
-//! It has a clock of its own, 128 kHz. After 125 ms without being fed it interrupts
-//! the program; after 125 ms more it resets the chip (data sheet, section 11.8). The
+//! It has its own clock of 128 kHz. If it is not fed for 125 ms, it interrupts the
+//! program; after 125 ms more it resets the chip (data sheet, section 11.8). The
 //! interrupt marks in memory that the program hung, lets no further pulse begin, and
-//! never returns: what has hung once is not trusted again, also where it would go on.
-//! Meanwhile the pulses' own interrupts are served, so a pulse is not cut short by
-//! the reset, and the program that begins knows why.
+//! never returns: a program that has hung is not trusted again, even if it could
+//! continue. Meanwhile the pulses' own interrupts run, so the reset does not cut a pulse
+//! short, and the next program knows why it began.
 //!
-//! It is fed only with a frame whose predecessor has been taken over by the pulses:
-//! then main, the clock that woke it and both handlers of the pulses are alive.
+//! It is fed only when the pulses have taken over the frame before: then main, the clock
+//! that woke it and both handlers of the pulses are alive.
 
 use core::arch::asm;
 

@@ -1,5 +1,5 @@
-//! How settings of the servos take effect: at once, and only if the robot can still do
-//! everything that it does and go where it goes.
+//! How settings of the servos take effect: at once, and only if the robot can still walk
+//! all gaits and keep its present pose and target.
 
 use super::Control;
 use crate::calibration::Calibration;

@@ -1,9 +1,9 @@
-//! What is to be done with the memory, a byte at a time between the frames.
+//! The work to do on the memory, a byte at a time between the frames.
 //!
-//! A byte takes 3.4 ms to write. So no order waits for it: main asks for the next
-//! step whenever it has nothing more urgent to do, and takes no input meanwhile. And
-//! a byte that is written by a weak supply may be another one: below that voltage, and
-//! before it has been measured, nothing is written.
+//! A byte takes 3.4 ms to write. So no order waits for it: main asks for the next step
+//! when it has nothing more urgent to do, and takes no input meanwhile. A weak supply may
+//! write a wrong byte, so nothing is written below a certain voltage, or before the
+//! supply has been measured.
 
 use super::Control;
 use crate::memory::{Memory, Progress, Writing};

@@ -1,4 +1,4 @@
-//! What the robot says, and a listener who takes his time over it.
+//! What the robot prints, and a listener who reads it slowly.
 
 use core::convert::Infallible;
 use core::hash::{Hash, Hasher};
