@@ -1,5 +1,5 @@
-//! A simulated UNO as a person with a serial cable and an oscilloscope meets it:
-//! power it on, send lines, read answers, look at its servos' pulses.
+//! A simulated UNO, used as with a serial cable and an oscilloscope: power it on, send
+//! lines, read answers, look at its servos' pulses.
 
 use std::path::{Path, PathBuf};
 

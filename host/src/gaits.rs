@@ -1,5 +1,4 @@
-//! `lizard gaits`: what the check of every gait found, and where each takes
-//! the robot.
+//! `lizard gaits`: what the check of every gait found, and how far each gait walks.
 
 use std::io::Write;
 

@@ -1,8 +1,8 @@
-//! Text of others, made fit for a terminal.
+//! Makes text from files and boards safe for a terminal.
 //!
-//! A terminal obeys what it is sent: an escape character in the name of a robot or in a
-//! recorded line moves the cursor, changes the window's title or hides what comes after.
-//! So what a file or a board says is shown with such characters spelled out.
+//! A terminal obeys escape characters: one in the name of a robot or in a recorded line
+//! moves the cursor, changes the window's title or hides what follows. So text from a
+//! file or a board is shown with such characters spelled out.
 
 /// The text with every control character as Rust writes it, such as `\u{1b}`.
 #[must_use]

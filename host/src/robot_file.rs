@@ -1,4 +1,4 @@
-//! Which robot a subcommand is about.
+//! The robot that a command uses.
 
 use std::path::{Path, PathBuf};
 

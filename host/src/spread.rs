@@ -1,11 +1,11 @@
 //! Long computations spread over machines.
 //!
 //! `lizard prove --part 2/8` computes an eighth and prints what it has found as one line;
-//! `lizard merge` takes all eight and prints what one machine prints, byte for byte. So that this
-//! is so by construction, a computation is a list of pieces that do not depend on each other:
-//! one machine computes them all, a part those that are its own, and a merge runs the same
-//! program with the pieces that it has read. A part carries the version, the options and the
-//! robot, so that parts of different computations are not mixed.
+//! `lizard merge` takes all eight and prints the same bytes as one machine. This holds by
+//! construction: a computation is a list of pieces that do not depend on each other. One
+//! machine computes them all, a part computes its own pieces, and a merge runs the same
+//! program with the pieces that it has read. A part contains the version, the options and
+//! the robot, so that parts of different computations cannot be mixed.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};

@@ -1,4 +1,4 @@
-//! What somebody may have meant who typed a name that there is not.
+//! The name that a user may have meant who typed an unknown one.
 
 /// How like two words are, 0 to 1, from where on one is taken for the other mistyped; as
 /// clap has it for commands and options.

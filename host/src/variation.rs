@@ -1,5 +1,5 @@
-//! Robots and floors that are not quite alike: what a print, a floor and a kitchen scale
-//! leave open.
+//! Robots and floors that differ a little, by what a print, a floor and a kitchen scale
+//! leave uncertain.
 
 use fastrand::Rng;
 use lizard_robot::{

@@ -1,11 +1,11 @@
-//! A file that is written whole or not at all.
+//! A file that is written completely or not at all.
 //!
 //! A program that is ended while it writes leaves half a file, and half an image or
 //! half a calibration is worse than none. So the bytes go into a temporary file beside
 //! it, which takes its name at the end.
 //!
-//! A file takes the place of nothing or of an ordinary file alone. In the place of a
-//! device such as /dev/null it would be there for every program of the machine.
+//! A file may replace only an ordinary file. If it replaced a device such as /dev/null,
+//! every program of the machine would get it.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Write};

@@ -1,4 +1,5 @@
-//! A comparison with zero of what was just computed is left out: the flags say it already.
+//! A comparison with zero of a value that was just computed is left out, because the
+//! flags already have the result.
 //!
 //! ```text
 //! andi r24, 1       andi r24, 1

@@ -1,4 +1,4 @@
-//! What happens to a register's value, and to the flags, in all that may follow.
+//! What happens to a register's value, and to the flags, on every path that may follow.
 
 use crate::code::Code;
 use crate::edit::Reference;

@@ -1,4 +1,5 @@
-//! Of an AVR instruction what matters here, by the AVR Instruction Set Manual.
+//! The properties of an AVR instruction that matter here, from the AVR Instruction Set
+//! Manual.
 
 /// `ret`.
 pub const RET: u16 = 0x9508;

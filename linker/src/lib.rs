@@ -1,20 +1,20 @@
-//! What avr-gcc does to a program's size and LLVM does not, done to the object files on
-//! their way to the linker.
+//! Makes programs smaller in ways that avr-gcc has and LLVM has not, by editing the
+//! object files before they are linked.
 //!
-//! Flash is what this firmware has least of, and a sixth of it was the same few
+//! Flash is the scarcest resource of this firmware, and a sixth of it was the same few
 //! instructions again and again: registers pushed at the beginning of a function and
-//! popped at its end, and the eight instructions that move the stack pointer.
-//! avr-gcc's `-mcall-prologues` calls routines for that, of which the program has one
-//! copy. LLVM has no such option. But its object files can be edited safely: every
-//! function has a section of its own, and since the linker may shorten calls
-//! (`--relax`), no distance in them is final, each jump and address is a relocation. So
-//! this program reads the object, replaces beginnings and ends with calls of the routines
-//! of `frames.S` ([`frame`]), and jumps over jumps with the opposite branch
-//! ([`branch`]), leaves out comparisons whose answer is known ([`compare`]), makes a
-//! branch of a truth value that is made and asked for at once ([`truth`]), writes of
-//! variables that are nearly zero only what is not ([`sparse`]), puts functions near those
-//! that call them ([`order`]), and hands the result to avr-gcc. A function that differs in
-//! anything from what is known to be safe stays as it is.
+//! popped at its end, and the eight instructions that move the stack pointer. avr-gcc's
+//! `-mcall-prologues` calls routines for that, so the program has one copy of them. LLVM
+//! has no such option. But its object files can be edited safely: every function has a
+//! section of its own, and because the linker may shorten calls (`--relax`), each jump
+//! and address is a relocation, so no distance in them is final. This program reads the
+//! object, replaces beginnings and ends by calls of the routines of `frames.S`
+//! ([`frame`]), replaces jumps over jumps by the opposite branch ([`branch`]), leaves out
+//! comparisons whose result is known ([`compare`]), turns a truth value that is tested at
+//! once into a branch ([`truth`]), writes only the bytes that are not zero of variables
+//! that are nearly zero ([`sparse`]), puts functions near their callers ([`order`]), and
+//! hands the result to avr-gcc. A function that differs in any way from the shapes known
+//! to be safe stays as it is.
 
 pub mod branch;
 mod code;

@@ -1,6 +1,6 @@
-//! `lizard-linker ARGUMENTS`: avr-gcc with these arguments, after the objects among them
-//! that have shared beginnings and ends of functions were made shorter. rustc calls it
-//! where .cargo/config.toml names scripts/link.
+//! `lizard-linker ARGUMENTS` shortens the objects among the arguments, then calls avr-gcc
+//! with these arguments. rustc calls it because .cargo/config.toml names scripts/link as
+//! the linker.
 
 use std::ffi::OsStr;
 use std::fs;

@@ -1,12 +1,12 @@
 //! Functions that call one another lie near one another.
 //!
-//! A `call` has two words, and the linker makes an `rcall` of one word of it where the
-//! target is less than 4 KB away, the same with `jmp` and `rjmp` (`--relax`). A compiler
-//! writes functions in the order in which it meets them, and the routines of `frames.S`,
-//! which nearly all functions call, came last of all. So the order is looked for in which
-//! the fewest are out of reach; that saves a cycle each, too. What a program does cannot
-//! depend on it: whatever leads from one function to another is a relocation, and none
-//! runs on into the next.
+//! A `call` has two words. If the target is less than 4 KB away, the linker turns it into
+//! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler writes
+//! functions in the order in which it meets them, and the routines of `frames.S`, which
+//! nearly all functions call, came last. So this module searches the order in which the
+//! fewest calls are out of reach; each of them also saves a cycle. The order cannot
+//! change what a program does: every reference from one function to another is a
+//! relocation, and no function runs on into the next.
 
 /// How far a relative call reaches, bytes, less what the estimate of the sizes may be wrong by.
 const REACH: u32 = 4096 - 96;

@@ -1,10 +1,10 @@
 //! Static data that is zero but for a few bytes.
 //!
-//! An initialised variable is in flash byte for byte, zeros too, and startup code copies it to
-//! RAM. One that is cleared costs nothing. So a variable of which nearly all is zero is
-//! cleared with those (`.bss`), and what is not zero is written by a loop right after, before
-//! `main` and before any constructor: `.init5` of avr-libc's startup, while interrupts are off
-//! and r1 is zero.
+//! An initialised variable is in flash byte for byte, zeros too, and startup code copies
+//! it to RAM. A cleared variable costs nothing. So a variable that is nearly all zero is
+//! cleared with the others (`.bss`), and a loop writes the other bytes right afterwards,
+//! before `main` and before any constructor: `.init5` of avr-libc's startup, while
+//! interrupts are off and r1 is zero.
 
 use object::build::elf::SymbolId;
 use object::elf;

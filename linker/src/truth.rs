@@ -1,4 +1,4 @@
-//! A truth value that is made and then asked for at once is a branch.
+//! A truth value that is computed and tested at once becomes a branch.
 //!
 //! ```text
 //! ldi r24, 1        brcs 2f

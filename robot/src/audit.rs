@@ -1,7 +1,6 @@
-//! Every sample of every gait, as the firmware will send it, through the
-//! forward solution: head, tail, sides and legs against all limits. Then through
-//! the firmware's own guard, which would hold a gait that is nearer to a limit than
-//! its integers resolve.
+//! Checks every sample of every gait, as the firmware will send it. First by the forward
+//! solution: head, tail, sides and legs against all limits. Then by the firmware's own
+//! guard, which would stop a gait that is closer to a limit than its integers resolve.
 
 use lizard_core::gait::SAMPLES;
 use lizard_core::guard::Clearance;

@@ -1,11 +1,11 @@
 //! The maps of cells in which the integer guard is proved to accept every pose.
 //!
-//! On its chip the robot measures how clear of every hazard a pose is, and that takes
+//! On its chip the robot measures how far a pose is from every hazard, and that takes
 //! most of a frame's time. Every condition depends on one servo or on the two of an end
-//! or of a side, so the poses that are safe by far can be told beforehand, in four maps
-//! over pairs of servos: [`lizard_core::cells`]. Here they are made of the robot's true
-//! measurements, by bounds over a whole cell and of what the integers may be off by.
-//! Nothing is sampled, so a cell needs no measuring at any pose in it.
+//! or of a side. So the poses that are far from every limit can be listed beforehand, in
+//! four maps over pairs of servos: [`lizard_core::cells`]. This module makes them from
+//! the robot's true measurements, with bounds over a whole cell and a bound of the
+//! integers' error. No pose is sampled, so the proof holds for every pose in a cell.
 
 mod cell;
 mod end;

@@ -1,8 +1,8 @@
 //! The robot as the core reads it.
 //!
-//! The core reads a section of flash. On a host that is memory, and the core's motion
-//! borrows it for as long as it runs; so a section that was handed to the core is kept
-//! until the program ends. It has 5 KB at most, and each is kept once.
+//! The core reads a section of flash. On a host that section is in memory, and the core's
+//! motion borrows it for as long as it runs. So a section that the core has got is kept
+//! until the program ends. It has 5 KB at most, and equal sections are kept once.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};

@@ -1,5 +1,5 @@
-//! Gait definitions in robot.toml: each gives a waveform, a path, or another
-//! gait to start from.
+//! Gait definitions in robot.toml: each has a waveform, a path, or another gait from
+//! which it is derived.
 
 use std::collections::HashMap;
 

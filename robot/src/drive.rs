@@ -1,11 +1,11 @@
 //! What drives a leg from its servo's link: `[leg.drive]` in robot.toml.
 //!
-//! One table says it, and parts, bill, contact model, twin and page follow from it. A bar
-//! with two holes makes the leg go as its servo does. A strut with a slot and a spring
-//! follows as exactly up to the pull of its spring, and beyond it yields in one of its
-//! two directions. An ideal spring yields in both: no part that `lizard parts` draws does,
-//! but the paper's robot may have had one. With each of them pins and gears have play,
-//! within which nothing drives the leg.
+//! Parts, bill, contact model, twin and page all use this table. With a bar with two
+//! holes, the leg moves exactly with its servo. A strut with a slot and a spring does the
+//! same up to the pull of its spring; beyond that it yields in one direction. An ideal
+//! spring yields in both directions: no part of `lizard parts` does that, but the paper's
+//! robot may have had one. In each case pins and gears have play, within which nothing
+//! drives the leg.
 
 use crate::error::{Checked, Hint, Problem};
 use crate::legs::LegPlan;

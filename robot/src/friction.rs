@@ -1,15 +1,15 @@
 //! The slide that costs the least friction: a small convex problem.
 //!
-//! Each pad's cost is the length of its slide, stretched by the friction ratio
-//! where it slides backward. A leg on a spring may lag behind its servo, which
-//! costs the spring's energy; one that is rigid does not lag. A sum of lengths has
-//! kinks just where it matters, at the pads that hold. So every length is rounded
-//! off, `sqrt(length^2 + eps^2)`, minimised by Newton's method, and eps is lowered
-//! in stages from the size of the slides to a hundred-millionth of it. What is
-//! left is at most eps for each pad above the true minimum, which the dual
-//! problem proves in the tests. Where the minimum is not unique (two pads
-//! against two), this ends at the point that the rounding favours, which is the
-//! symmetric one; [`crate::Ground::predict`] finds out where that matters.
+//! Each pad's cost is the length of its slide, stretched by the friction ratio where it
+//! slides backward. A leg on a spring may lag behind its servo, which costs the spring's
+//! energy; a rigid leg does not lag. A sum of lengths has kinks at the pads that hold,
+//! which are the ones that matter. So every length is rounded off, `sqrt(length^2 +
+//! eps^2)`, and the sum is minimised by Newton's method; eps is lowered in stages from
+//! the size of the slides to a hundred-millionth of it. The result is above the true
+//! minimum by at most eps for each pad; the tests prove that with the dual problem. Where
+//! the minimum is not unique (two pads against two), this ends at the point that the
+//! rounding favours, which is the symmetric one; [`crate::Ground::predict`] finds out
+//! where that matters.
 
 use crate::linear::solve;
 use crate::yields::Yield;

@@ -1,13 +1,12 @@
-//! Feet that are never lifted: where the robot goes when its legs swing.
+//! Feet that are never lifted: how the robot moves when its legs swing.
 //!
-//! Planar, quasi-static, Coulomb friction. At each instant the pads slide so
-//! that the power lost to friction is least: of all twists (vx, vy, omega) of
-//! the body, the one that minimises `sum mu N |v + omega x r_i + dr_i/dt|` over the
-//! feet. Three feet that agree out-vote one that returns, and the body
-//! advances. Speed, weight and a common friction coefficient cancel, as long as
-//! the legs are rigid. Where springs pull them, each step minimises the friction's
-//! work and the springs' energy together, and friction against stiffness decides
-//! how far a leg lags behind its servo.
+//! Planar, quasi-static, Coulomb friction. At each instant the pads slide so that the
+//! power lost to friction is least: the body takes the twist (vx, vy, omega) that
+//! minimises `sum mu N |v + omega x r_i + dr_i/dt|` over the feet. Three feet that move
+//! together win against one that returns, and the body advances. Speed, weight and a
+//! common friction coefficient cancel, as long as the legs are rigid. Where springs pull
+//! them, each step minimises the friction's work and the springs' energy together, and
+//! friction against stiffness decides how far a leg lags behind its servo.
 
 use crate::drive::Drive;
 use crate::feet::{Body, Feet};

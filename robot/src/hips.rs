@@ -1,9 +1,9 @@
-//! Where the hips are: the middles of the circles on which the feet go.
+//! Where the hips are: the centres of the circles on which the feet move.
 //!
-//! A foot hangs at its coupler, which is carried without being turned. So its circle is
-//! that of the crank's joint, moved by the foot's place on the coupler: the hip lies from
-//! the driven pivot as the foot does from that joint. Of pivot, foot and hip robot.toml
-//! names two at most for each direction, and the third follows.
+//! A foot is fixed to its coupler, which moves without turning. So its circle is that of
+//! the crank's joint, shifted by the foot's place on the coupler: the hip has the same
+//! offset from the driven pivot as the foot from that joint. robot.toml gives at most two
+//! of pivot, foot and hip for each direction; the third follows.
 
 use lizard_kinematics::{End, Lizard, Vector};
 

@@ -1,14 +1,14 @@
 //! The legs seen from above: where they are pivoted, what carries the foot, and the
 //! strut by which the servo pulls the leg along.
 //!
-//! The paper's figures leave open where the legs are pivoted. All that counts for
-//! walking is the circle of the foot. A parallelogram carries its coupler without
-//! turning it, so the two pivots may be moved together to wherever there is room, and
-//! the foot hangs at the coupler by what they were moved. The driven pivot keeps away
-//! from the servo, whose link would sweep over it; the strut between them is the
-//! coupler of a second parallelogram: shaft, pivot and two equal anchor arms.
+//! The paper's figures do not say where the legs' pivots are. Only the circle of the foot
+//! matters for walking. A parallelogram carries its coupler without turning it, so the
+//! two pivots may be moved together to where there is room, and the foot is moved on the
+//! coupler by the same distance the other way. The driven pivot keeps away from the
+//! servo, whose link would sweep over it. The strut between them is the coupler of a
+//! second parallelogram: shaft, pivot and two equal anchor arms.
 //!
-//! A hip is the middle of a foot's circle. At neutral the foot is straight beside it,
+//! A hip is the centre of a foot's circle. At neutral the foot is straight beside it,
 //! swept by `mount`.
 
 use lizard_kinematics::{Lizard, Vector};

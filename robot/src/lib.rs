@@ -1,16 +1,16 @@
-//! robot.toml, read and proved: the robot's measurements and gaits for the
-//! firmware's build script, the host program and the tests.
+//! Reads and checks robot.toml: the robot's measurements and gaits, for the host program,
+//! the page, the firmware's build script and the tests.
 //!
-//! [`Robot::load`] reads the file and checks everything in it, every sample of
-//! every gait included, so a `Robot` that exists is one that can walk. From it
-//! come the gaits in floating point beside the tables that the firmware reads
-//! ([`CheckedGait`]), the robot in the integers of the core ([`CoreRobot`]) and the
-//! section of flash that carries these to the board ([`Robot::section`]).
+//! [`Robot::load`] reads the file and checks everything in it, including every sample of
+//! every gait, so every `Robot` can walk. It gives the gaits in floating point together
+//! with the tables that the firmware reads ([`CheckedGait`]), the robot in the integers
+//! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
+//! ([`Robot::section`]).
 //!
-//! Inside, a file becomes `Measures`, all of it but the gaits; these and the gaits'
-//! `Tables` become the integers, [`lizard_core::section::Content`]; a [`Robot`] holds all
-//! of them, and a [`CoreRobot`] is what the core reads of them. docs/firmware.md says how
-//! the types of other crates that are a robot differ from these.
+//! Inside, a file without its gaits becomes `Measures`. These and the gaits' `Tables`
+//! become the integers, [`lizard_core::section::Content`]. A [`Robot`] holds all of them,
+//! and a [`CoreRobot`] is what the core reads of them. docs/firmware.md lists the types
+//! of other crates that also are a robot.
 
 mod accuracy;
 mod audit;

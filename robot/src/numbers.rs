@@ -1,10 +1,9 @@
 //! The robot's numbers as the firmware has them: integers, in the types of the
 //! core.
 //!
-//! Sixteen bits hold any robot's lengths if their step follows the robot's size,
-//! so each mechanism has a scale of its own. Where a number does not come out
-//! even, it is rounded to the safe side: limits of margins up, strokes and
-//! travels inwards, the slew limit down.
+//! Sixteen bits hold any robot's lengths if their step follows the robot's size, so each
+//! mechanism has its own scale. A number that is not an integer is rounded to the safe
+//! side: limits of margins up, strokes and travels inwards, the slew limit down.
 
 use lizard_avr::Flash;
 use lizard_core::adjustment::Reach;

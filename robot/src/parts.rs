@@ -1,9 +1,9 @@
 //! What the robot is built of: `[parts]` in robot.toml.
 //!
-//! The links' lengths say where the joints are. This says how wide and thick the parts
-//! are that hold the joints there, and what is bought for them: servos, screws,
-//! springs, a board, a battery. None of it moves a joint, so the firmware does not
-//! depend on it. Where the feet stand does, see `hips.rs`. All of it may be left out.
+//! The links' lengths say where the joints are. This table says how wide and thick the
+//! parts are that hold the joints, and what is bought for them: servos, screws, springs,
+//! a board, a battery. None of it moves a joint, so the firmware does not depend on it.
+//! The places of the feet do depend on it, see `hips.rs`. All keys may be left out.
 
 use crate::coil::Coil;
 use crate::error::Checked;

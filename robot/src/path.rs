@@ -1,4 +1,4 @@
-//! The closed curve that a gait by path leads the head or the tail point along.
+//! The closed curve along which a gait leads the point of head or tail.
 
 use lizard_kinematics::Vector;
 

@@ -1,8 +1,8 @@
-//! Where the contact model leads a robot whose legs take given sweeps.
+//! How far the contact model moves a robot whose legs take given sweeps.
 //!
-//! Two feet against two are a tie: every twist between the two pairs costs the
-//! same, and the smallest difference between the pads decides. The model cannot
-//! know it, so it predicts nothing where the way depends on ties.
+//! Two feet against two are a tie: every twist between the two pairs costs the same, and
+//! the smallest difference between the pads decides. The model cannot know that
+//! difference, so it predicts nothing if the result depends on ties.
 
 use crate::friction::Twist;
 use crate::ground::Ground;

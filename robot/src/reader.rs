@@ -1,5 +1,5 @@
-//! robot.toml as typed values. A `Section` is one table of the file; it refuses
-//! keys that it was not told of and names the whole key in every fault.
+//! robot.toml as typed values. A `Section` is one table of the file; it refuses unknown
+//! keys, and every error names the whole key.
 
 use std::collections::HashMap;
 

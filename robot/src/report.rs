@@ -1,5 +1,5 @@
-//! What the check found, for every gait: the table that `make firmware` and
-//! `lizard gaits` print.
+//! What the check found for every gait: the table that `make firmware` and `lizard gaits`
+//! print.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! How fine the step of a mechanism's lengths may be, so that its longest bars
-//! still fit into the core's 16-bit integers.
+//! The finest step of a mechanism's lengths with which its longest bars still fit into
+//! the core's 16-bit integers.
 
 use lizard_core::{five_bar, slider, units::Scale};
 use lizard_kinematics::{FiveBar, Slider};

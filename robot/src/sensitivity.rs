@@ -1,5 +1,5 @@
-//! What pads, mounting, feet and play do to the gaits: where a cycle leads when the
-//! floor or the print is not as robot.toml says.
+//! How pads, mounting, feet and play change the gaits: how far a cycle goes if the floor
+//! or the print differs from robot.toml.
 
 use std::fmt;
 

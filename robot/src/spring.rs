@@ -1,12 +1,12 @@
 //! The spring between a servo's crank and its leg.
 //!
-//! The servo turns a crank, the leg follows it through a spring, and the pad's
-//! friction holds the leg back. What matters to the foot is one number: the torque
-//! that the spring exerts on the leg when the leg lags behind its crank. This is the
-//! ideal of it, alike both ways and at every pose. Springs that pull against each other
-//! along the arc of their anchors come near it with a rate and no preload, and one that
-//! pulls radially, which holds the leg by its tension. A spring in a slotted strut does
-//! not: see `strut.rs`.
+//! The servo turns a crank, the leg follows it through a spring, and the pad's friction
+//! holds the leg back. Only one function matters to the foot: the torque that the spring
+//! exerts on the leg when the leg lags behind its crank. This module has the ideal
+//! spring, equal in both directions and at every pose. Two springs that pull against each
+//! other along the arc of their anchors come close to it, with a rate and no preload; so
+//! does a spring that pulls radially and holds the leg by its tension. A spring in a
+//! slotted strut does not: see `strut.rs`.
 
 use crate::yields::Side;
 

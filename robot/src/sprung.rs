@@ -1,5 +1,5 @@
-//! What springs and play take from a gait: how far its legs lag, and how much of the way
-//! of rigid legs is left.
+//! What springs and play cost a gait: how far its legs lag, and its distance as a share
+//! of that with rigid legs.
 
 use crate::checked_gait::CheckedGait;
 use crate::ground::Ground;

@@ -1,14 +1,14 @@
-//! How four feet share the weight: the load that statics leaves free.
+//! How four feet share the weight, and the load that statics leaves open.
 //!
-//! A stiff body on three feet has one way to stand. On four it has a whole row of them:
-//! what one diagonal carries more, the other carries less, and every balance of forces
-//! still holds. What decides is how long the feet are and how far each of them gives. A
-//! foot that is `twist` mm too long puts a quarter of that times its stiffness on itself
-//! and on the foot across, and takes as much from the other two. Three feet that hold
-//! while one returns are no majority any more once two of them hardly touch the floor.
+//! The loads of a stiff body on three feet follow from statics. On four feet they do not:
+//! one diagonal may carry more and the other less, and all forces still balance. The
+//! lengths of the feet and their stiffness decide. If a foot is `twist` mm too long, it
+//! and the foot across from it carry more by a quarter of `twist` times the stiffness,
+//! and the other two carry less by as much. Three feet that hold while one returns are no
+//! longer a majority if two of them hardly touch the floor.
 //!
-//! So a foot gives as a spring does, upward only: a foot that would have to pull is in
-//! the air.
+//! So a foot is modelled as a spring that only pushes: a foot that would have to pull is
+//! in the air.
 
 use crate::error::Checked;
 use crate::feet::Body;

@@ -1,11 +1,12 @@
 //! A strut with a slot and a tension spring in it, from a servo's link to its leg.
 //!
 //! Shaft, leg's pivot and two equal, parallel arms make a parallelogram whose fourth side
-//! is the strut. The leg's screw runs in a slot of it, and a spring pulls the screw against
-//! the slot's end. So the strut can grow longer and never shorter: the leg may stay behind
-//! its servo in one direction only, forward at the front and back at the hind legs of the
-//! paper's robot. What the spring does to the leg is its pull times a lever, the arm's
-//! part square to the strut, which is another one at every pose.
+//! is the strut. The leg's screw runs in a slot of the strut, and a spring pulls the
+//! screw against the slot's end. So the strut can grow longer but not shorter: the leg
+//! can lag behind its servo in one direction only, which is forward at the front legs and
+//! back at the hind legs of the paper's robot. The torque of the spring on the leg is its
+//! pull times a lever. The lever is the arm's component square to the strut, and it
+//! changes with the pose.
 
 use crate::coil::Coil;
 use crate::legs::LegPlan;

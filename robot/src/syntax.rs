@@ -1,9 +1,9 @@
-//! What somebody did who wrote a line that is no TOML.
+//! The likely mistake in a line that is not TOML.
 //!
-//! A parser says what it expected next, in the words of its grammar. Who edits a robot has
-//! left a value out, written a comma for the point or a unit behind a number, and wants to
-//! know that. So the line is looked at for the mistakes that people make; what is none of
-//! them keeps the parser's sentence.
+//! A parser says what it expected next, in the words of its grammar. But the author has
+//! left out a value, written a comma for the point or a unit behind a number, and wants
+//! to know that. So this module checks the line for such mistakes. If it finds none, the
+//! parser's sentence stays.
 
 /// The sentence for a mistake at byte `at` of a text, about which the parser says `said`.
 #[must_use]

@@ -1,5 +1,5 @@
-//! The gaits as the firmware holds them: waveforms of 128 samples that several
-//! servos share, each servo with an offset and a gain.
+//! The gaits as the firmware stores them: waveforms of 128 samples that several servos
+//! share, each servo with an offset and a gain.
 //!
 //! What a table means, and how it is read between its samples, is the core's:
 //! [`lizard_core::gait`].

@@ -1,9 +1,8 @@
 //! The robot on its floor, step by step.
 //!
-//! What the body does in a step depends on where its legs were before: a leg on
-//! a spring lags behind its servo, and how far is what the steps before left it.
-//! So a walk is followed by a [`Walker`], which holds the servos, the lags and the
-//! place on the floor.
+//! The body's movement in a step depends on the steps before, because a leg on a spring
+//! lags behind its servo by what those steps have left. So a [`Walker`] follows a walk:
+//! it holds the servos, the lags and the place on the floor.
 
 use crate::feet::Feet;
 use crate::friction::{Displacement, Give, Pads, Point};

@@ -1,9 +1,9 @@
-//! What it costs a leg to be elsewhere than its servo.
+//! The energy that a leg needs to lag behind its servo.
 //!
-//! In the contact model all of a leg's drive is one function, the energy of its lag: none
-//! within the play, beyond it what the spring takes on that side, and beyond a stop a
-//! slope that no pad can climb. It has kinks where the lag likes to stay. They are rounded
-//! off within `eps`, as the lengths of slides are in `friction.rs`.
+//! In the contact model a single function describes the drive of a leg, the energy of its
+//! lag: zero within the play, beyond it the energy of the spring on that side, and beyond
+//! a stop a slope that no pad can climb. It has kinks at the lags that are most likely.
+//! They are rounded off within `eps`, like the lengths of slides in `friction.rs`.
 
 /// A lag's energy, in the units of the contact problem: forces over the mean friction of a
 /// pad, mm and radians.

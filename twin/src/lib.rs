@@ -1,11 +1,11 @@
-//! The robot behind its pulses: what a body, four legs and their feet do while
-//! the board sends what it sends.
+//! The robot behind its pulses: how body, legs and feet move when the board sends its
+//! pulses.
 //!
 //! A frame's four pulses go to the servos ([`ServoModel`]: how fast they turn, and the
-//! error that they leave), the servos turn the linkage, springs pull the legs along,
-//! and the contact model of `lizard_robot` says how the body moves over the floor.
-//! [`Twin::push`] takes one frame and returns all of it as a [`State`]; nothing is
-//! read, kept or printed, so it serves a program, a test and a web page alike.
+//! error that they leave), the servos turn the linkage, springs pull the legs along, and
+//! the contact model of `lizard_robot` computes how the body moves over the floor.
+//! [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads,
+//! stores and prints nothing, so a program, a test and a web page can use it.
 //!
 //! # Units
 //! mm, degrees, seconds and microseconds, as their names say; a heading is in radians.

@@ -1,5 +1,5 @@
-//! A hobby servo: a motor that turns towards its pulse, not faster than it can, and
-//! stops when the error is inside its dead band.
+//! A hobby servo: a motor that turns towards the angle of its pulse at a limited rate,
+//! and stops when the error is inside its dead band.
 
 use crate::FRAME;
 

@@ -1,4 +1,4 @@
-//! What a stretch of frames comes to.
+//! The totals of a sequence of frames.
 
 use lizard_kinematics::Check;
 use lizard_robot::{Place, Travel};

@@ -1,4 +1,4 @@
-//! Budgets: what the figures may be, and what the Arduino Servo library's are.
+//! Budgets: the limits of the figures, and the figures of the Arduino Servo library.
 
 use lizard_core::section::{SPACE, START};
 use serde::Serialize;

@@ -1,5 +1,5 @@
-//! `lizard bench`: what the firmware costs and how exact it is, beside what it
-//! may cost and beside the Arduino Servo library.
+//! `lizard bench`: what the firmware costs and how exact it is, compared with its budgets
+//! and with the Arduino Servo library.
 
 mod budget;
 mod exactness;

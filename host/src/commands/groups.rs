@@ -1,4 +1,4 @@
-//! The list of commands by what they are for.
+//! The list of commands, grouped by purpose.
 //!
 //! Thirty commands in one list hide the five that the owner of a robot needs. So `lizard
 //! help` has them under headings.

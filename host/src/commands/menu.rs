@@ -1,5 +1,5 @@
-//! What `lizard` alone asks in a terminal: a new owner knows what he wants to do and not
-//! which command does it.
+//! The menu of `lizard` without arguments in a terminal: new owners know what they want
+//! to do, but not which command does it.
 
 use std::ffi::OsString;
 use std::io::{self, BufRead, IsTerminal, Write};

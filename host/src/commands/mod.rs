@@ -1,9 +1,9 @@
-//! Every command of the program, once: its group in the help, its name, the words that mean
-//! the same, the cargo features it needs, its arguments and what runs it.
+//! The table of the program's commands: each command's group in the help, its name, its
+//! aliases, the cargo features it needs, its arguments and the function that runs it.
 //!
-//! A build without a feature lacks commands, and says so of each that it is asked for. So the
-//! table is read twice: as the enum of the commands that this build has, and as the list of
-//! all that there are.
+//! A build without a feature lacks commands, and explains that when one of them is used.
+//! So the table serves twice: as the enum of the commands of this build, and as the list
+//! of all commands.
 
 mod absent;
 mod groups;

@@ -1,4 +1,4 @@
-//! All that `save` keeps, as the console prints it and takes it.
+//! Everything that `save` stores, in the form in which the console prints and accepts it.
 
 use std::io::{Read, Write};
 

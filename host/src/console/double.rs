@@ -1,5 +1,5 @@
 //! For tests: the firmware's own console behind a connection, without a chip. Time
-//! passes when nothing is left to read, much faster than on the wall.
+//! advances when there is nothing left to read, much faster than real time.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};

@@ -1,4 +1,4 @@
-//! Which serial port has the board, when none was named.
+//! Finds the serial port of the board if none was named.
 
 use serialport::{SerialPortInfo, SerialPortType};
 

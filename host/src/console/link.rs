@@ -1,9 +1,9 @@
 //! A line-based connection to the robot over anything that reads and writes bytes.
 //!
-//! The serial line loses nothing, but it does not say where an answer ends, and a
-//! board may be reset, unplugged or no lizard at all. So every line sent is waited
-//! for until its one `ok` or `err` has come, lines that begin with `#` are
-//! collected meanwhile, and each silence ends in a sentence.
+//! The serial line loses nothing, but it does not mark the end of an answer, and a board
+//! may be reset, unplugged or not a lizard at all. So after each line the link waits for
+//! its one `ok` or `err`, and collects the lines that begin with `#` meanwhile. If
+//! nothing comes, it fails with a sentence.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};

@@ -1,9 +1,8 @@
-//! A board on USB to live with: `lizard console`, `calibrate`, `backup`, `restore`,
+//! The commands for a board on USB: `lizard console`, `calibrate`, `backup`, `restore`,
 //! `record`; and `replay`.
 //!
-//! What is done is kept apart from the terminal and from the serial port, so that it
-//! is tested without either: against the firmware's core on this machine, and with
-//! scripted input.
+//! The logic is separate from the terminal and from the serial port, so the tests need
+//! neither: they use the firmware's core on this machine, and scripted input.
 
 pub mod backup;
 pub mod calibrate;

@@ -1,4 +1,4 @@
-//! What became of the lines of a script: a program that called this one has to learn
+//! The results of the lines of a script: the program that called this one has to learn
 //! that a line was refused.
 
 use super::session::Said;

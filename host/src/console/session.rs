@@ -1,9 +1,8 @@
-//! The dialogue: whose turn it is, what is shown, and what is kept of it.
+//! The dialogue: whose turn it is, what is shown, and what is recorded.
 //!
-//! The robot answers each line once and in order, and says things unasked in
-//! between. The line at the bottom of the console asks for `status` twice a second;
-//! these answers are not shown, and a person's line never waits for more than one
-//! of them.
+//! The robot answers each line once and in order, and prints other lines in between. The
+//! line at the bottom of the console asks for `status` twice a second; these answers are
+//! not shown, and a person's line never waits for more than one of them.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! Why a dialogue with a person does not go on.
+//! Why a dialogue with a person ends.
 
 use std::io;
 

@@ -1,5 +1,5 @@
-//! `lizard draw --horns`: at which angles the cranks are pressed on, and what is left
-//! for a trim, because a spline has teeth.
+//! `lizard draw --horns`: the angles at which the cranks are pressed on, and the error
+//! that a trim corrects, because the shaft has teeth.
 
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::Robot;

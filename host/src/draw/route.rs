@@ -1,8 +1,8 @@
-//! Wires from a row of servos to a row of pins, none of which crosses another.
+//! Wires from a row of servos to a row of pins that do not cross each other.
 //!
-//! A wire goes down, sideways at a height of its own, and down again. Servos stand in
-//! the order of their pins, so only the heights are to be chosen: of wires that go to
-//! the same side, the one ahead turns first.
+//! A wire goes down, sideways at its own height, and down again. The servos have the
+//! order of their pins, so only the heights have to be chosen: of the wires that go to
+//! the same side, the foremost turns first.
 
 /// A path on the page, with only horizontal and vertical parts.
 pub type Path = Vec<(f64, f64)>;

@@ -1,14 +1,14 @@
 //! `lizard mobility`: degrees of freedom, counted and measured.
 //!
-//! Counting (Gruebler) trusts that no two joints say the same; the rank of the
-//! constraints at a pose does not. Here every moving link has three velocities
-//! (vx, vy of its point at the origin, and omega), every joint gives two rows,
-//! and what the rank leaves over are the freedoms.
+//! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of
+//! the constraints at a pose does not assume it. Here every moving link has three
+//! velocities (vx, vy of its point at the origin, and omega), every joint gives two rows,
+//! and the degrees of freedom are what the rank leaves.
 //!
-//! That the drives hold these freedoms is a second question: at a type-2
-//! singularity there are as many freedoms as ever, but one of them is no longer
-//! the servos'. So the rank is taken again with the driven cranks locked, a row
-//! more for each, and whatever can still move then is loose.
+//! Whether the servos control these freedoms is a second question: at a type-2
+//! singularity their number is the same, but the servos do not control one of them. So
+//! the rank is computed again with the driven cranks locked, which adds a row for each.
+//! Whatever can still move then is loose.
 
 use std::io::{self, Write};
 

@@ -1,5 +1,5 @@
-//! A stream of poses as comma-separated values. One line is held at a time, so
-//! a file of any length takes the same memory.
+//! A stream of poses as comma-separated values. Only one line is in memory at a time, so
+//! the length of a file does not matter.
 
 use std::io::{BufRead, Read};
 

@@ -1,10 +1,10 @@
 //! `lizard prove`: the integer guard against floating point at every pair of
 //! positions that two servos can take.
 //!
-//! Every condition of a safe pose depends on one servo (a leg), on the two of an
-//! end or on the two of a side. So walking every pair of each end and of each side,
-//! in the steps in which the firmware counts angles, decides every pose that there
-//! is: 1.8e18 for servos of half a turn. Nothing is sampled.
+//! Every condition of a safe pose depends on one servo (a leg), on the two of an end or
+//! on the two of a side. So trying every pair of each end and of each side, in the steps
+//! in which the firmware counts angles, decides every possible pose: 1.8e18 for servos of
+//! half a turn. Nothing is sampled.
 
 mod positions;
 mod tally;

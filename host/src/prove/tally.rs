@@ -1,4 +1,4 @@
-//! What a walk over many pairs of positions adds up.
+//! The sums of a walk over many pairs of positions.
 
 use lizard_kinematics::FiveBar;
 use serde::{Deserialize, Serialize};

@@ -1,15 +1,14 @@
 //! The firmware's core run on this machine beside the simulated chip.
 //!
-//! The core is plain integer Rust, so with the same bytes received before the same
-//! ticks it must ask for the same widths here as on the AVR, to the bit. What
-//! the pins then do can be held against it: any difference is a fault of the
-//! compiler, of the board's code or of the pulses.
+//! The core is plain integer Rust, so with the same bytes received before the same ticks
+//! it must ask for the same widths here as on the AVR, to the bit. What the pins then do
+//! is compared with that: any difference is a fault of the compiler, of the board's code
+//! or of the pulses.
 //!
-//! What has to be reconstructed is *when* main takes a byte: not before it is
-//! complete at the UNO, and not while the serial line has no room for the
-//! longest answer. That follows from the length of what has been written so far. What
-//! main waits for while it writes the EEPROM is not reconstructed: here that takes no
-//! time.
+//! What has to be reconstructed is *when* main takes a byte: not before it is complete at
+//! the UNO, and not while the serial line has no room for the longest answer. That
+//! follows from the length of what has been written so far. The waits of main while it
+//! writes the EEPROM are not reconstructed; here they take no time.
 
 use lizard_core::console::LONGEST_LINE;
 use lizard_core::robot::Robot;

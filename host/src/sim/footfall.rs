@@ -1,4 +1,4 @@
-//! What each foot does: a foot is never lifted, so its direction is all.
+//! What each foot does: it is never lifted, so only its direction matters.
 
 use simulated_uno::FREQUENCY;
 

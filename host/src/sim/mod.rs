@@ -1,5 +1,5 @@
-//! `lizard sim`: the real firmware on a simulated UNO, with what it says, what
-//! its servos get, and where that would take the robot.
+//! `lizard sim`: the real firmware on a simulated UNO: what it prints, which pulses its
+//! servos get, and how far the robot would walk.
 
 pub mod analysis;
 pub mod core_run;

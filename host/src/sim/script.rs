@@ -1,4 +1,4 @@
-//! What is said to the robot, and when.
+//! A script: commands for the robot, each with its time.
 
 /// A command at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]

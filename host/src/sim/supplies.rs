@@ -1,8 +1,8 @@
-//! The supplies of a simulated UNO that nobody has told otherwise.
+//! The default supplies of a simulated UNO.
 //!
-//! The firmware ends the pulses when a supply is too low. So a simulated board
-//! needs, besides its own 5 V, whatever voltage robot.toml says it measures: the
-//! servos' rail through its divider.
+//! The firmware ends the pulses when a supply is too low. So a simulated board needs,
+//! besides its own 5 V, the voltage that it measures according to robot.toml: the servos'
+//! rail through its divider.
 
 use lizard_core::supply::{Reading, Supplies};
 use lizard_robot::{Robot, healthy_rail_mv};

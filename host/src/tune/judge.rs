@@ -1,5 +1,6 @@
-//! How good a plan is: its gait is built and checked as the firmware's build does it, at the
-//! pace at which its fastest servo turns as fast as it may, and walked on random robots.
+//! How good a plan is: its gait is computed and checked like any gait of robot.toml, at
+//! the pace at which its fastest servo turns as fast as it may, and walked on random
+//! robots.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use lizard_twin::ServoModel;

@@ -1,4 +1,4 @@
-//! `lizard tune`: gait parameters that go faster with servos that turn no faster.
+//! `lizard tune`: searches gaits that walk faster with servos that turn no faster.
 
 mod goal;
 mod judge;

@@ -1,10 +1,11 @@
-//! What a gait's parameters are to the search: numbers from 0 to 1, and what they mean.
+//! A gait's parameters for the search: numbers from 0 to 1, and what they mean.
 //!
 //! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*,
 //! Science 150, 1965): what a leg does, its mirror image does half a cycle later, so the
-//! body goes straight. A turn on the spot has the leg diagonally across for the mirror
-//! image, so the body stays where it is. What is left of a wave's parameters is its duty,
-//! the time from the hind foot to the front foot of one side, and two amplitudes.
+//! body goes straight. In a turn on the spot the leg diagonally across takes the place of
+//! the mirror image, so the body stays where it is. The remaining parameters of a wave
+//! are its duty, the time from the hind foot to the front foot of one side, and two
+//! amplitudes.
 
 use std::fmt::Write;
 

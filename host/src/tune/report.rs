@@ -1,4 +1,4 @@
-//! What was found, beside the gait that was to be surpassed.
+//! The result, compared with the gait that was to be improved.
 
 use std::io::{self, Write};
 

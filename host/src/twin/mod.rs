@@ -1,5 +1,5 @@
-//! `lizard twin`: the real firmware on the simulated UNO moves a robot that nobody
-//! has built yet, and shows where it goes.
+//! `lizard twin`: the real firmware on the simulated UNO moves a robot that nobody has
+//! built yet, and shows how it walks.
 
 mod apng;
 pub mod html;

@@ -1,4 +1,4 @@
-//! What each command came to, beside what is predicted for it.
+//! The result of each command, compared with its prediction.
 
 use std::io::{self, Write};
 

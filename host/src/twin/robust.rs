@@ -1,4 +1,4 @@
-//! How far a gait's way spreads over robots and floors that are not quite alike.
+//! The spread of a gait's distance over robots and floors that differ a little.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! A cell of two servos' angles, and when all of it keeps a condition.
+//! A cell of two servos' angles, and whether all of its poses keep a condition.
 
 use std::f64::consts::TAU;
 

@@ -1,20 +1,21 @@
 //! What is known of an end in a cell: its couplers, its elbows and its legs.
 //!
 //! While the crank angles go from the cell's centre to any other pose of it, the crank
-//! tips move by at most crank times angle, and so does the line `k` between them.
-//! Three things follow:
+//! tips move by at most crank times angle, and so does the line `k` between them. Three
+//! bounds follow:
 //!
-//! * The tips' distance is in a range, and with it the sine between the couplers: the
-//!   type-2 margin, at its least in [`bounds::End::least`]. The tips have not crossed if
-//!   they are farther apart along the base than they can come nearer.
-//! * From `a u2 - b u3 = k`, the couplers of directions `u2` and `u3` over the line
-//!   `k`, the left one turns by at most `|dk| / (a sin(theta3 - theta2))`, the right one
-//!   by as much over `b`. Its crank turns by half the cell, so the type-1 margin, a
-//!   sine, is less than at the centre by at most both together.
-//! * A leg's margin is the sine of its own crank alone, the least at an end of its range.
+//! * The tips' distance is in a range, and so is the sine between the couplers, the
+//!   type-2 margin; [`bounds::End::least`] is its least value. The tips cannot cross if
+//!   they are farther apart along the base than they can move.
+//! * From `a u2 - b u3 = k`, the couplers of directions `u2` and `u3` over the line `k`,
+//!   the left one turns by at most `|dk| / (a sin(theta3 - theta2))`, the right one by as
+//!   much over `b`. Its crank turns by half the cell. So the type-1 margin, a sine, is
+//!   smaller than at the centre by at most the sum of both.
+//! * A leg's margin is the sine of its own crank angle, which is least at an end of its
+//!   range.
 //!
-//! The integers' margins are less than that by at most their bounds, and must still
-//! keep the integers' limits.
+//! The integers' margins are smaller than that by at most their error bounds, and must
+//! still keep the integers' limits.
 
 use lizard_core::bounds::{self, DIRECTION};
 use lizard_core::limits::Limits;

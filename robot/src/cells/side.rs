@@ -1,8 +1,9 @@
 //! What is known of a side in a cell: the length of its slider.
 //!
-//! While the crank angles go from the cell's centre to any other pose of it, the tips
-//! of the arms move by at most arm times angle, and the slider's length by as much. The
-//! integers are off by their bound, and must still be within the integers' stroke.
+//! While the crank angles go from the cell's centre to any other pose of it, the tips of
+//! the arms move by at most arm times angle, and the slider's length by as much. With the
+//! error bound of the integers added, the length must still be within the integers'
+//! stroke.
 
 use lizard_core::bounds;
 use lizard_core::section::Content;

@@ -1,20 +1,20 @@
-//! The deepest that the stack can get, worked out from the machine code.
+//! The greatest depth of the stack, computed from the machine code.
 //!
-//! On a chip without memory protection a stack that grows into the static data
-//! changes a servo's width or the guard's mind, and nobody is told. A measurement
-//! shows how deep it got, never how deep it can get: an interrupt may not have come
-//! at the worst moment, a rare refusal not have been said. So every way through the
-//! code is followed, and what it pushes is added up.
+//! On a chip without memory protection, a stack that grows into the static data changes a
+//! servo's width or a decision of the guard, and nothing reports it. A measurement shows
+//! how deep the stack got, and not how deep it can get: perhaps no interrupt came at the
+//! worst moment, or a rare refusal was not printed. So this module follows every path
+//! through the code and adds up what it pushes.
 //!
-//! The code is decoded here rather than read from avr-objdump's listing: what
-//! matters to the stack is two dozen instructions, fewer lines than a parser of that
-//! listing, and the program needs no tool beside it.
+//! It decodes the code itself and does not read avr-objdump's listing: only two dozen
+//! instructions matter to the stack, which takes fewer lines than a parser of that
+//! listing, and the program needs no other tool.
 //!
-//! What the bound rests on: interrupts do not nest, which is checked, but in a handler
-//! that never returns, as the watchdog's, where one more may come; no function
-//! calls itself, nothing jumps to a computed address, and the stack pointer changes
-//! by `push`, `pop`, calls, returns, and frames that r28 and r29 point to. Anything
-//! else is refused, with the name of the function.
+//! The bound assumes the following. Interrupts do not nest, which is checked; only during
+//! a handler that never returns, as the watchdog's, may one more come. No function calls
+//! itself, nothing jumps to a computed address, and the stack pointer changes by `push`,
+//! `pop`, calls, returns, and frames that r28 and r29 point to. Anything else is refused,
+//! with the name of the function.
 
 mod instruction;
 mod walk;

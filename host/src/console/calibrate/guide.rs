@@ -1,5 +1,5 @@
-//! The steps of a calibration: what each does at the robot, what it says, and which
-//! keys lead where.
+//! The steps of a calibration: what each step does with the robot, what it prints, and
+//! where each key leads.
 //!
 //! The signs are proven before the trims: a servo whose sign is wrong would turn
 //! away from where the arrow points.

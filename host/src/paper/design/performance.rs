@@ -1,5 +1,5 @@
-//! What a five-bar of given proportions is worth: workspace, maximal inscribed
-//! circle, and the local conditioning index over it.
+//! How good a five-bar of given proportions is: workspace, maximal inscribed circle, and
+//! the local conditioning index over it.
 
 use lizard_kinematics::{Circle, FiveBar, Vector, Workspace};
 use serde::Serialize;

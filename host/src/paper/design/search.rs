@@ -1,11 +1,10 @@
 //! Beyond the paper: which proportions would serve this robot best?
 //!
-//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning
-//! index afterwards. Here every point of the triangle is built at the given
-//! base, its cranks are mounted at the neutral angle that leaves them most
-//! sweep, and the sweep is limited by what limits the robot: all margins and
-//! the servos' travel. All four servos may be anywhere within it at once, so
-//! any gait of that amplitude is safe.
+//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index
+//! afterwards. Here every point of the triangle becomes a robot with the given base. Its
+//! cranks are mounted at the neutral angle that leaves them most sweep, and all margins
+//! and the servos' travel limit that sweep. All four servos may be anywhere within it at
+//! once, so any gait of that amplitude is safe.
 
 use indicatif::ProgressBar;
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
