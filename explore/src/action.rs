@@ -1,4 +1,4 @@
-//! What may happen to a robot, as a person would tell it.
+//! What may happen to a robot, in the words of a person.
 
 use std::fmt;
 

@@ -1,11 +1,11 @@
-//! What makes two states one: all that the core's own `Debug` shows, but for what
-//! only counts.
+//! When two states count as equal: if the core's own `Debug` shows the same, except for
+//! counters that only count.
 //!
-//! The core derives `Debug` for everything it holds, so nothing is forgotten here that
-//! is added there; and the core needs nothing for this. A field that cannot matter
-//! is left out, and one that is only compared with a few values, as a countdown, is
-//! taken as coarse as `RULES` says. Coarse means that of states which differ in no
-//! more than that the one that is reached first stands for all.
+//! The core derives `Debug` for everything it holds, so a new field is included
+//! automatically, and the core needs no code for this. A field that cannot matter is left
+//! out. A field that is only compared with a few values, such as a countdown, is rounded
+//! as `RULES` says. Of states that differ only in what rounding removes, the one that is
+//! reached first represents all.
 
 use std::fmt::{self, Write};
 

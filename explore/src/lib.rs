@@ -1,11 +1,11 @@
-//! The supervisor, explored and not sampled: what a user may rely on after any
-//! commands and any troubles, in every order that there is room for.
+//! Explores the supervisor instead of sampling it: what a user may rely on after any
+//! commands and any faults, in as many orders as time allows.
 //!
-//! No model of the firmware is explored but the firmware's own core, [`Main`], on
-//! its board without a chip, [`VirtualBoard`]. A [`World`] is both and what a
-//! bystander remembers ([`Seen`]); an [`Action`] is what may happen to it; and
-//! [`search()`] goes from all beginnings through all actions, breadth first, so that the
-//! first sequence found that breaks a rule is a shortest one.
+//! It does not explore a model of the firmware, but the firmware's own core, [`Main`], on
+//! the board without a chip, [`VirtualBoard`]. A [`World`] contains both and what an
+//! observer remembers ([`Seen`]). An [`Action`] is what may happen to it. [`search()`]
+//! goes from all beginnings through all actions, breadth first, so the first sequence
+//! found that breaks a rule is a shortest one.
 //!
 //! [`Main`]: lizard_core::step::Main
 //! [`VirtualBoard`]: lizard_core::virtual_board::VirtualBoard

@@ -1,9 +1,8 @@
 //! Breadth first through everything that may happen.
 //!
-//! All states of one length are gone through before any of the next, by as many
-//! threads as there are processors; so the first sequence that breaks a rule is one
-//! of the shortest. Of a state that was gone through only its number is kept, and how
-//! it was reached.
+//! All states of one length are processed before any of the next, by as many threads as
+//! there are processors. So the first sequence that breaks a rule is one of the shortest.
+//! For a processed state only its number is kept, and how it was reached.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;

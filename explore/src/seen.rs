@@ -1,5 +1,5 @@
-//! What a bystander remembers: the servos, the lines, the troubles. No part of it asks
-//! the core what it means to do.
+//! What an observer remembers: the servos, the lines, the faults. No part of it asks the
+//! core for its intentions.
 
 use lizard_core::pose::Pulses;
 

@@ -1,6 +1,5 @@
-//! A small robot: the paper's, with few and short gaits, so that the states of a
-//! walk soon come round again. One of its gaits is not safe, which no robot.toml
-//! would be allowed.
+//! A small robot: the paper's, with few and short gaits, so that the states of a walk
+//! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
 
 use lizard_core::adjustment::Reach;
 use lizard_core::gait::{Channel, Gait, SAMPLES, Wave};

@@ -1,4 +1,4 @@
-//! A robot, what it runs on, and a bystander who holds it to its promises.
+//! A robot, the board it runs on, and an observer who checks the rules.
 
 mod rules;
 

@@ -1,7 +1,7 @@
 //! The firmware on a bench: power it on, talk to it, measure its pulses.
 //!
-//! Tests on the running firmware should read as what a person does with a
-//! board: `boot`, `say("walk")`, wait some frames, look at the pulses. This is
+//! Tests of the running firmware should read like what a person does with a board:
+//! `boot`, `say("walk")`, wait some frames, look at the pulses. This is
 //! [`SimulatedBoard`] with the robot under test, where a failure ends the test.
 
 use std::ops::{Deref, DerefMut};

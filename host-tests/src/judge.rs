@@ -1,9 +1,9 @@
-//! The judge: a second simulator for what the first one says.
+//! The judge: a second simulator that checks the first.
 //!
-//! The simulated UNO stands on simavr, and a fault of simavr can look like a virtue
-//! of the firmware. avr8js is another simulator, in another language, by other
-//! people. The same image is given the same bytes at the same cycles on both, and
-//! what they say of it is compared: every pulse of every pin, every byte.
+//! The simulated UNO is built on simavr, and a fault of simavr can make the firmware look
+//! better than it is. avr8js is another simulator, in another language, by other people.
+//! Both get the same image and the same bytes at the same cycles, and their results are
+//! compared: every pulse of every pin, every byte.
 
 use std::fmt;
 use std::io::ErrorKind;

@@ -1,11 +1,11 @@
 //! Random robots without symmetry, each one valid.
 //!
-//! In the paper's robot left equals right, head equals tail and every limit of a
-//! margin is .3, so a mistake that exchanges two of them changes nothing. Here
-//! every length, servo and limit is another one. A robot is written as the text of
-//! a robot.toml and read by [`Robot::parse`], which refuses what is not valid: a
-//! robot that comes out of here is one that a builder could have. Each has a gait that
-//! moves, and every second one measures its servos' rail.
+//! In the paper's robot left equals right, head equals tail and every limit of a margin
+//! is .3, so a mistake that exchanges two of them changes nothing. Here every length,
+//! servo and limit is different. A robot is written as the text of a robot.toml and read
+//! by [`Robot::parse`], which refuses what is not valid: a robot that comes out of here
+//! is one that a builder could have. Each has a gait that moves, and every second one
+//! measures its servos' rail.
 
 use std::fmt::Write;
 

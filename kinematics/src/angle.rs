@@ -1,12 +1,11 @@
 //! Degrees, the one angle unit of the interface, and their trigonometry.
 //!
-//! Reducing degrees by multiples of 90 is exact, reducing radians is not: so
-//! sin 180 is 0 here, and an angle and the same angle a turn later have the
-//! same sine, bit for bit (but for the last bit exactly on a diagonal, where
-//! either octant may answer). Nothing branches on the argument, which makes these
-//! several times faster than the general functions of a mathematics library.
-//! Only IEEE additions, multiplications, divisions and comparisons are used,
-//! never fused: the same bits on every host.
+//! Reducing degrees by multiples of 90 is exact, reducing radians is not: so sin 180 is 0
+//! here, and an angle and the same angle a turn later have the same sine, bit for bit
+//! (but for the last bit exactly on a diagonal, where either octant may answer). No
+//! function branches on its argument, so they are several times faster than the general
+//! functions of a mathematics library. Only IEEE additions, multiplications, divisions
+//! and comparisons are used, never fused: the same bits on every host.
 //!
 //! The polynomials come from `examples/polynomials.rs`, which computes them with
 //! 256 bits; their own errors are at most 2.1e-17 of the result, a fifth of an

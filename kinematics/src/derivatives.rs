@@ -1,9 +1,9 @@
 //! Passive rates and accelerations from those of the servos.
 //!
-//! The paper announces the acceleration analysis and leaves it out. Both orders
-//! are linear in what is unknown, with the same matrix K*: projecting a loop
-//! equation on one coupler removes the other, and a 2x2 system falls apart into
-//! two divisions by sin(theta3 - theta2).
+//! The paper announces the acceleration analysis and leaves it out. Rates and
+//! accelerations are linear in the unknowns, with the same matrix K*. Projecting a loop
+//! equation on one coupler removes the other, so a 2x2 system becomes two divisions by
+//! sin(theta3 - theta2).
 
 use core::f64::consts::PI;
 

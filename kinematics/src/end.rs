@@ -1,10 +1,9 @@
 //! The two ends of the robot, each carried by a five-bar.
 //!
-//! The tail is built as the head is, seen in a mirror that lies along the
-//! chassis frame's x axis. So each end has a frame of its own: x to the robot's
-//! right, y away from the chassis, origin in the middle of the end's base. In
-//! that frame one closed form solves both ends. What differs between the ends
-//! is here and nowhere else.
+//! The tail is the mirror image of the head at the chassis frame's x axis. So each end
+//! has its own frame: x to the robot's right, y away from the chassis, origin in the
+//! middle of the end's base. In that frame one closed form solves both ends. Only this
+//! module knows how the ends differ.
 
 use core::fmt;
 

@@ -5,9 +5,9 @@
 //! circles meet. Both directions use the area of a triangle in Heron's factored
 //! form, which loses no digits when the triangle is flat.
 //!
-//! The paper solves R1 + R2 = R0 + R4 + R3 by half-angle tangents. Its theta3
-//! holds, but is 0/0 where the crank tips coincide and loses digits where A = 0;
-//! its theta2 (D, E, F, K4) has three sign slips.
+//! The paper solves R1 + R2 = R0 + R4 + R3 by half-angle tangents. Its theta3 is right,
+//! but it is 0/0 if the crank tips coincide and loses digits if A = 0; its theta2 (D, E,
+//! F, K4) has three wrong signs.
 
 mod inverse;
 

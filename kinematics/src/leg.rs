@@ -1,16 +1,15 @@
 //! A parallelogram that carries the foot.
 //!
-//! Ground and coupler are equally long, and so are crank and follower; then the
-//! follower stays parallel to the crank and the coupler never turns. At crank
-//! angles 0 and 180 degrees, the change points, all four joints lie on one line,
-//! and from there the linkage may go on as an anti-parallelogram, whose coupler
-//! turns. A robot that has passed a change point does not know which of the two
-//! it has, so the margin is signed: positive between the change points on the
-//! side where the leg was assembled, negative beyond them.
+//! Ground and coupler are equally long, and so are crank and follower; then the follower
+//! stays parallel to the crank and the coupler never turns. At crank angles 0 and 180
+//! degrees, the change points, all four joints lie on one line, and from there the
+//! linkage may continue as an anti-parallelogram, whose coupler turns. After a change
+//! point nobody knows which of the two it is, so the margin is signed: positive between
+//! the change points on the side where the leg was assembled, negative beyond them.
 //!
 //! The paper's half-angle formulas for the follower take the root of the
-//! anti-parallelogram for 0 < theta_lg < 180, have sign slips in J and L, and
-//! read theta1 in H for all four legs.
+//! anti-parallelogram for 0 < theta_lg < 180, have wrong signs in J and L, and have
+//! theta1 in H for all four legs.
 
 use crate::angle::wrap;
 use crate::end::End;

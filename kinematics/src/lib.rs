@@ -1,11 +1,10 @@
 //! Where every joint of the robotic lizard is, given its four servo angles.
 //!
-//! The body is a planar mechanism. Two five-bars (RRRRR) carry the head and the
-//! tail. On each side two arms and a prismatic joint form a loop (RRPRR). Four
-//! parallelograms are the legs. Four servos drive it all. Each loop is solved by
-//! the meeting of two circles, so each has a closed form; this crate states those
-//! forms geometrically, which keeps their accuracy in the places where the
-//! paper's half-angle formulas divide zero by zero.
+//! The body is a planar mechanism. Two five-bars (RRRRR) carry the head and the tail. On
+//! each side two arms and a prismatic joint form a loop (RRPRR). Four parallelograms are
+//! the legs. Four servos drive all of it. Each loop is solved by intersecting two
+//! circles, so each has a closed form. This crate uses the geometric forms, which stay
+//! accurate where the paper's half-angle formulas divide zero by zero.
 //!
 //! # Where the joints are, and back
 //!
@@ -47,21 +46,19 @@
 //!   except in rates and Jacobians, which say so.
 //! - Servo order A1, A2, A3, A4 = theta1, theta4, theta8, theta5: clockwise from
 //!   the front left.
-//! - Each [`End`] has a frame of its own, in which the tail is solved as the head
-//!   is; each [`Side`] has a front and a rear servo. They own every change of
-//!   frame and every order of servos.
+//! - Each [`End`] has its own frame, in which the tail is solved like the head; each
+//!   [`Side`] has a front and a rear servo. Only they change frames and orders of servos.
 //! - Legs in servo order: LF, RF, RH, LH.
-//! - Symbols (l0..l19, theta1..theta16, lg) are the paper's: *Optimal Kinematic
-//!   Design of a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. Where
-//!   a printed equation does not hold, the item that replaces it says so;
-//!   `lizard errata` measures by how much.
+//! - Symbols (l0..l19, theta1..theta16, lg) are the paper's: *Optimal Kinematic Design of
+//!   a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. If a printed equation does
+//!   not hold, the item that replaces it says so; `lizard errata` measures its error.
 //!
 //! # Determinism
-//! Only IEEE basic operations, the square root among them, and `libm` are used,
-//! so the same input gives the same bits on every host, and a build script, a
-//! test and a web page agree. Square roots are the standard library's: `libm`'s
-//! is one SSE instruction in inline assembly, which no compiler turns into a
-//! vector instruction and which costs a hundred times its time among AVX ones.
+//! The crate uses only IEEE basic operations, including the square root, and `libm`. So
+//! the same input gives the same bits on every host, and a program, a test and a web page
+//! agree. The square root is that of the standard library: `libm`'s is one SSE
+//! instruction in inline assembly, which no compiler turns into a vector instruction and
+//! which takes a hundred times as long among AVX instructions.
 
 #[cfg(test)]
 extern crate self as lizard_kinematics;

@@ -1,11 +1,10 @@
 //! The two sides of the robot, each with a slider between a front and a rear
 //! arm.
 //!
-//! An arm is rigid with its crank and stands at a right angle to it, away from
-//! the robot's middle line. So the arm's direction is the crank's, turned by +90
-//! or -90 degrees, and the right side is the left one in a mirror. The paper
-//! prints theta16 = theta4 + 90 and theta13 = theta8 - 90, which would swing the
-//! right arms across the chassis.
+//! An arm is fixed to its crank at a right angle, away from the robot's middle line. So
+//! the arm's direction is the crank's, turned by +90 or -90 degrees, and the right side
+//! is the mirror image of the left one. The paper prints theta16 = theta4 + 90 and
+//! theta13 = theta8 - 90, which would swing the right arms across the chassis.
 
 use core::fmt;
 

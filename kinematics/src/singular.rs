@@ -1,9 +1,9 @@
 //! Where a five-bar is singular, as curves in the plane of its crank angles.
 //!
-//! The paper finds singular configurations at sin(theta2 + theta3) = 0, which
-//! holds in every symmetrical pose, home included. The determinant of K* is in
-//! truth sin(theta3 - theta2) times lengths. Each curve below is given by the
-//! left crank: with it fixed, a singular right crank is where two circles meet.
+//! The paper finds singular configurations at sin(theta2 + theta3) = 0, which holds in
+//! every symmetrical pose, including the neutral one. In fact the determinant of K* is
+//! sin(theta3 - theta2) times lengths. Each curve below is a function of the left crank:
+//! if that is fixed, the intersection of two circles gives the singular right crank.
 
 use crate::angle::wrap;
 use crate::five_bar::{AssemblyMode, FiveBar};

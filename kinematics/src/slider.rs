@@ -1,9 +1,8 @@
 //! A slider between two arms, on either side of the robot: the RRPRR loop.
 //!
-//! Both arms are rigid with a crank, so their tips are known, and the prismatic
-//! joint lies on the line from the rear tip to the front one: length
-//! d = l12 + l13 + s, direction phi. It has no singularity but d = 0; what limits
-//! it is its stroke.
+//! Both arms are rigid with a crank, so their tips are known, and the prismatic joint
+//! lies on the line from the rear tip to the front one: length d = l12 + l13 + s,
+//! direction phi. Its only singularity is d = 0; in practice its stroke limits it.
 //!
 //! The paper takes theta10 + theta11 = 0 for the two halves; with angles counted
 //! counter-clockwise the halves are opposite, theta11 = theta10 + 180, and the

@@ -1,4 +1,4 @@
-//! What the robot is made of: a list to buy by, its mass and its mass centre.
+//! What the robot is made of: a list to buy, its mass and its mass centre.
 
 use std::collections::BTreeMap;
 use std::fmt;

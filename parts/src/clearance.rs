@@ -1,8 +1,8 @@
-//! What comes nearest to what, at some poses.
+//! Which parts come closest to each other, at some poses.
 //!
-//! Two parts meet only where they share a height, so pairs of layers are chosen once
-//! by height, and at each pose their shapes are measured from above. Holes are left
-//! out, so nothing is nearer than it is found here.
+//! Two parts meet only where they share a height, so pairs of layers are chosen once by
+//! height, and at each pose their shapes are measured from above. Holes are left out, so
+//! the true distance is never smaller than the one found here.
 
 use std::fmt;
 

@@ -1,9 +1,9 @@
 //! One corner of the robot, to be printed first: a seat for one servo with the pivots of
 //! its leg, the servo's link, the leg, its strut and its foot.
 //!
-//! It tells in three hours what all parts tell in fifteen: whether the servo goes into its
-//! opening and the horn into its link, whether bearings turn without play, and how much
-//! a foot gives.
+//! After three hours of printing it shows what all parts show after fifteen: whether the
+//! servo fits its opening and the horn its link, whether bearings turn without play, and
+//! how much a foot gives.
 
 use crate::assembly::Assembly;
 use crate::body::{Kind, Mount};

@@ -1,7 +1,7 @@
 //! A sheet as a DXF file of AutoCAD's release 12, which every cutter's program reads.
 //!
-//! Our own writer of four entities: the crate that writes DXF brings a decoder of images
-//! and a calendar with it.
+//! This is our own writer, for four entities, because the crate that writes DXF depends
+//! on an image decoder and a calendar.
 
 use std::fmt::Write;
 

@@ -1,7 +1,6 @@
-//! What the robot carries beside its mechanism: supply, strips for wires, straps.
+//! What the robot carries besides its mechanism: supply, terminal strips, straps.
 //!
-//! Shops have them in many sizes: the sizes here are the largest that the places on the
-//! robot take.
+//! Shops have them in many sizes; the sizes here are the largest that fit on the robot.
 
 /// Width of the battery's strap, and its thickness, mm.
 pub const STRAP: [f64; 2] = [16.0, 1.5];

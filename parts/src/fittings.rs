@@ -1,6 +1,6 @@
 //! Where supply, strips for wires and straps are on the robot.
 //!
-//! Each has a place, so that the proof of fit knows it and its grams count.
+//! Each has a place, so that the proof of fit and the mass include it.
 
 use lizard_kinematics::Vector;
 

@@ -1,7 +1,7 @@
 //! How the parts are put together, step by step, with pictures of the model.
 //!
-//! The order is that in which a screwdriver still reaches every screw, and in which the
-//! electronics are tried before anything could jam.
+//! In this order a screwdriver can reach every screw, and the electronics are tried
+//! before anything could jam.
 
 use std::fmt::Write;
 

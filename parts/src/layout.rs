@@ -1,5 +1,5 @@
-//! Where pivots and anchors are, seen from above, and what the links measure: all that
-//! a pose does not move.
+//! Where pivots and anchors are, seen from above, and the lengths of the links:
+//! everything that does not depend on the pose.
 
 use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::servo::HAND;

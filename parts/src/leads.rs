@@ -1,9 +1,9 @@
 //! The servos' leads: three wires side by side, which leave the case at the shaft's end.
 //!
-//! A servo is pushed into the plate from above, its plug and its lead first. The lead
-//! stands out from the case, so the opening needs a notch for it there. Below the plate
-//! it is folded around the case's corner, runs between the servos towards the middle,
-//! and goes up through plate and deck to the board.
+//! A servo is pushed into the plate from above, with its plug and its lead first. The
+//! lead sticks out of the case, so the opening needs a notch for it. Below the plate it
+//! is folded around the case's corner, runs between the servos towards the middle, and
+//! goes up through plate and deck to the board.
 
 use lizard_kinematics::{End, Vector};
 use lizard_robot::ServoBody;

@@ -1,9 +1,9 @@
 //! The legs: crank, follower, coupler with the foot, and the screws that join them.
 //!
-//! A stiff robot on four stiff feet rocks: two feet that stand across from each other
-//! carry nearly all of it. So each foot stands on a leaf that yields, and its height can
-//! be set by a screw. A foot's pad drags, and what it drags at would bend a leaf that is
-//! high above the floor and turn the foot; so a column leads down, and the leaf is low.
+//! A stiff robot on four stiff feet rocks: two feet across from each other carry nearly
+//! all of its weight. So each foot is on a leaf that yields, and a screw sets its height.
+//! The friction of the pad would bend a leaf high above the floor and turn the foot. So a
+//! column leads down, and the leaf is low.
 
 use lizard_kinematics::Vector;
 

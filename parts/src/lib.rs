@@ -1,9 +1,9 @@
 //! The robot as parts: from robot.toml to bodies with layers and places.
 //!
-//! The mechanism is flat and all its joints are upright, so a part is a stack of
-//! layers, each a flat shape between two heights, and the whole robot is laid into one
-//! table of heights ([`Stack`]). What a pose does to it is a turn and a shift of each
-//! body in the plane; nothing moves up or down.
+//! The mechanism is flat and all its joints are upright, so a part is a stack of layers,
+//! each a flat shape between two heights, and one table has the heights of the whole
+//! robot ([`Stack`]). A pose turns and shifts each body in the plane; nothing moves up or
+//! down.
 //!
 //! # How it is meant
 //! ```
@@ -24,18 +24,18 @@
 //!   `Link`, `Crank`, `Follower`, `Foot` and `Strut` on their servo alone, `Coupler` on
 //!   both servos of its end, `Sleeve` and `Rod` on both of their side, `Chassis` on none.
 //!   Links, cranks and followers turn about a fixed point by the servo's angle; feet and
-//!   struts do not turn. [`Assembly::place`] is that rule.
+//!   struts do not turn. [`Assembly::place`] has this rule.
 //! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
-//!   union of its shapes less its holes, so the shapes without the holes are a hull that
-//!   is safe to prove collisions with: what keeps clear of it keeps clear of the part.
+//!   union of its shapes less its holes, so the shapes without the holes are a safe hull
+//!   for collision proofs: what is clear of the hull is clear of the part.
 //!   [`Shape::distance`] is exact.
-//! - [`Assembly::meet`] says which pairs touch by design: what moves together, and what
-//!   names the other in [`Body::meets`], as a screw does with what it passes through, the
-//!   rod with its sleeve, the strut with the leg's crank that its spring pulls at.
-//! - [`Assembly::prove`] proves how near any two bodies come at any pose that the guard
-//!   accepts; [`Assembly::nearest`] only looks at some.
-//! - [`Assembly::instead`] has bodies that may be put in instead of others: of the two
-//!   kinds of strut the one that robot.toml does not choose.
+//! - [`Assembly::meet`] says which pairs touch by design: bodies that move together, and
+//!   bodies that name the other in [`Body::meets`], as a screw names what it passes
+//!   through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
+//! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
+//!   accepts; [`Assembly::nearest`] only checks some poses.
+//! - [`Assembly::instead`] has bodies that may replace others: the kind of strut that
+//!   robot.toml does not choose.
 //! - [`Layout`] has pivots and anchors seen from above. Those of the legs are
 //!   [`lizard_robot::LegPlan`], which the drawings use as well.
 

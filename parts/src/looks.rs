@@ -1,10 +1,10 @@
 //! What makes the robot look like a lizard: two long links behind the tail's point, as
 //! the paper's robot has them, and a head ahead of the head's point.
 //!
-//! They move nothing and are moved by nothing else. Each is held by the screw of the
-//! point and by one more, on the coupler that it lies on, and so turns with that
-//! coupler: the left tail link under the lower coupler, the right one and the head on
-//! the upper one. At neutral they point straight back and ahead.
+//! They drive nothing. The screw of the point and one more hold each of them on the
+//! coupler on which it lies, so it turns with that coupler: the left tail link under the
+//! lower coupler, the right one and the head on the upper one. At neutral they point
+//! straight back and ahead.
 
 use lizard_kinematics::{End, Solution, Vector};
 

@@ -1,8 +1,8 @@
-//! Marks that tell apart what is alike but for left and right.
+//! Marks for parts that differ only as left and right.
 //!
-//! A link for A1 and its mirror image for A2 look alike in the hand. So where a part
-//! comes in several kinds, each kind has the numbers of its servos engraved: 13 is for
-//! A1 and A3. Digits are of straight lines, as on a pocket calculator.
+//! A link for A1 and its mirror image for A2 look alike in the hand. So if a part comes
+//! in several kinds, each kind has the numbers of its servos engraved: 13 is for A1 and
+//! A3. Digits are made of straight lines, as on a pocket calculator.
 
 use lizard_kinematics::Vector;
 

@@ -1,4 +1,4 @@
-//! What is made of a body: a part as it lies on the printer's bed, and how often.
+//! What is made for a body: a part as it lies on the printer's bed, and how many of it.
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::servo::{LEGS, NAMES};

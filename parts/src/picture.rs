@@ -1,9 +1,9 @@
 //! The robot, or some of its bodies, in perspective.
 //!
-//! Everything is a flat layer seen from above, so what hides what is known without a
+//! Everything is a flat layer seen from above, so the order of drawing is known without a
 //! search: the space is cut at every height at which something begins or ends, and the
-//! slices are drawn from below to above. In a slice, walls are drawn from far to near
-//! and then the tops: a wall never rises above its own slice, so it hides no top of it.
+//! slices are drawn from below to above. In a slice, walls are drawn from far to near and
+//! then the tops: a wall never rises above its own slice, so it hides no top of it.
 
 use std::fmt::Write;
 

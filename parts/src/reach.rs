@@ -1,11 +1,10 @@
 //! Whether every screw can be put in and turned in the order of the guide.
 //!
-//! A screw is pushed in along its axis from its head's side, so above its head nothing
-//! may lie, as far as it is long and as wide as the head is. A hex key is put into the
-//! head and held there while the nut is turned, so above the head a [`KEY`] has to
-//! have room, too; a socket goes over the nut and needs the room of a [`SOCKET`]. A nut
-//! that is sunk into a part is pushed in with a finger, and holds itself, as a hexagonal
-//! head does.
+//! A screw is pushed in along its axis from the side of its head, so the space above its
+//! head must be free, as long as the screw and as wide as its head. A hex key holds the
+//! head while the nut is turned, so there must also be room for a [`KEY`] above the head.
+//! A socket goes over the nut and needs the room of a [`SOCKET`]. A nut that is sunk into
+//! a part is pushed in with a finger, and holds itself, as a hexagonal head does.
 //!
 //! What is in place when a screw is turned: everything of the stages before, and all
 //! of its own stage but the screw and its nut, so within a stage hands may go in any
@@ -13,8 +12,8 @@
 //! leg. A screw whose nut comes in a later step is pushed in at its own stage, and
 //! turned when the nut comes.
 //!
-//! The servos stand at neutral. Where a screw cannot be reached then, another pose that
-//! the guard accepts is looked for, the nearest first, and the guide names it.
+//! The servos stand at neutral. If a screw cannot be reached then, the nearest other pose
+//! that the guard accepts is searched, and the guide names it.
 
 use std::fmt;
 

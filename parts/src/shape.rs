@@ -1,10 +1,10 @@
-//! Flat convex shapes with round corners: of these all parts are made.
+//! Flat convex shapes with round corners. All parts are made of them.
 //!
-//! A bar is a line that has a width; a hub is a point that has one; a plate is a
-//! polygon whose corners are rounded. All three are the same: the convex hull of a few
-//! points, grown by a radius. The distance of two such shapes is that of two polygons,
-//! less both radii, which is what a test for collisions wants; their outlines are
-//! lines and arcs, which is what a drawing wants.
+//! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon
+//! whose corners are rounded. All three are the same: the convex hull of a few points,
+//! grown by a radius. The distance of two such shapes is that of two polygons, less both
+//! radii, which suits a collision test. Their outlines are lines and arcs, which suits a
+//! drawing.
 
 use lizard_kinematics::Vector;
 

@@ -1,10 +1,10 @@
-//! At which heights the parts lie: the table that everything else is laid into.
+//! The heights of the parts, in one table that all other modules use.
 //!
 //! z is up, 0 the top of the chassis plate. All parts are flat and all joints are
-//! upright, so a mechanism without collisions is a table of heights in which whatever
-//! would meet from above has a height of its own. From below: the floor, the foot's
-//! leaf, the plate with the couplers of the legs beside it, the legs' cranks, the
-//! struts, the servos' links, the couplers of head and tail with the sliders, the deck.
+//! upright, so a mechanism without collisions is a table in which parts that overlap as
+//! seen from above have different heights. From below: the floor, the foot's leaf, the
+//! plate with the couplers of the legs beside it, the legs' cranks, the struts, the
+//! servos' links, the couplers of head and tail with the sliders, the deck.
 
 use lizard_robot::Parts;
 

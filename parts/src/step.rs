@@ -1,7 +1,7 @@
 //! A part as a STEP file (ISO 10303-21, AP214): a solid of planes and cylinders.
 //!
-//! Our own writer, because those that exist make splines of circles: a drawing program
-//! then no longer knows that a hole is round, nor where its middle is.
+//! This is our own writer, because existing ones turn circles into splines: then a
+//! drawing program no longer knows that a hole is round, or where its centre is.
 
 use std::fmt::Write;
 

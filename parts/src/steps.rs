@@ -1,12 +1,12 @@
 //! The order in which the robot is put together, from the plate to the first walk.
 //!
-//! A step is one picture of the guide. Within it hands still do one thing after
-//! another, some of it on the bench before it is set on the robot: these are its
-//! stages, and a screw can be reached or not depending on the stage. `reach.rs` looks.
+//! A step is one picture of the guide. Within a step the hands do one thing after
+//! another, some of it on the bench before it is mounted on the robot. These are the
+//! stages of the step, and `reach.rs` checks which screws can be reached in which stage.
 //!
-//! A servo does not say where it stands. So it is wired and driven to its middle before
-//! its link is pressed on, and turned the right way before anything joins the links: a
-//! link that turns the wrong way then moves nothing but itself.
+//! A servo does not report its angle. So it is wired and driven to its middle before its
+//! link is pressed on, and its direction is tested before anything joins the links: then
+//! a link that turns the wrong way moves only itself.
 
 use crate::body::{Body, Kind, Mount};
 

@@ -1,18 +1,17 @@
-//! What a servo's link drives its leg by: a strut with a spring, or a rigid one.
+//! The strut between a servo's link and its leg: one with a spring, or a rigid one.
 //!
 //! A strut with a stop: a hole at the servo's end, a slot at the leg's end, a spring
-//! between both screws. The spring pulls the leg's screw against the slot's inner end,
-//! so the leg follows its servo exactly until the foot is held with more than the
-//! spring's pull; then the screw runs along the slot.
+//! between both screws. The spring pulls the leg's screw against the slot's inner end, so
+//! the leg follows its servo exactly until the foot is held by more than the spring's
+//! pull. Then the screw runs along the slot.
 //!
-//! Hung between its screws a spring is longer than it was in the shop, and so is its
-//! coil, which reaches nearly from screw to screw, and further when the leg lags. So
-//! nothing of the strut is between its ends: it is a channel, on whose floor the coil
-//! lies along its whole length.
+//! Between its screws a spring is longer than in the shop, and so is its coil. It reaches
+//! nearly from screw to screw, and farther when the leg lags. So the strut is a channel,
+//! and the coil lies on its floor along its whole length.
 //!
-//! A rigid strut is a bar with two holes in the same places, for the same screws. It
-//! lies within the space of the one with a spring, so either can be put in where the
-//! other was, and it keeps from everything at least what the other keeps.
+//! A rigid strut is a bar with two holes in the same places, for the same screws. It fits
+//! in the space of the one with a spring, so either can replace the other, and it has at
+//! least the same distance from all other parts.
 
 use lizard_kinematics::Vector;
 use lizard_robot::SLOT;

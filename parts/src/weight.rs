@@ -1,4 +1,4 @@
-//! What the contact model is told of the bill: how much stands on the feet, and where.
+//! What the contact model gets from the bill: the weight on the feet, and where it is.
 
 use lizard_robot::Body;
 

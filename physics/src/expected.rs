@@ -1,5 +1,5 @@
-//! What trials with a real robot are expected to give, and which key of robot.toml takes
-//! what they give instead.
+//! The expected results of trials with a real robot, and the key of robot.toml for the
+//! real result.
 
 use std::fmt::Write as _;
 

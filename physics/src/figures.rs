@@ -1,4 +1,4 @@
-//! What the model and the engines said when they were last asked.
+//! The figures of the model and the engines from their last run.
 
 use std::collections::BTreeMap;
 

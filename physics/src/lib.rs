@@ -1,14 +1,14 @@
-//! The contact model beside two engines that others wrote.
+//! Compares the contact model with two engines that others wrote.
 //!
-//! What this project says of a way over the floor, its own contact model says. A fault of
-//! that model would be in every table, on the page and in the choice of gaits. So rapier and
-//! MuJoCo walk the same gaits: the one with a chassis and four dragging balls, the other
-//! with the robot as `lizard mjcf` writes it. Neither knows the model.
+//! Every prediction of a path over the floor comes from this project's own contact model.
+//! A fault of that model would affect every table, the page and the choice of gaits. So
+//! rapier and MuJoCo walk the same gaits: rapier with a chassis and four dragging balls,
+//! MuJoCo with the robot as `lizard mjcf` writes it. Neither uses the model.
 //!
-//! `make physics` runs both (`rapier`, `mujoco`), holds them against the model and
-//! against the figures that are kept in `figures.json`, and prints all of it. The tables of
-//! the documentation are made of the kept figures ([`Figures`], [`table`]), so a test
-//! without engines keeps them current.
+//! `make physics` runs both (`rapier`, `mujoco`), compares them with the model and with
+//! the figures in `figures.json`, and prints all of it. The tables of the documentation
+//! are made from the stored figures ([`Figures`], [`table`]), so a test without engines
+//! keeps them current.
 
 mod case;
 mod expected;

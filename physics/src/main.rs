@@ -1,5 +1,5 @@
-//! `make physics`: every gait of every file of robots/ by the contact model, by rapier and
-//! by MuJoCo. With `--write` the engines' answers take the place of the kept ones.
+//! `make physics`: every gait of every file of robots/ by the contact model, by rapier
+//! and by MuJoCo. With `--write` the new results replace the stored ones.
 
 use std::process::ExitCode;
 

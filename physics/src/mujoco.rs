@@ -1,4 +1,5 @@
-//! MuJoCo, asked by way of its Python package: `physics/judge.py` walks the files of a folder.
+//! MuJoCo, used through its Python package: `physics/judge.py` walks the files of a
+//! folder.
 
 use std::collections::BTreeMap;
 use std::io;

@@ -1,5 +1,5 @@
-//! The lizard in rapier: a chassis and four ball feet on springy joints. Which way it
-//! goes is nothing that this file says; rapier computes every contact.
+//! The lizard in rapier: a chassis and four ball feet on springy joints. This file does
+//! not say where the robot goes; rapier computes every contact.
 
 use std::f32::consts::TAU;
 

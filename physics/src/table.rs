@@ -1,4 +1,4 @@
-//! The figures as tables: all of them, and what README says of the paper's robot.
+//! The figures as tables: all of them, and those of the paper's robot for README.
 
 use std::fmt::Write as _;
 

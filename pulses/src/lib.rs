@@ -1,13 +1,12 @@
 //! Servo pulses, exact to the CPU cycle, and a steady clock: for any program on an
 //! ATmega328P (Arduino UNO, Nano, Pro Mini).
 //!
-//! A servo turns the width of a pulse into an angle, so every cycle by which an edge
-//! wanders is a tremor of the horn. Interrupt latency wanders: by the instruction under
-//! way, by whichever other interrupt runs. The remedy is to be early and then wait.
-//! Timer1 counts CPU cycles through slots; each compare interrupt reads how late it
-//! already is, waits out the rest of [`LEAD`] and only then stores the port. Both edges
-//! wait by the same code, so everything constant cancels and the width is the one that
-//! was asked for.
+//! A servo turns the width of a pulse into an angle, so every cycle of jitter makes the
+//! horn tremble. Interrupt latency varies with the current instruction and with other
+//! interrupts that run. The remedy is to be early and then wait. Timer1 counts CPU cycles
+//! through slots; each compare interrupt reads how late it already is, waits for the rest
+//! of [`LEAD`] and only then stores the port. Both edges wait in the same code, so every
+//! constant delay cancels, and the width is the one that was asked for.
 //!
 //! ```text
 //! slot    0         1         2         3         4         0
@@ -20,9 +19,9 @@
 //! ```
 //!
 //! One pin is high at a time. The last slot has no pin: it opens with the tick, and just
-//! before it closes the frame that main has submitted meanwhile is taken over. How long a
-//! slot is follows from the number of servos, [`slot_cycles`]: with four it is 4 ms, and a
-//! frame 20 ms to the cycle.
+//! before it closes, the engine takes over the frame that main has submitted meanwhile.
+//! The length of a slot follows from the number of servos, [`slot_cycles`]: with four it
+//! is 4 ms, and a frame 20 ms to the cycle.
 //!
 //! What a slot does is planned at the end of the slot before, so that the opening
 //! interrupt has next to nothing to do before its edge.
@@ -61,17 +60,18 @@
 //! # Rules this rests on
 //!
 //! - The longest of the program's other handlers and the longest stretch with interrupts
-//!   off take less than [`LEAD`] together, less the 60 cycles that a handler here
-//!   needs itself before it reads the timer. Where that fails the edge is late.
+//!   off take less than [`LEAD`] together, less the 60 cycles that a handler here needs
+//!   itself before it reads the timer. If they take longer, the edge is late.
 //! - Handlers do not let other interrupts in. Timer1's compare interrupts are served
 //!   before Timer0's, the USART's and all later ones. INT0, INT1, PCINT, the watchdog and
 //!   Timer2 are served before Timer1: where a program uses several of them, the times of
 //!   their handlers add up.
-//! - Interrupts are never off for 62 us, 1000 cycles. A slot whose end is missed so
-//!   is played again without a pulse, and everything comes a slot later from then on.
+//! - Interrupts must never be off for 62 us, 1000 cycles. If the end of a slot is missed
+//!   in this way, the slot is played again without a pulse, and everything comes a slot
+//!   later from then on.
 //! - Only the two handlers touch Timer1, because all its 16-bit registers share
 //!   one TEMP byte.
-//! - Everyone else changes pins of the servos' ports by single `sbi` and `cbi`
+//! - All other code changes pins of the servos' ports by single `sbi` and `cbi`
 //!   instructions, which no interrupt can split.
 
 #![cfg_attr(not(test), no_std)]

@@ -1,7 +1,7 @@
 //! Which register and bit a pin of the Arduino is.
 //!
-//! The numbers printed on the board say nothing about the chip: its pins sit in
-//! three ports in an order of their own.
+//! The numbers printed on the board are not those of the chip, whose pins are in three
+//! ports in another order.
 
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

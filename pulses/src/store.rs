@@ -1,4 +1,4 @@
-//! A store to a port at a cycle that was chosen before.
+//! A store to a port at a chosen cycle.
 
 use core::arch::asm;
 

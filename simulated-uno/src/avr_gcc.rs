@@ -1,11 +1,11 @@
 //! Little AVR programs, compiled when a test runs.
 //!
 //! A test of a driver, or of the simulator itself, needs a program of ten lines whose
-//! timing follows from the data sheet by counting. It is read best beside what is
-//! expected of it. Needs Debian's `gcc-avr` and `avr-libc`.
+//! timing follows from the data sheet by counting. It is easiest to read next to the
+//! expected result. Needs Debian's `gcc-avr` and `avr-libc`.
 //!
-//! All functions here panic with avr-gcc's own words if it refuses the program: in a test
-//! there is nothing else to do.
+//! All functions here panic with avr-gcc's own message if it refuses the program, because
+//! a test can do nothing else.
 
 use std::ffi::OsStr;
 use std::path::Path;

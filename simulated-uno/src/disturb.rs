@@ -1,4 +1,4 @@
-//! What no firmware asks for and every board may meet: see [`Uno::hold`].
+//! Disturbances that can happen to any board: see [`Uno::hold`].
 
 use crate::Uno;
 use crate::ffi;

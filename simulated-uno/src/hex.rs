@@ -1,4 +1,4 @@
-//! Images as Intel HEX: the form in which firmware is passed on when nobody debugs it.
+//! Images as Intel HEX, the usual form of firmware without debug information.
 
 use ihex::Record;
 

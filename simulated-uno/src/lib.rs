@@ -1,12 +1,11 @@
 //! An Arduino UNO for tests: an ATmega328P at 16 MHz on libsimavr, with an
 //! oscilloscope on its pins and a sender on its serial line.
 //!
-//! A firmware cannot be tested on the machine that compiles it, and a board on
-//! the desk has no cycle counter, no way to see its stack, and takes ten
-//! minutes for ten minutes. Here time is a number of CPU cycles that passes as
-//! fast as the host can go, and the same firmware with the same input gives the
-//! same edges to the cycle. Only [`Port`] keeps real time, for programs that
-//! expect a board on USB.
+//! A firmware cannot run on the machine that compiles it, and a board on the desk has no
+//! cycle counter, does not show its stack, and needs ten minutes for ten minutes. Here
+//! time is a number of CPU cycles that passes as fast as the host can compute, and the
+//! same firmware with the same input gives the same edges to the cycle. Only [`Port`]
+//! keeps real time, for programs that expect a board on USB.
 //!
 //! ```
 //! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};

@@ -1,10 +1,10 @@
-//! A simulated UNO that other programs meet as they meet a board on USB: at a
-//! serial port, in real time.
+//! A simulated UNO that other programs can use like a board on USB: at a serial port, in
+//! real time.
 //!
-//! avrdude, a terminal program or a host tool cannot wait for a simulation that
-//! knows cycles only. Here the chip's time follows the clock on the wall, bytes
-//! go through a pseudo terminal such as /dev/pts/3, and opening it resets the
-//! chip, as the DTR line of a USB cable does on an UNO.
+//! avrdude, a terminal program or a host tool cannot wait for a simulation that knows
+//! cycles only. Here the chip's time follows real time, bytes go through a pseudo
+//! terminal such as /dev/pts/3, and opening it resets the chip, as the DTR line of a USB
+//! cable does on an UNO.
 //!
 //! Three things differ from a cable. The speed set at the port has no effect: it
 //! is always the chip's 115200 baud. A second opening resets the chip only if

@@ -1,14 +1,15 @@
 //! A pseudo terminal: a serial port of this machine without a cable, its other
 //! end in this program.
 //!
-//! It is a serial port in all but three things. It has no DTR line, so who
-//! wants to know of an opening has to watch the file. The speed that a program
-//! sets has no effect. And what a program leaves unread waits for the next that
-//! opens it, where the driver of a cable forgets it; so it is thrown away here.
+//! It differs from a serial port in three things. It has no DTR line, so this module
+//! watches the file to notice that it is opened. The speed that a program sets has no
+//! effect. And what a program leaves unread would wait for the next program, while the
+//! driver of a real port forgets it; so it is thrown away here.
 //!
-//! To do that this program opens the port itself for a moment. A program that another
-//! thread starts just then has a copy of all that is open, until it is executed, and
-//! nothing is closed as long as there is a copy. So our own closing is waited for.
+//! For that, this program opens the port itself for a moment. If another thread starts a
+//! program at that moment, the new process has a copy of all open files until it calls
+//! exec, and the port stays open as long as there is a copy. So this module waits until
+//! the port is really closed.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};

@@ -1,9 +1,9 @@
-//! Waits that end. A test that waits for another program, a port or a thread waits
-//! for ever if that never comes, and the whole run with it. Here every wait has a
-//! limit, after which the test fails and says what it has waited for.
+//! Waits with a time limit. A test that waits for another program, a port or a thread
+//! would wait for ever if that never comes, and the whole run with it. Here every wait
+//! has a limit, after which the test fails and says what it has waited for.
 //!
-//! The limit is no measure of speed: a machine may be busy, and only what hangs is to
-//! fail. One limit, [`LIMIT`], is for all.
+//! The limit does not measure speed: a machine may be busy, and only a test that hangs
+//! should fail. All waits use one limit, [`LIMIT`].
 //!
 //! ```
 //! use lizard_time_limit::LIMIT;

@@ -1,4 +1,4 @@
-//! The rules, each in the words of whoever is promised it.
+//! The rules, each in the words of a user.
 
 use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;

@@ -1,17 +1,18 @@
-//! The robot as a model for MuJoCo, so that an engine that others wrote can walk it.
+//! The robot as a model for MuJoCo, so that an engine by other people can let it walk.
 //!
 //! Every part of the assembly becomes part of a rigid body, with the mass and the inertia
-//! of its own volume, where the assembly's own table of placements puts it. Hinges and
-//! slides join them as pins and sleeves do; where that makes a loop, a constraint closes
-//! it. The file knows nothing of walking: it has servos, pads and a floor.
+//! of its own volume, at its place in the assembly. Hinges and slides join the bodies as
+//! pins and sleeves do; a constraint closes each loop. The file knows nothing of walking:
+//! it has servos, pads and a floor.
 //!
 //! # Simplifications
-//! - Only pads and floor touch each other. That no two parts meet is proved elsewhere
+//! - Only pads and floor touch each other. A separate proof shows that no two parts meet
 //!   ([`crate::Proof`]).
 //! - A foot's leaf lets its post move straight up and down on a spring. Links do not bend.
-//! - A servo is a motor whose torque falls with its speed, whose rotor takes 20 ms to spin up,
-//!   behind a gain that asks for all of it at three degrees of error. It has no dead band.
-//! - Pads hold alike in all directions.
+//! - A servo is a motor whose torque falls with its speed, whose rotor takes 20 ms to
+//!   spin up, with a gain that applies the full torque at three degrees of error. It has
+//!   no dead band.
+//! - The friction of the pads is equal in all directions.
 
 mod closed;
 mod inertia;

@@ -1,4 +1,4 @@
-//! The bodies of the file: which there are, what carries each, and how it moves on that.
+//! The bodies of the file, what carries each of them, and how it moves on that.
 //!
 //! MuJoCo wants a tree. So each closed loop of the robot is cut at one of its joints,
 //! which a constraint closes again (`closed.rs`).

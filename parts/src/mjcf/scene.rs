@@ -1,5 +1,5 @@
-//! What the file says besides the robot's parts: feet, legs, servos, and what the servos
-//! are told.
+//! What the file has besides the robot's parts: feet, legs, servos, and the angles for
+//! the servos.
 
 use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Robot};
 

@@ -1,10 +1,10 @@
-//! What is seen at a few poses, before anything is proved.
+//! What a few poses show before anything is proved.
 //!
-//! A robot far from fitting has hundreds of parts that meet, and to bound each of them
-//! takes minutes. But one pose at which two parts meet is enough to refuse it. So parts
-//! are looked at where they are likely to meet first: at neutral, on a coarse grid, and
-//! at the edge of what the guard accepts, in every direction from neutral. If some meet,
-//! only the worst are bounded.
+//! A robot that does not fit at all has hundreds of parts that meet, and bounding each of
+//! them takes minutes. But one pose at which two parts meet is enough to refuse it. So
+//! the parts are checked first where they are likely to meet: at neutral, on a coarse
+//! grid, and at the edge of what the guard accepts, in every direction from neutral. If
+//! some meet, only the worst are bounded.
 
 use lizard_kinematics::Solution;
 use lizard_robot::Robot;

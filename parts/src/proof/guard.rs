@@ -1,8 +1,8 @@
 //! The poses that the guard accepts, as bounds of the servos' angles.
 //!
-//! What a safe pose is, [`Limits`] says, and here it is only asked. The firmware asks
-//! it in integers, and may decide otherwise within a band ([`SINE`], [`LENGTH`]); by
-//! that much the limits are relaxed, so what the firmware lets pass is looked at, too.
+//! [`Limits`] says what a safe pose is; this module only uses it. The firmware decides in
+//! integers, and may differ within a band ([`SINE`], [`LENGTH`]). The limits are relaxed
+//! by that band, so the proof also covers every pose that the firmware accepts.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};

@@ -1,8 +1,8 @@
 //! Numbers that are known to lie between two bounds.
 //!
 //! Every result is rounded outward by a step, so the bounds hold for the exact result,
-//! too. Crates that do this want a compiler for the newest processors (inari, for its
-//! rounding modes) or have no sines, and either needs a wrapper to be a [`Real`].
+//! too. Existing crates need a compiler for the newest processors (inari, for its
+//! rounding modes) or have no sines, and both would need a wrapper to be a [`Real`].
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -1,17 +1,18 @@
 //! Proof that no two parts meet at any pose that the guard accepts.
 //!
-//! Poses are not sampled. The servos' angles are cut into regions, and of each region
-//! is shown that the guard accepts nothing in it, or that in all of it the parts keep
-//! apart: in its middle they are apart by a distance, and no point can move from there
-//! by more than its rate times the region's half width. Rates come from the closed forms
-//! of the mechanism, taken on bounds instead of numbers (`interval.rs`, `slope.rs`),
-//! which give a coupler's turn near a singularity as well as a crank's. What is not
-//! shown in a region is asked in its halves (`search.rs`).
+//! Poses are not sampled. The servos' angles are divided into regions. For each region
+//! the proof shows either that the guard accepts no pose in it, or that the parts stay
+//! apart in all of it: in its middle they have a distance, and no point can move from
+//! there by more than its rate times the region's half width. Rates come from the closed
+//! forms of the mechanism, taken on bounds instead of numbers (`interval.rs`,
+//! `slope.rs`), which bound a coupler near a singularity as well as a crank. If a region
+//! proves nothing, its halves are tried (`search.rs`).
 //!
-//! How two parts stand to each other depends on the servos of their mounts alone
-//! ([`Mount::servos`](crate::Mount::servos)): on one or two, rarely three, so all of it
-//! takes seconds. `solids.rs` says what has to keep clear of what, `sweep.rs` leaves out
-//! what is never near, `guard.rs` says what the guard certainly refuses.
+//! The position of two parts to each other depends only on the servos of their mounts
+//! ([`Mount::servos`](crate::Mount::servos)): which are one or two, rarely three. So the
+//! whole proof takes seconds. `solids.rs` lists what has to keep clear of what,
+//! `sweep.rs` leaves out pairs that are never close, `guard.rs` knows what the guard
+//! certainly refuses.
 
 mod first;
 mod guard;

@@ -1,8 +1,7 @@
 //! Numbers that depend on some servos: bounds, and bounds of how fast they change.
 //!
-//! The closed forms of the mechanism take any number ([`Real`]), so they also take
-//! these, and give with each result how it depends on the servos: no derivative is
-//! worked out by hand.
+//! The closed forms of the mechanism take any number ([`Real`]), so they also take these,
+//! and each result says how it depends on the servos. No derivative is derived by hand.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,8 +1,8 @@
 //! What has to keep clear of what, sorted by what it moves with.
 //!
-//! A layer is what its shapes cover and no hole takes away. A shape is clear of a
-//! layer if it is beside the layer's shapes, or within one of its holes, as a pin is;
-//! how clear, is the better of the two.
+//! A layer is what its shapes cover and no hole takes away. A shape is clear of a layer
+//! if it is beside the layer's shapes, or within one of its holes, as a pin is. The
+//! larger of the two distances counts.
 
 use lizard_kinematics::Vector;
 

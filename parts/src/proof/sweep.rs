@@ -1,7 +1,7 @@
-//! Where a body can be at all: the rectangle that it never leaves.
+//! The rectangle that a body never leaves.
 //!
 //! Most pairs are never near each other, such as a head's and a tail's coupler. Their
-//! rectangles tell, and no poses of both have to be looked at.
+//! rectangles show that, so no poses have to be checked.
 
 use lizard_kinematics::Vector;
 

@@ -1,9 +1,9 @@
-//! `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
-//! tree, one at a time, and says which of them no test notices.
+//! `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the tree,
+//! one at a time, and reports those that no test notices.
 //!
 //! Most of the code in that list is the board's: it runs nowhere but in the firmware, so
-//! no tool for host crates reaches it. What is of the core is what trouble at random
-//! moments must find out in the running image, or, in an entry that names a package, that
+//! no tool for host crates reaches it. The entries of the core must be found by trouble
+//! at random moments in the running image or, if an entry names a package, by that
 //! package's own tests. The tests are built once, from the tree as it is, and given each
 //! mistaken firmware by LIZARD_ELF.
 //!

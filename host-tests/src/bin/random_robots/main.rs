@@ -1,8 +1,9 @@
 //! `make other-robots`: writes random robots as files like robot.toml, for the
 //! image's tests to run on each.
 //!
-//! Arguments: a folder, a seed, how many. The same seed writes the same robots. Among
-//! them is each of what the files of `robots/` have too little of, or none is written.
+//! Arguments: a folder, a seed, how many. The same seed writes the same robots. They
+//! include each feature that is too rare in the files of `robots/`; otherwise none is
+//! written.
 
 use std::path::Path;
 use std::process::ExitCode;

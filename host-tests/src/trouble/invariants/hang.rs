@@ -1,4 +1,4 @@
-//! What a hang does: it is felt, or it ends in a reset, and the pose is held.
+//! What a hang does: it has an effect or ends in a reset, and the pose is held.
 
 use simulated_uno::ResetCause;
 

@@ -1,4 +1,4 @@
-//! What stopped the robot is told: by `status`, on the console, by the LED.
+//! The reason for a stop is reported: by `status`, on the console, by the LED.
 
 use lizard_host::sim::lines::Line;
 use simulated_uno::{Edge, Pin, ResetCause, State};
