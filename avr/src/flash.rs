@@ -152,7 +152,7 @@ impl<'a, T> Flash<'a, [T]> {
         lifetime: PhantomData,
     };
 
-    /// `length` elements from `start` on, if there are so many.
+    /// `length` elements from `start` on, if there are that many.
     #[inline]
     pub const fn part(self, start: usize, length: usize) -> Option<Flash<'a, [T]>> {
         if start > self.len() || length > self.len() - start {
@@ -175,7 +175,7 @@ impl<'a> Flash<'a, [u8]> {
             self.at.as_ptr().cast_const().cast::<T>(),
             self.len() / const { nonzero(size_of::<T>()) },
         );
-        // SAFETY: so many values fit in the bytes, any bytes are a value of a `Plain`
+        // SAFETY: this many values fit in the bytes, any bytes are a value of a `Plain`
         // type, and `new` does not ask for alignment.
         unsafe { Flash::new(values) }
     }

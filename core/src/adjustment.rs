@@ -106,7 +106,7 @@ impl Adjustment {
 #[inline(never)]
 fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
     let neutral = servo.neutral.0;
-    // A pulse is the neutral one and n times the gain, to the nearest cycle; so many
+    // A pulse is the neutral one and n times the gain, to the nearest cycle; this many
     // times the gain is still within.
     let most = if (servo.gain < 0) == (end.0 < 0) {
         mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1

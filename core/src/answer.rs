@@ -19,7 +19,7 @@ pub enum Answer {
     Hint,
     /// The end of help, `ok help`.
     Helped,
-    /// `ok` and the state of the motion; the line goes on with the next.
+    /// `ok` and the state of the motion; the next answer continues the line.
     Status,
     /// Faults, restarts and supplies: apart, so that a frame need not wait for both.
     Health,

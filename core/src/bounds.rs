@@ -9,7 +9,7 @@
 //! Lengths of an end are counted in `U`, two steps of its bars, as the distance of the
 //! crank tips is. `k` is the vector from the left crank tip to the right one, `s = k^2`,
 //! `a` and `b` are the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A stroke, `k'`,
-//! marks what the integers have in the place of a true value.
+//! marks the value that the integers have for a true value.
 //!
 //! **1. Crank tips.** Base and cranks are rounded to a step, 1/4 U each. Half the base
 //! loses 1/2 U, the rounded sum of the products 1/2 U, and a direction is off by

@@ -24,7 +24,7 @@ pub enum Command {
     Status,
     /// All settings.
     Cal,
-    /// The pose every so many frames; 0: no more.
+    /// The pose every this many frames; 0: no more.
     Watch(u16),
     /// Something to do.
     Order(Order),
@@ -83,9 +83,9 @@ struct Form {
     /// The range of each, without its sign.
     least: u16,
     most: u16,
-    /// What is said of a line that is not of this form.
+    /// The answer to a line that is not of this form.
     wants: Text,
-    /// What is said of one out of range.
+    /// The answer to an argument out of range.
     range: Text,
 }
 
@@ -281,7 +281,7 @@ fn compare(line: &[u8], name: Name) -> Option<Misread> {
     }
 }
 
-/// Hundredths have so many decimals.
+/// Hundredths have this many decimals.
 const DECIMALS: u8 = 2;
 
 /// A word as an argument, without its sign, and whether that is a minus. 65535 stands
@@ -315,7 +315,7 @@ fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
     }
     let mut size = size?;
     if kind != Kind::Whole {
-        // Zeros in the place of the decimals that are not there.
+        // Zeros in place of the missing decimals.
         for _ in 0..DECIMALS.checked_sub(decimals.unwrap_or(0))? {
             size = append(size, 0);
         }

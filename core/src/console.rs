@@ -33,7 +33,7 @@ enum Output {
     Banner,
     /// The answer to the last line received, or a part of it.
     Answer(Answer),
-    /// Something that nobody asked for.
+    /// A notice that comes without a command.
     Notice(Notice),
     /// Why the guard holds the robot.
     Held,
@@ -141,7 +141,7 @@ impl Console {
     }
 
     /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
-    /// is, once after power-on; an answer or a part of it; what nobody asked for; why
+    /// is, once after power-on; an answer or a part of it; a notice; why
     /// the guard holds the robot; the pose, as `watch` asked for it. Of the longest
     /// line it writes one part, and the next call the other.
     ///

@@ -46,7 +46,7 @@ pub struct Control {
     cause: Cause,
     /// How many times since power came on.
     restarts: u8,
-    /// Whether a weak supply may have been why, and nobody else.
+    /// Whether a weak supply may have been the cause, and nothing else.
     may_be_supply: bool,
     /// Restarts in a row that a weak supply may have made.
     brown_outs: u8,
@@ -54,7 +54,7 @@ pub struct Control {
     job: Option<Job>,
     /// The pose of a rest on its way into the memory, or out of it.
     rested: Option<Writing>,
-    /// Why the guard holds the robot, until it is told.
+    /// Why the guard holds the robot, until that is printed.
     held: Option<Hazard>,
 }
 
@@ -229,7 +229,7 @@ impl Control {
         self.held.take()
     }
 
-    /// Whether the guard holds the robot and nobody has been told.
+    /// Whether the guard holds the robot and that has not been printed yet.
     pub const fn was_held(&self) -> bool {
         self.held.is_some()
     }

@@ -34,7 +34,7 @@ impl<'a> Curve<'a> {
         Self::of_octave(table, largest.leading_zeros() as u16)
     }
 
-    /// The same, for a largest argument with so many leading zeros.
+    /// The same, for a largest argument with this many leading zeros.
     pub const fn of_octave(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
             table,

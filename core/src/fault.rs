@@ -49,7 +49,7 @@ impl Fault {
         }
     }
 
-    /// What is said of it.
+    /// Its sentence.
     pub const fn sentence(self) -> Text {
         match self {
             Self::Guard => Text::WhyGuard,
@@ -138,7 +138,7 @@ mod tests {
         runs
     }
 
-    /// What docs/faults.md says of a pattern, so many frames after it began.
+    /// What docs/faults.md says of a pattern, this many frames after it began.
     fn is_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;

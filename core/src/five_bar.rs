@@ -153,7 +153,7 @@ impl Bars {
     }
 
     /// What the numbers have to be so that they can be worked with; what follows from the
-    /// bars is not computed anew.
+    /// bars is not computed again.
     pub const RANGES: [Range; 12] = {
         const LENGTH: [u16; 2] = [0, i16::MAX as u16];
         const COUPLER: [u16; 2] = [SHORTEST_COUPLER as u16, i16::MAX as u16];

@@ -151,7 +151,7 @@ mod tests {
             let first = (length <= 63).then_some(text);
             assert_eq!(ended(bytes.as_bytes()), [first, Some("stand".to_string())]);
         }
-        // Blanks count: who sends so many has lost the rest of the line.
+        // Blanks count: after this many, the rest of the line is lost.
         assert_eq!(ended(std::format!("{:>64}\r", "stand").as_bytes()), [None]);
     }
 

@@ -25,7 +25,7 @@ pub const SIZE: usize = 1024;
 /// Bytes of what a record says.
 pub const CONTENT: usize = 42;
 
-// The CRC's two bytes are told apart by whether their step is even.
+// Whether the step is even distinguishes the CRC's two bytes.
 const _: () = assert!(CONTENT.is_multiple_of(2));
 
 /// What a record says.

@@ -109,7 +109,7 @@ impl Motion {
         }
     }
 
-    /// Takes the robot at the beginning of `flash` in the place of none; the calibration
+    /// Takes the robot at the beginning of `flash` in place of none; the calibration
     /// of every servo has to follow.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ pub enum Order {
     Set(Servo, Setting),
     /// What is done three seconds after power-on.
     Boot(Boot),
-    /// A gait ends when no line has come for so many milliseconds; 0: never.
+    /// A gait ends when no line has come for this many milliseconds; 0: never.
     Deadman(u16),
     /// Keep the settings.
     Save,
@@ -52,6 +52,6 @@ pub enum Setting {
 pub enum Taken {
     /// It is done, or under way.
     Done,
-    /// It will be done by the memory, byte by byte; what came of it is told then.
+    /// The memory will do it, byte by byte; the result comes then.
     Later,
 }

@@ -56,7 +56,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The robot of a section that was just made, whose numbers nobody has checked yet:
-    /// for whoever is about to.
+    /// for the code that is about to check them.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
         section::find(flash).ok().map(|_| Self::at(flash))
@@ -87,7 +87,7 @@ impl<'a> Robot<'a> {
             .take_while(|byte| *byte != 0)
     }
 
-    /// A number by which two sets of numbers are told apart.
+    /// A number that differs between two robots.
     pub fn hash(&self) -> u32 {
         self.section.read(offset_of!(Header, hash) as u16)
     }

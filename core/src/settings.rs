@@ -172,12 +172,12 @@ impl Settings {
         self.put(BOOT, kept);
     }
 
-    /// A gait ends when no line has come for so many milliseconds; 0 for never.
+    /// A gait ends when no line has come for this many milliseconds; 0 for never.
     pub fn deadman(&self) -> u16 {
         self.get(DEADMAN)
     }
 
-    /// Sets how long a gait goes on without a line.
+    /// Sets how long a gait continues without a line.
     pub fn set_deadman(&mut self, ms: u16) {
         self.put(DEADMAN, ms);
     }
@@ -212,7 +212,7 @@ impl Settings {
 }
 
 /// What a gait is kept by: a number made of its name, so that it is found again
-/// when robot.toml has got other gaits. Never 0. Whoever makes a robot has checked that
+/// when robot.toml has other gaits. Never 0. The host that makes a robot has checked that
 /// no two of its gaits have the same.
 pub fn key(name: impl Iterator<Item = u8>) -> u16 {
     let mut key = 0u16;

@@ -50,7 +50,7 @@ pub trait Board {
     /// pulses are alive.
     fn submit(&mut self, pulses: Pulses) -> bool;
 
-    /// Puts off the watchdog, which begins the program anew when it hangs. Once it has
+    /// Feeds the watchdog, which restarts the program when it hangs. Once it has
     /// ended the pulses, nothing may put it off, and main must not go on.
     fn feed(&mut self);
 
@@ -143,7 +143,7 @@ impl Main {
         &self.control
     }
 
-    /// Whoever is at its serial line.
+    /// The console at its serial line.
     pub const fn console(&self) -> &Console {
         &self.console
     }

@@ -63,7 +63,7 @@ pub enum Response {
     /// The pose is frozen, if there is one, and the fault told until somebody orders
     /// a motion.
     Freeze(Fault),
-    /// The pulses end, and the fault is told until somebody orders a motion.
+    /// The pulses end, and the fault is shown until a command moves the robot.
     EndPulses(Fault),
 }
 
@@ -159,7 +159,7 @@ impl Before {
     pub const ALL: [Self; 3] = [Self::Nothing, Self::Rested, Self::Held];
 }
 
-/// The table of restarts: how the robot begins, and the fault that is told, by the
+/// The table of restarts: how the robot begins, and the fault that is shown, by the
 /// cause, by the restarts in a row that a weak supply may have made, and by what the
 /// program before did.
 #[rustfmt::skip]

@@ -39,7 +39,7 @@ lizard_avr::plain! {
 }
 
 lizard_avr::plain! {
-    /// What robot.toml says of the supplies.
+    /// The supplies, as in robot.toml.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Supplies {
         /// The chip's reference, mV.

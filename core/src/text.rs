@@ -40,7 +40,7 @@ texts! {
     CalBoot = "# boot ";
     CalDeadman = "# deadman ";
 
-    // Notices: what is said without being asked for.
+    // Notices: lines that come without a command.
     MemoryBlank = "# calibration: none is saved, robot.toml's is in use";
     MemoryOther = "# calibration: one of two copies is damaged, the other is in use";
     MemoryDamaged = "# calibration: damaged, robot.toml's is in use";

@@ -198,7 +198,7 @@ impl VirtualBoard {
         (FRAME_MS - self.ms) as u16
     }
 
-    /// The program begins anew: what a reset takes is gone, and main has to begin.
+    /// The program restarts: what a reset clears is gone, and main has to begin.
     pub fn reset(&mut self, cause: Cause) {
         let power_on = cause == Cause::Power;
         let told = !self.boot_loader;

@@ -15,9 +15,9 @@ pub enum Action {
     Step,
     /// Frames pass.
     Frames(u8),
-    /// Main does nothing for so many milliseconds.
+    /// Main does nothing for this many milliseconds.
     Stall(u16),
-    /// The supply falls or rises to so many millivolts.
+    /// The supply falls or rises to this many millivolts.
     Supply(u16),
     /// From now on three servos that wake pull the supply down to 2.4 V, or no longer.
     Weak(bool),
@@ -77,7 +77,7 @@ impl Action {
         all.extend(LINES.map(Self::Say));
         // After the frame before, whose hand-over was 16 ms ago: main is late for
         // nothing, for a hand-over, for three, for five; it is interrupted by the
-        // watchdog and goes on; it is reset.
+        // watchdog and continues; it is reset.
         all.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         all.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
         all.extend([Self::Weak(true), Self::Weak(false)]);

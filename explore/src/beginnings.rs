@@ -97,7 +97,7 @@ pub fn all(robot: Robot<'static>) -> Vec<Beginning> {
         .iter()
         .map(|(name, actions)| {
             let mut world = World::power_on(robot, Eeprom::blank());
-            // Rules may be broken here; whoever walks finds that, too.
+            // Rules may be broken here; the walk finds that, too.
             _ = world.apply(Frames(160));
             for action in *actions {
                 _ = world.apply(*action);

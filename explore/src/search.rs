@@ -83,7 +83,7 @@ pub fn search(robot: Robot<'static>, most: usize) -> Found {
         }
     }
     let states = AtomicUsize::new(now.len());
-    // Each is told as a rule that is broken.
+    // Each is reported as a broken rule.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     while !now.is_empty() && states.load(Ordering::Relaxed) < most {

@@ -23,7 +23,7 @@ pub struct Seen {
     pub since_reset: u8,
     /// Whether it had a pulse in the last frame.
     pub is_on: [bool; 4],
-    /// Whether the robot rests: nobody has ordered pulses since they ended.
+    /// Whether the robot rests: no command has asked for pulses since they ended.
     pub rests: bool,
     /// Whether it has been told to rest since its last frame: that is what a reset
     /// before the next one may take.
@@ -89,7 +89,7 @@ impl Seen {
         };
     }
 
-    /// The processor begins anew; servos stay where they are.
+    /// The processor restarts; servos stay where they are.
     pub fn reset(&mut self) {
         self.is_on = [false; 4];
         self.since_reset = 0;
@@ -113,7 +113,7 @@ impl Seen {
 
     /// A person has ordered a motion, and the robot has taken the order.
     pub fn order(&mut self) {
-        // Whoever sends `rest` lets go of the servos, also right before `stand`.
+        // `rest` releases the servos, also right before `stand`.
         if self.is_on == [false; 4] || self.is_sent_to_rest {
             self.is_there = [false; 4];
         }

@@ -179,7 +179,7 @@ impl World {
         }
     }
 
-    /// The program has begun anew, and what it was saying is cut off.
+    /// The program has restarted, and its output is cut off.
     fn begun_anew(&mut self) {
         self.running.board.transmitter.text.clear();
         self.seen.reset();
@@ -270,7 +270,7 @@ impl World {
 
     fn frame(&mut self) -> Held {
         if self.running.is_over() {
-            // Main is no more; the watchdog is about to begin it anew.
+            // Main no longer runs; the watchdog is about to restart it.
             return self.stall(20);
         }
         let was_on = self.seen.is_on;
@@ -317,7 +317,7 @@ impl World {
     }
 
     /// Main does nothing; then it does what it missed, to the end of that frame. Or the
-    /// watchdog begins it anew.
+    /// watchdog restarts it.
     fn stall(&mut self, ms: u16) -> Held {
         for _ in 0..ms / 20 {
             let was_on = self.seen.is_on;
@@ -344,7 +344,7 @@ impl World {
         self.listen()
     }
 
-    /// Time passes without main; says whether the watchdog has begun it anew.
+    /// Time passes without main; says whether the watchdog has restarted it.
     fn lapse(&mut self, ms: u16) -> bool {
         let bites = self.running.board.pass(ms);
         if bites {

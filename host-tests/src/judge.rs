@@ -45,7 +45,7 @@ impl fmt::Display for PinPulse {
     }
 }
 
-/// What a simulator says of a run from power-on.
+/// The results of a simulator for a run from power-on.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Account {
     /// The finished pulses of all pins, in the order of their ends.

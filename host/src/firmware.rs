@@ -80,7 +80,7 @@ pub(crate) fn of_robot(
     Ok((path, image))
 }
 
-/// The program of an ELF or HEX file with this robot in the place of the one that it has;
+/// The program of an ELF or HEX file with this robot in place of the one that it has;
 /// as it is where it has none.
 ///
 /// # Errors

@@ -82,7 +82,7 @@ impl RobotFile {
         self.path.as_deref()
     }
 
-    /// What the user is told where the robot is from.
+    /// How messages name the source of the robot.
     ///
     /// # Errors
     /// This folder has no name any more.

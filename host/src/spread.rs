@@ -69,7 +69,7 @@ impl Part {
         piece % self.of as usize == self.number as usize - 1
     }
 
-    /// How many of so many pieces are this part's.
+    /// How many of this many pieces are this part's.
     #[must_use]
     pub fn count(self, pieces: usize) -> usize {
         (0..pieces).filter(|piece| self.has(*piece)).count()
@@ -184,7 +184,7 @@ impl Spread {
         Ok(Some(read.unwrap_or_else(|| (0..count).map(one).collect())))
     }
 
-    /// How many pieces of so many are computed here, for a bar.
+    /// How many pieces of this many are computed here, for a bar.
     #[must_use]
     pub fn own(&self, count: usize) -> usize {
         match (&self.merged, self.part) {

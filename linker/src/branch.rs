@@ -15,7 +15,7 @@ use crate::instruction::{is_branch, is_near_jump, skips};
 /// How far a branch reaches, bytes. Nothing gets farther apart afterwards.
 const REACH: u64 = 2 * 60;
 
-/// The first of them whose jump nobody else jumps to. `place` tells where a reference
+/// The first of them whose jump no other jump leads to. `place` tells where a reference
 /// leads in this code, if it does; `targets` are the offsets that something leads to.
 pub fn edit(
     code: &Code,

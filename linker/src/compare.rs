@@ -15,7 +15,7 @@ use crate::instruction::{is_branch, result, skips};
 /// The flag Z, as a branch names it.
 const ZERO: u16 = 1;
 
-/// The first such comparison that nobody jumps to. `place` tells where a reference leads in
+/// The first such comparison to which no jump leads. `place` tells where a reference leads in
 /// this code; `targets` are the offsets that something leads to.
 pub fn edit(
     code: &Code,
@@ -33,7 +33,7 @@ pub fn edit(
         if !is_compared || skipped || targets.contains(&compared.offset) {
             return None;
         }
-        // Only Z is the same: the branch must ask for it, and nobody for the others.
+        // Only Z is the same: the branch must use it, and nothing may use the others.
         if !is_branch(branch.code) || branch.code & 7 != ZERO {
             return None;
         }

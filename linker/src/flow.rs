@@ -99,7 +99,7 @@ pub fn registers(code: u16) -> Option<(u32, u32)> {
 
 /// What one instruction means for a value.
 enum Use {
-    /// It is asked for, or may be.
+    /// It is used, or may be.
     Read,
     /// There is another from here on.
     Lost,
@@ -107,7 +107,7 @@ enum Use {
     Kept,
 }
 
-/// Whether nobody asks for a register's value from an offset on.
+/// Whether nothing uses a register's value from an offset on.
 pub fn is_register_dead(
     code: &Code,
     from: u64,
@@ -122,7 +122,7 @@ pub fn is_register_dead(
     })
 }
 
-/// Whether nobody asks for the flags from an offset on, in a function that changes them: it
+/// Whether nothing uses the flags from an offset on, in a function that changes them: it
 /// leaves its caller none. One that it calls may be known to leave them alone
 /// (`-enable-ipra`).
 pub fn are_flags_dead(code: &Code, from: u64, place: &dyn Fn(&Reference) -> Option<u64>) -> bool {

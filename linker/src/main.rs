@@ -46,7 +46,7 @@ fn run() -> Result<ExitCode, String> {
 /// Writes the shorter form of an object beside it, and what it calls; their names. None for
 /// what is no object.
 fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
-    // Whatever cannot be read, avr-gcc knows what to say of it.
+    // If a file cannot be read, avr-gcc reports that.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);
     };

@@ -15,7 +15,7 @@ const REACH: u32 = 4096 - 96;
 /// way tells only in which direction things get better.
 const FAR: u32 = 16_384;
 
-/// How many orders are looked at, and by how much one may be worse than the one before at
+/// How many orders are tried, and by how much one may be worse than the one before at
 /// first; in the end not at all.
 const TRIES: u32 = 600_000;
 const WORSE: u32 = 4 * FAR;

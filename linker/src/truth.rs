@@ -18,7 +18,7 @@ use crate::instruction::{is_branch, skips};
 /// The flag Z, as a branch names it.
 const ZERO: u16 = 1;
 
-/// The first such value that nobody asks for later. `place` tells where a reference leads in
+/// The first such value that is not used later. `place` tells where a reference leads in
 /// this code; `targets` are the offsets that something leads to, each as often as it does.
 pub fn edit(
     code: &Code,

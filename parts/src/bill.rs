@@ -199,7 +199,7 @@ impl Hold {
         self.end[1] < 0.7 * STALL
     }
 
-    /// Of the robot's legs, whose struts are alike. `None` where these are rigid.
+    /// Of the robot's legs, whose struts are equal. `None` where these are rigid.
     #[must_use]
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();

@@ -2,7 +2,7 @@
 
 use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
 
-/// What the mechanism does, as far as it is asked for.
+/// The joints of the mechanism, computed on demand.
 pub trait Joints<T> {
     /// Direction of a servo's crank, length one, chassis frame.
     fn crank(&self, servo: usize) -> Vector<T>;
@@ -26,7 +26,7 @@ impl Joints<f64> for Solution {
     }
 }
 
-/// Joints that are computed when they are asked for: those of servos whose crank is
+/// Joints that are computed on demand: those of servos whose crank is
 /// not known have no meaning.
 pub struct Cranks<'a, T> {
     /// The robot's dimensions.

@@ -50,7 +50,7 @@ fn wires(sign: f64) -> Vector {
     Vector::new(0.0, sign * (STANDOFFS[1] + BEYOND))
 }
 
-/// The holes through which leads and wires go up, in plate and deck alike.
+/// The holes through which leads and wires go up, both in plate and deck.
 pub fn holes() -> [Shape; 2] {
     let [across, along] = WIRES;
     [1.0, -1.0].map(|sign| Shape::rectangle(wires(sign), Vector::new(across, along), 1.0))

@@ -125,7 +125,7 @@ struct Meeting<'a> {
 struct Maker {
     solid: Solid,
     known: BTreeMap<(usize, usize, usize, usize), usize>,
-    /// Middles of pieces, by which two arcs between the same points are told apart.
+    /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
     uprights: BTreeMap<(usize, usize), usize>,
 }
@@ -352,7 +352,7 @@ trait Quarter {
 }
 
 impl Quarter for f64 {
-    /// The bulge of an arc of so many rad that turns as another does; of a line 0.
+    /// The bulge of an arc of this many rad that turns as another does; of a line 0.
     fn tan_of_quarter(self, bulge: f64) -> f64 {
         if bulge == 0.0 {
             0.0

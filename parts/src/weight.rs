@@ -6,7 +6,7 @@ use crate::bill::Bill;
 
 /// A mass centre nearer than this to the middle of the plate is in the middle, mm.
 const MIDDLE: f64 = 1.0;
-/// A robot.toml may be off by this share of the mass, or by so many mm, and still say
+/// A robot.toml may be off by this share of the mass, or by this many mm, and still say
 /// what the bill says.
 const SHARE: f64 = 0.05;
 const OFF: f64 = 3.0;

@@ -87,8 +87,8 @@ impl Case {
         ]
     };
 
-    /// What the contact model is told of a robot: pads hold alike in all directions, as
-    /// they do in the engines.
+    /// The robot as the contact model gets it: the friction of the pads is equal in all
+    /// directions, as they do in the engines.
     #[must_use]
     pub fn ground(self, robot: &Robot) -> Ground {
         Ground {

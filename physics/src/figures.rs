@@ -33,7 +33,7 @@ impl From<Travel> for Way {
     }
 }
 
-/// What is said of a cycle.
+/// The figures of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
     /// By the contact model; none where two feet pull against two, so that the smallest
@@ -45,7 +45,7 @@ pub struct Said {
     pub mujoco: Way,
 }
 
-/// Engines may differ from the model by so many mm, or by this share of the way, or by so
+/// Engines may differ from the model by this many mm, or by this share of the way, or by so
 /// many deg: with level feet; with one that is too long on leaves that give; and on stiff
 /// ones, where a few hundredths of a mm decide which feet hold.
 const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);

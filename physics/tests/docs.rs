@@ -1,6 +1,6 @@
 //! The pages show what the engines said, and that is as near to the model as it must be.
 //!
-//! `BLESS_PHYSICS=1` writes the tables anew; `make docs` does it.
+//! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
 
 use lizard_robot::Robot;
 

@@ -44,8 +44,8 @@ mod servos {
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
 static CAME: Byte = Byte::new(0);
 
-/// The width of a servo in a frame: 1000 to 2000 us and back, by steps of so many cycles
-/// that no two servos move alike.
+/// The width of a servo in a frame: 1000 to 2000 us and back, by steps of this many cycles
+/// that no two servos move in the same way.
 fn width(servo: u8, frame: u16) -> u16 {
     let step = 16 * u16::from(servo) + 5;
     let way = frame.wrapping_mul(step) % 32_000;

@@ -87,8 +87,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     }
 
     /// From now on no pulse begins; one that is under way ends as planned, within a
-    /// slot. For whoever is about to reset the board, which would cut it short and so
-    /// send the servo to its end stop. The tick goes on. One store, right in an
+    /// slot. Call it before you reset the board, which would cut the pulse short and so
+    /// send the servo to its end stop. The tick continues. One store, right in an
     /// interrupt and anywhere else; only a reset ends it.
     #[inline(always)]
     pub fn hush(&self) {

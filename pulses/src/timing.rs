@@ -22,7 +22,7 @@ const SHORTEST_SLOT: u32 = 40_000;
 /// 4 ms: what a slot has with four servos.
 const LONGEST_SLOT: u32 = 64_000;
 
-/// Cycles of a slot with so many servos: 20 ms shared by them and the slot of the tick.
+/// Cycles of a slot with this many servos: 20 ms shared by them and the slot of the tick.
 /// But 2.5 ms at least, so that with eight servos a frame takes 22.5 ms, and 4 ms at most,
 /// so that it takes 16 ms with three.
 ///

@@ -118,7 +118,7 @@ impl CheckedGait {
     /// that starts at phase 0, by the contact model. With springs it is the second
     /// cycle, which all later ones repeat.
     ///
-    /// Whether it depends on ties is asked of rigid legs: ties are between pads.
+    /// Whether it depends on ties is decided with rigid legs, because ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
         known.known_of(self.walked(ground).travel)

@@ -497,7 +497,7 @@ mod tests {
         );
     }
 
-    /// What a robot is told that has too many bytes of gaits.
+    /// The error of a robot that has too many bytes of gaits.
     const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other has";
 
     #[test]

@@ -15,7 +15,7 @@ use crate::spring::Spring;
 use crate::strut::Strut;
 use crate::yields::{Side, Yield};
 
-/// What drives the legs, which are alike.
+/// What drives the legs; all four are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// Its kind.

@@ -47,7 +47,7 @@ impl Hips {
 
     /// The feet of legs that are pivoted so.
     pub fn feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
-        // Left and right are alike, head and tail may be of different width.
+        // Left and right are equal; head and tail may have different widths.
         let shafts = lizard.shafts();
         let [head, tail] = End::ALL.map(|end| {
             let [_, right] = end.servos();

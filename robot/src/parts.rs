@@ -176,7 +176,7 @@ const KEYS: [&str; 18] = [
     "head",
 ];
 
-/// Where the kind of strut is said now.
+/// The key that gives the kind of strut now.
 const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
 
 impl Parts {

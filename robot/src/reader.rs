@@ -52,7 +52,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses keys that are said elsewhere now, and tells where.
+    /// Refuses keys that have moved, and says where to.
     pub fn moved(&self, names: &[&str], to: &'static str) -> Checked<()> {
         match names.iter().find(|name| self.has(name)) {
             Some(name) => Err(Problem::Moved(to).at(self.path(name))),
@@ -146,7 +146,7 @@ impl<'a> Section<'a> {
         self.numbers(name, min, max, unit)
     }
 
-    /// An array of exactly so many numbers within `min` to `max`.
+    /// An array of exactly this many numbers within `min` to `max`.
     pub fn numbers<const N: usize>(
         &self,
         name: &str,

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Whether bars fit at so many bits, in the words of the core: 127 and 255 times
+    /// Whether bars fit at this many bits, in the words of the core: 127 and 255 times
     /// 256 steps.
     fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
         let steps = |mm: f64| mm * f64::from(1u32 << bits);

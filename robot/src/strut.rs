@@ -18,7 +18,7 @@ use lizard_kinematics::wrap;
 /// How far the leg's screw can run in its slot, mm.
 pub const SLOT: f64 = 5.0;
 
-/// A slotted strut and its spring; all four are alike.
+/// A slotted strut and its spring; all four are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strut {
     /// What the spring pulls while the screw is at its end of the slot, N.

@@ -137,7 +137,7 @@ fn word(value: &str) -> Option<String> {
 mod tests {
     use super::mistake;
 
-    /// What is said of a text whose last line is wrong.
+    /// The error of a text whose last line is wrong.
     fn said(text: &str) -> String {
         let at = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
         mistake(text, at, "expected newline")

@@ -153,7 +153,7 @@ impl Bank {
         }))
     }
 
-    /// The largest amplitude that is asked of each waveform, deg. Tables are
+    /// The largest amplitude that each waveform needs, deg. Tables are
     /// stored at that size, so that no gain exceeds 1.
     fn largest(&self, parts: &[Part]) -> Vec<f64> {
         let of = |wave| {

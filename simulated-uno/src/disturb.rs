@@ -13,7 +13,7 @@ impl Uno {
         unsafe { ffi::uno_hold(self.raw, cycles) }
     }
 
-    /// Main executes nothing for so many cycles, as if the instruction that is next
+    /// Main executes nothing for this many cycles, as if the instruction that is next
     /// took that long; interrupts are served all the time. While main keeps them
     /// off it does go on.
     pub fn stall_main(&mut self, cycles: u64) {

@@ -293,7 +293,7 @@ impl Image {
         flash
     }
 
-    /// Puts bytes into flash at the beginning of a range, in the place of whatever the image
+    /// Puts bytes into flash at the beginning of a range, in place of whatever the image
     /// has in it: data that is exchanged without a compiler.
     ///
     /// # Errors

@@ -33,7 +33,7 @@ use std::time::{Duration, Instant};
 use crate::pty::Pty;
 use crate::{FREQUENCY, State, Uno};
 
-/// How often the port is looked at: what the USB chip of an UNO takes as well.
+/// How often the port is checked: as often as the USB chip of a UNO does.
 const TICK: Duration = Duration::from_millis(1);
 /// The longest time that is caught up when this program was held up. More would
 /// let a watchdog fire before the other program had its turn.
@@ -76,14 +76,14 @@ impl Port {
         self.pty.path()
     }
 
-    /// Whether a program had the port open when it was last looked at.
+    /// Whether a program had the port open at the last check.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.open
     }
 
     /// Lets `uno` run in real time for `time` of the wall clock, and passes bytes
-    /// between it and whoever has the port open. A chip that halts or crashes does
+    /// between it and the program that has the port open. A chip that halts or crashes does
     /// nothing more until the next opening resets it.
     ///
     /// Edges ([`Uno::take_edges`]) pile up for the caller, 1600 bytes a second from
@@ -171,7 +171,7 @@ fn cycles(time: Duration) -> u64 {
 }
 
 /// A port with its UNO on a thread of its own. Dropped without
-/// [`Background::stop`], it goes on until the program ends.
+/// [`Background::stop`], it continues until the program ends.
 #[derive(Debug)]
 pub struct Background {
     path: PathBuf,

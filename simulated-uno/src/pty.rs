@@ -154,7 +154,7 @@ impl Pty {
         };
         tcflush(&theirs, QueueSelector::IFlush)?;
         drop(theirs);
-        // Who opens a port to write is told from us by how it is closed. If it is open
+        // How the port is closed tells a program that opens it to write from us. If it is open
         // in the end, another program has opened it.
         let mut closed = false;
         comes(|| {
@@ -176,7 +176,7 @@ impl Pty {
         }
     }
 
-    /// Writes for whoever has it open; returns how many bytes found room.
+    /// Writes to the program that has it open; returns how many bytes found room.
     ///
     /// # Errors
     /// Those of the system.

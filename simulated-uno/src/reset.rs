@@ -19,7 +19,7 @@ pub enum ResetCause {
 /// A reset that happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reset {
-    /// Cycle at which the program started anew.
+    /// Cycle at which the program restarted.
     pub cycle: u64,
     /// What it came from.
     pub cause: ResetCause,
@@ -27,7 +27,7 @@ pub struct Reset {
 
 impl Uno {
     /// Pulls the RESET pin for an instant, as opening the serial port does. SRAM,
-    /// EEPROM and r0 to r31 keep what they hold, an EEPROM operation goes on, the
+    /// EEPROM and r0 to r31 keep their contents, an EEPROM operation continues, the
     /// I/O registers take their reset values, every pin becomes an input and is
     /// recorded as low. A halted or crashed firmware lives again. Without power,
     /// or with too little, nothing happens.

@@ -20,7 +20,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often a condition is looked at.
+/// How often a condition is checked.
 const LOOK: Duration = Duration::from_millis(1);
 
 /// The limit of all tests: much longer than anything takes on a busy machine.
@@ -68,7 +68,7 @@ impl TimeLimit {
     }
 
     /// What `work` returns, which may block: a read, a join. It runs on a thread of its
-    /// own, which goes on until the test program ends if the limit comes first.
+    /// own, which continues until the test program ends if the limit comes first.
     ///
     /// # Panics
     /// It does not return within the limit, see [`TimeLimit::until`]; or it panics.
@@ -117,7 +117,7 @@ impl TimeLimit {
     ///
     /// # Errors
     /// It cannot be started; [`ErrorKind::TimedOut`] with a sentence if it, or one that
-    /// it has started and that may print, goes on beyond the limit.
+    /// it has started and that may print, runs beyond the limit.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let too_long = |what: &str| {

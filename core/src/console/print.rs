@@ -217,7 +217,7 @@ where
     }
 }
 
-/// What is said without being asked for.
+/// Prints what comes without a command.
 pub(super) fn notice<W>(out: &mut W, notice: Notice, control: &Control) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,

@@ -12,7 +12,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Reports every so many frames, the first after as many.
+    /// Reports every this many frames, the first after as many.
     pub(super) const fn every(frames: u16) -> Self {
         Self {
             every: frames,

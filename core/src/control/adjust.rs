@@ -68,7 +68,7 @@ impl Control {
         }
     }
 
-    /// Hands the motion what the settings say of the servos.
+    /// Gives the motion the calibration that the settings contain.
     pub(super) fn calibrate(&mut self) {
         for servo in Servo::ALL {
             let calibration = self.settings.calibration(servo, self.motion.robot());

@@ -30,7 +30,7 @@ pub enum Job {
 impl Control {
     /// True while there is something to do with the memory. No order is to be given
     /// meanwhile. The pose of a rest waits for a supply that allows to write it, and
-    /// nobody has to wait with it.
+    /// nothing has to wait with it.
     pub fn is_writing(&self) -> bool {
         self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
     }

@@ -9,7 +9,7 @@ use super::*;
 use crate::pose::{Pose, Pulses};
 use crate::units::{Sweep, Width};
 
-/// RAM that keeps what it holds, and a reset after so many stores.
+/// RAM that keeps what it holds, and a reset after this many stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
     /// Stores until the reset, after which none comes to pass.

@@ -18,7 +18,7 @@ fn frame(safety: &mut Safety, health: &Health) -> Reaction {
     safety.frame(health, &supplies(), State::Still, 0)
 }
 
-/// A board at so many volts, its rail at 6 V.
+/// A board at this many volts, its rail at 6 V.
 fn at(volts: f64) -> Health {
     Health {
         supply: Reading {
@@ -120,7 +120,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
             while safety.frame(&WELL, &supplies(), State::Walking, deadman) == Reaction::None {
                 frames += 1;
             }
-            // A line may come just before a frame: so many milliseconds have passed since,
+            // A line may come just before a frame: this many milliseconds have passed since,
             // in this frame and in the one before.
             let (least, before) = (20 * frames, 20 * frames - 20);
             assert!(

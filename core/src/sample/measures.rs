@@ -56,7 +56,7 @@ impl Measures {
         }
     }
 
-    /// A robot of which no two parts are alike.
+    /// A robot in which no two parts are equal.
     pub fn odd() -> Self {
         let servo = |neutral, neutral_us, us_per_degree: f64, back: f64, on: f64| Servo {
             neutral,

@@ -89,7 +89,7 @@ impl Running {
         self.settle();
         self.board.pass(self.board.until_tick());
         self.settle();
-        // Main goes on between the pulses, too.
+        // Main also runs between the pulses.
         for ms in [4, 4, 4, 4, 3] {
             self.board.pass(ms);
             self.settle();
@@ -97,7 +97,7 @@ impl Running {
         self.board.begun()
     }
 
-    /// Frames, and what is said in them.
+    /// Frames, and the output in them.
     pub fn run(&mut self, frames: u32) -> Vec<String> {
         let mut said = Vec::new();
         for _ in 0..frames {
@@ -107,7 +107,7 @@ impl Running {
         said
     }
 
-    /// Frames in which nobody takes what there is to say.
+    /// Frames in which nobody reads the output.
     pub fn run_unheard(&mut self, frames: u32) {
         self.board.transmitter.held = true;
         for _ in 0..frames {
@@ -135,7 +135,7 @@ impl Running {
         lines
     }
 
-    /// Sends bytes, each after what there was to say, and returns all that is said.
+    /// Sends bytes, each after the output before it, and returns all output.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = self.lines();
         for byte in bytes {

@@ -14,7 +14,7 @@ const MS: u64 = 16_000;
 pub struct Transmitter {
     /// All that was written and not taken yet.
     pub text: String,
-    /// Whether nobody takes anything.
+    /// Whether nobody reads anything.
     pub held: bool,
     /// CPU cycles for a byte; 0 for a line that takes all at once.
     per_byte: u64,
@@ -42,7 +42,7 @@ impl Hash for Transmitter {
 }
 
 impl Transmitter {
-    /// A line that takes so many cycles for a byte, with room for so many bytes.
+    /// A line that takes this many cycles for a byte, with room for this many bytes.
     #[must_use]
     pub const fn new(per_byte: u64, capacity: u64) -> Self {
         Self {

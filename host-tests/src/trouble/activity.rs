@@ -19,7 +19,7 @@ pub enum Activity {
     Saving,
     /// The program has just begun.
     Starting,
-    /// It is asked, and answers.
+    /// It answers a question.
     Talking,
 }
 

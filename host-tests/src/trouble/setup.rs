@@ -32,7 +32,7 @@ fn say(line: impl Into<String>) -> Step {
     Step::Say(line.into())
 }
 
-/// A servo's travel, so many degrees to either side of neutral.
+/// A servo's travel, this many degrees to either side of neutral.
 fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
     let neutral = robot.servos()[servo].neutral;
     let [low, high] = [-degrees, degrees].map(|sweep| (neutral + sweep).rem_euclid(360.0));
@@ -42,7 +42,7 @@ fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
 /// us per degree, far from robot.toml's.
 pub const WIDE: &str = "17.77";
 
-/// A line that makes main settle servos anew.
+/// A line that makes main settle the servos again.
 pub fn adjustment(rng: &mut Rng) -> String {
     match rng.u8(0..5) {
         0 => "load".into(),

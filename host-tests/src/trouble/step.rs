@@ -13,17 +13,17 @@ pub enum Step {
     Send(String),
     /// `walk`, and `stand` where `walk` is refused because the servos rest.
     Order(String),
-    /// Lets so many cycles pass.
+    /// Lets this many cycles pass.
     Wait(u64),
-    /// Main executes nothing for so many cycles, or until a reset.
+    /// Main executes nothing for this many cycles, or until a reset.
     Stall(u64),
-    /// Interrupts are held up for so many cycles.
+    /// Interrupts are held up for this many cycles.
     Hold(u64),
     /// The RESET pin is pulled.
     Reset,
     /// Power goes and comes back.
     PowerCycle,
-    /// The supply has so many mV from now on.
+    /// The supply has this many mV from now on.
     Supply(u16),
     /// The supply falls to 2.4 V whenever three servos have pulses, from now on; or no
     /// longer.

@@ -32,7 +32,7 @@ fn decoded(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     instants(robot(), &frames).into_iter().map(angles).collect()
 }
 
-/// The phase so many frames after a gait has begun.
+/// The phase this many frames after a gait has begun.
 fn phase(gait: &CheckedGait, frames: usize) -> f64 {
     let gone = |frame: usize| (frame as f64 * GATHERS.1).min(1.0);
     let full: f64 = (1..=frames).map(gone).sum();

@@ -60,7 +60,7 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
     })
 }
 
-/// A pose within so many degrees of neutral, as it is typed.
+/// A pose within this many degrees of neutral, as it is typed.
 fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + within * (2.0 * rng.f64() - 1.0);

@@ -11,7 +11,7 @@ use crate::{in_both, neutral_widths};
 /// What other handlers and stretches with interrupts off may take, cycles.
 const MAY_TAKE: u64 = 160;
 
-/// Something that keeps interrupts off for `length` cycles, so many before an edge.
+/// Something that keeps interrupts off for `length` cycles, this many before an edge.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
     before: u64,
@@ -161,7 +161,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
         let mut walk = Walk::stand(fidelity);
         let pins = walk.bench.pins();
         let neutral = neutral_widths();
-        // Until so many cycles after the next slot has begun, 220 before its edge.
+        // Until this many cycles after the next slot has begun, 220 before its edge.
         for beyond in (0..600).step_by(20) {
             for servo in 0..4 {
                 walk.bench.run_for_frames(1);

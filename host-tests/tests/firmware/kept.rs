@@ -64,7 +64,7 @@ pub fn way(servo: usize) -> u64 {
     way_at(robot().servos()[servo].us_per_degree)
 }
 
-/// The same for a servo with so many us per degree.
+/// The same for a servo with this many us per degree.
 fn way_at(gain: f64) -> u64 {
     // A cycle of rounding at each end, and the limit's own, half a step of an angle.
     (robot().pace().slew / 50.0 * gain.abs() * 16.0) as u64 + 3
@@ -76,7 +76,7 @@ pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
     assert_no_leap_at(pulses, gains);
 }
 
-/// The same for servos with so many us per degree.
+/// The same for servos with this many us per degree.
 pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     for (servo, (pulses, gain)) in pulses.iter().zip(gains).enumerate() {
         for pair in pulses.windows(2) {

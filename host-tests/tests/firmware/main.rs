@@ -98,7 +98,7 @@ fn gaits() -> Vec<String> {
     names.map(|name| name.replace('-', " ")).collect()
 }
 
-/// The command for a pose at so many degrees from neutral.
+/// The command for a pose at this many degrees from neutral.
 fn pose_at(sweeps: [f64; 4]) -> String {
     let servos = robot().servos();
     let angles: Vec<String> = (0..4)

@@ -133,7 +133,7 @@ fn sweeps(size: f64) -> [f64; 4] {
     [-1.0, 0.25, 0.8, -0.6].map(|share| size * share)
 }
 
-/// The width at so many degrees from neutral, cycles.
+/// The width at this many degrees from neutral, cycles.
 fn goal(servo: usize, sweep: f64) -> u64 {
     let servo = robot().servos()[servo];
     (servo.pulse(servo.neutral + sweep) * 16.0).round() as u64

@@ -192,7 +192,7 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
     assert_eq!(said.len(), 1, "{said:?}");
 }
 
-/// A robot whose rail has so many volts.
+/// A robot whose rail has this many volts.
 fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
     let mv = (1000.0 * volts / rail.ratio).round() as u16;
     bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);

@@ -1,4 +1,4 @@
-//! A program that hangs is begun anew, and no servo notices; and every cause of a
+//! A program that hangs is restarted, and no servo notices; and every cause of a
 //! reset is told right.
 
 use lizard_host_tests::FirmwareBench;

@@ -110,7 +110,7 @@ const ENTRY: u64 = 7;
 const LONG: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF. `progress` is told what is being measured.
+    /// Measures an ELF. `progress` gets what is being measured.
     ///
     /// # Errors
     /// A firmware that cannot be loaded, dies, or does not answer.
@@ -275,7 +275,7 @@ fn motions(robot: &Robot) -> Vec<String> {
     lines
 }
 
-/// The command for a pose so many degrees from neutral.
+/// The command for a pose this many degrees from neutral.
 fn pose(robot: &Robot, turns: [f64; 4]) -> String {
     let neutral = <[f64; 4]>::from(robot.neutral());
     let [a1, a2, a3, a4]: [f64; 4] = std::array::from_fn(|i| neutral[i] + turns[i]);

@@ -88,7 +88,7 @@ fn ask(
             let line = std::iter::once(&"lizard").chain(*line);
             return Ok(Choice::Chosen(line.map(OsString::from).collect()));
         }
-        // Who knows a command may type it here.
+        // A user who knows a command may type it here.
         if KNOWN.iter().any(|known| known.name() == answer) && has(answer) {
             return Ok(Choice::Chosen(vec!["lizard".into(), answer.into()]));
         }

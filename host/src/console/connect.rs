@@ -27,7 +27,7 @@ pub struct Connect {
     robot: Option<PathBuf>,
 }
 
-/// Where the board is looked for, each time anew: a board that is plugged in
+/// Where to search the board, each time again: a board that is plugged in
 /// again may get another port.
 #[derive(Debug)]
 pub struct Finder {
@@ -41,7 +41,7 @@ pub struct Finder {
 pub struct Connection {
     /// The connection.
     pub link: Link<Box<dyn SerialPort>>,
-    /// What the user is told where the board is.
+    /// How messages name the board.
     pub name: String,
 }
 

@@ -229,7 +229,7 @@ impl Talk {
             && board.is_some()
             && !finder.is_simulated()
         {
-            // The terminal may be gone; then nobody is left to be told.
+            // The terminal may be gone; then nobody can read this.
             let _ = writeln!(io::stdout(), "the robot goes on with its gait");
         }
         if let Some(recorder) = &mut self.recorder {

@@ -10,7 +10,7 @@ const REMEMBERED: usize = 500;
 /// What a key has led to.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Nothing that the robot is told.
+    /// Nothing for the robot.
     Edited,
     /// A line, to be sent.
     Line(String),

@@ -61,7 +61,7 @@ pub enum Event {
 /// Writes a session.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
-    /// What the user is told where it writes.
+    /// How messages name the file.
     name: String,
     out: W,
     begin: Instant,

@@ -36,7 +36,7 @@ impl Screen {
         Ok(screen)
     }
 
-    /// Takes the terminal anew, after [`Screen::leave`].
+    /// Takes the terminal again, after [`Screen::leave`].
     ///
     /// # Errors
     /// It is gone.

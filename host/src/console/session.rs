@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::status::Status;
 
-/// How often the robot is asked for its status.
+/// How often the program asks the robot for its status.
 const POLL: Duration = Duration::from_millis(500);
 /// How long an answer may take.
 const PATIENCE: Duration = Duration::from_millis(2000);
@@ -101,7 +101,7 @@ impl Session {
         if line.starts_with('#') {
             self.said.push(Said::Note(line.to_owned()));
             if line.starts_with("# lizard ") {
-                // The board has begun anew, and has forgotten what it was asked.
+                // The board has restarted, and has forgotten the question.
                 self.waiting = None;
                 self.watch_due = self.watches;
             }

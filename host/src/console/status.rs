@@ -1,6 +1,6 @@
 //! The answer to `status`, read and shortened to what fits in a line of a terminal.
 
-/// What a robot says of itself.
+/// The state that a robot reports.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
     /// A gait with dashes for blanks, or pose, stop, rest.

@@ -28,12 +28,12 @@ pub struct Sheet<At> {
 }
 
 impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
-    /// A bar so many mm wide.
+    /// A bar this many mm wide.
     pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
         line((self.at)(from), (self.at)(to), colour, mm * self.scale)
     }
 
-    /// A joint so many mm large.
+    /// A joint this many mm large.
     pub fn joint(&self, at: Vector, mm: f64) -> Circle {
         self.disc(at, mm, "white")
     }

@@ -96,7 +96,7 @@ pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
         .set("stroke-linecap", "round")
 }
 
-/// A hundredth of a pixel is enough, and keeps files small and alike.
+/// A hundredth of a pixel is enough, and keeps files small and equal on all machines.
 pub(super) fn fixed(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }

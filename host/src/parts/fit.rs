@@ -86,7 +86,7 @@ impl<'a> From<&'a Near> for Pair<'a> {
     }
 }
 
-/// A bar of so many pairs of mounts.
+/// A bar of this many pairs of mounts.
 fn bar(length: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} looking for parts that meet")
         .expect("a template");

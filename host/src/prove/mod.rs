@@ -63,11 +63,11 @@ impl Spreads for Args {
     }
 }
 
-/// Which pairs are looked at: in each row, those whose column is a certain
+/// Which pairs are checked: in each row, those whose column is a certain
 /// remainder of `one_in`, another one in each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Share {
-    /// One pair in so many; at least 1.
+    /// One pair in this many; at least 1.
     pub one_in: u32,
     /// Which of them.
     pub offset: u32,

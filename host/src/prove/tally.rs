@@ -25,7 +25,7 @@ pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
 /// Errors and disagreements of one end, one side or one leg.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
-    /// Pairs of positions looked at.
+    /// Pairs of positions checked.
     pub pairs: u64,
     /// Those of them that a cell of the robot's maps holds: the guard must accept each.
     pub certified: u64,

@@ -61,7 +61,7 @@ impl CoreRun {
         self.running.board.tick();
         _ = self.running.main.step(&mut self.running.board);
         let widths = self.running.board.submitted().0.map(|width| width.0);
-        // What the frame gives to say is said right after it.
+        // The output of a frame comes right after it.
         self.wake(cycle + FRAME_TAKES);
         widths
     }

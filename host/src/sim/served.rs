@@ -57,7 +57,7 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
     }
 }
 
-/// What is said when the chip stops. A board as sold has nothing in flash where its
+/// The message when the chip stops. A board as sold has nothing in flash where its
 /// firmware would begin, so it stops as soon as the boot loader hands over.
 fn ended(state: &State, flash: &[u8], port: &Path) -> String {
     match state {

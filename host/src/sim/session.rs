@@ -61,7 +61,7 @@ pub struct Recording {
 }
 
 /// Plays a script from power-on. `realtime` waits for the wall clock. `on_event`
-/// is told what happens, in order of time.
+/// gets what happens, in order of time.
 ///
 /// # Errors
 /// Those of `on_event`, which end the run.

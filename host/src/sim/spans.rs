@@ -21,7 +21,7 @@ const QUESTIONS: [&str; 14] = [
 
 /// The commands that changed the motion, in order of time, after the stand that
 /// the robot wakes to. A command that was refused changes nothing: the one
-/// before it goes on.
+/// before it continues.
 #[must_use]
 pub fn spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];

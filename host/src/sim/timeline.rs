@@ -26,7 +26,7 @@ const HEIGHT: f64 = AXIS + 96.0;
 /// Where each servo's leg is.
 const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
-/// What the picture says of itself.
+/// The title and description of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Caption {
     /// Above it, large.

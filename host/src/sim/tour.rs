@@ -19,7 +19,7 @@ pub fn gaits(robot: &Robot) -> Vec<&str> {
         found.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
     };
     let others = moving.iter().copied().skip(1);
-    // Of several equal ones the first: mirrored gaits turn alike.
+    // Of several equal ones the first, because mirrored gaits turn equally fast.
     let most = others.fold(None, |best: Option<&str>, name| match best {
         Some(best) if turn(name) <= turn(best) + 1e-6 => Some(best),
         _ => Some(name),

@@ -320,7 +320,7 @@ impl Answer {
     }
 }
 
-/// Torque at a leg of so many mm when its pad is pulled back with 50 g, N mm.
+/// Torque at a leg of this many mm when its pad is pulled back with 50 g, N mm.
 fn pull(reach: f64) -> f64 {
     0.05 * lizard_robot::GRAVITY * reach
 }

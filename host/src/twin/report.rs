@@ -82,7 +82,7 @@ impl Way {
 
 impl Report {
     /// Sums up a replay. With `paced` gaits went at other speeds than their own, and
-    /// nothing is said of their cycles.
+    /// their cycles are not reported.
     #[must_use]
     pub fn of(robot: &Robot, replay: &Replay, paced: bool) -> Self {
         let rows = replay

@@ -611,7 +611,7 @@ impl<'a> Writer<'a> {
         self.xml.end_element();
     }
 
-    /// A keyframe for each frame of 20 ms: its time, and what the servos are told.
+    /// A keyframe for each frame of 20 ms: its time, and the angles for the servos.
     fn course(&mut self) {
         let Some(course) = &self.scene.course else {
             return;

@@ -20,7 +20,7 @@ pub struct Scene {
     pub play: f64,
     /// What the servos can do.
     pub motor: Motor,
-    /// What they are told; none to let it stand.
+    /// Their angles; none to let the robot stand.
     pub course: Option<Course>,
     /// Whether the parts can be seen; without them the file is a fiftieth as long.
     pub shapes: bool,
@@ -65,7 +65,7 @@ pub struct Motor {
     pub stall: f64,
 }
 
-/// What the servos are told, frame by frame.
+/// The angles for the servos, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// The gait that it is of.

@@ -14,7 +14,7 @@ use super::interval::Interval;
 use super::slope::Slope;
 use crate::joints::{Cranks, Joints};
 
-/// How far below the limit of a margin a pose is still looked at.
+/// How far below the limit of a margin a pose is still checked.
 const SINE: f64 = 0.005;
 /// If the limit of the type-2 margin is below this, as many times farther: a rounded
 /// length turns couplers by the more the nearer they are in line.
@@ -23,7 +23,7 @@ const TYPE2: f64 = 0.3;
 const LENGTH: f64 = 0.1;
 /// How exactly the ends of the servos' ranges are found, deg.
 const FINE: f64 = 0.01;
-/// In so many regions a pose is looked for that has some angles.
+/// In this many regions a pose is looked for that has some angles.
 const ATTEMPTS: u32 = 300;
 /// The same for what the other servo does there, deg.
 const COARSE: f64 = 0.2;

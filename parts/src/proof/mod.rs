@@ -41,7 +41,7 @@ pub const LEAST: f64 = 0.2;
 /// What is made to meet may touch; by so much it is not an overlap, mm.
 const TOUCH: f64 = 0.02;
 
-/// Angles of each servo at whose poses joints are looked at.
+/// Angles of each servo at whose poses the joints are checked.
 const JOINT_STEPS: u32 = 6;
 
 /// Two parts, and how near they come.
@@ -73,9 +73,9 @@ pub struct Proof {
     pub meeting: Vec<Near>,
     /// From and to, deg: no servo is ever beyond this in a pose that the guard accepts.
     pub ranges: [[f64; 2]; 4],
-    /// Pairs of shapes looked at.
+    /// Pairs of shapes checked.
     pub pairs: usize,
-    /// Regions of poses looked at.
+    /// Regions of poses checked.
     pub regions: u64,
 }
 
@@ -172,7 +172,7 @@ pub struct Questions<'a> {
 pub struct Answer {
     /// The nearest of what is pinned, which is made to meet.
     pinned: Option<Near>,
-    /// The nearest of all else, and the regions of poses looked at.
+    /// The closest of all others, and the regions of poses checked.
     nearest: Option<(Near, u64)>,
 }
 
@@ -220,7 +220,7 @@ impl<'a> Questions<'a> {
 
     /// The proof. Answers that [`Questions::one`] gave elsewhere are taken from `known`, by
     /// their places. It ends at the first parts that do not fit; where they only may not,
-    /// what follows is looked at less closely, and not taken from `known`.
+    /// what follows is checked less closely, and not taken from `known`.
     pub fn answer(
         &self,
         mut known: impl FnMut(usize) -> Option<Answer>,

@@ -27,9 +27,9 @@ const SHARE: f64 = 0.05;
 const SHARE_MEETING: f64 = 0.5;
 /// Regions narrower than this are not halved, deg.
 const NARROW: f64 = 0.002;
-/// So many regions are looked at, at most.
+/// The most regions that are checked.
 pub const MANY: u64 = 100_000;
-/// And so many once an overlap is known: how deep it is at most changes no verdict.
+/// The same once an overlap is known: its exact depth does not change the result.
 const FEW: u64 = 1_000;
 
 /// What is known of the least distance.
@@ -44,7 +44,7 @@ pub struct Found {
     /// In the middle of the region where no more is proved, if that is less than what
     /// was seen: angles of some servos, deg.
     pub doubt: Option<[Option<f64>; 4]>,
-    /// Regions looked at.
+    /// Regions checked.
     pub regions: u64,
 }
 
@@ -87,7 +87,7 @@ impl<const N: usize> Ord for Part<N> {
 }
 
 /// The least distance of a task's solids over all poses that the guard accepts, from
-/// so many regions at `most`.
+/// this many regions at `most`.
 pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, most: u64) -> Found {
     let servos = task.servos();
     match servos[..] {

@@ -25,7 +25,7 @@ struct Arguments {
     /// How long it runs, in milliseconds of the chip's time.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=3_600_000))]
     ms: u64,
-    /// Send a line after so many milliseconds: --say 500:walk. May be given repeatedly.
+    /// Send a line after this many milliseconds: --say 500:walk. May be given repeatedly.
     #[arg(long, value_name = "MS:LINE", value_parser = line)]
     say: Vec<Line>,
     /// The rate at which lines are sent, in baud; that of answers is the program's.

@@ -312,7 +312,7 @@ fn after_a_calibration_a_gait_gathers_its_pace_again() {
     assert_eq!(phases.last(), Some(&full));
 }
 
-/// By how much the phase goes on in a frame, 1/2^24 cycle.
+/// By how much the phase advances in a frame, 1/2^24 cycle.
 fn phase_of_a_frame(dialogue: &mut Dialogue) -> u32 {
     let before = dialogue.motion().phase();
     dialogue.frame();

@@ -45,7 +45,7 @@ fn a_gait_ends_when_the_link_is_lost_and_says_why() {
     assert_eq!(dialogue.status("fault"), "none");
 }
 
-/// The board's supply is at so many millivolts, its rail at 6 V.
+/// The board's supply is at this many millivolts, its rail at 6 V.
 fn supply(dialogue: &mut Dialogue, mv: u32) {
     let supplies = dialogue.motion().robot().supplies();
     let truth = reading(&supplies, mv, 6_000);

@@ -14,7 +14,7 @@ use super::record::Record;
 use super::scenario::Scenario;
 use super::setup::WIDE;
 
-/// What the robot and the scenario say of what may be seen.
+/// What may be seen, by the robot and the scenario.
 #[derive(Debug)]
 pub struct Rules {
     /// By how many cycles a servo's pulse may change in a frame.

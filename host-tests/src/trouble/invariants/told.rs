@@ -11,7 +11,7 @@ const FAULTS: [&str; 8] = [
     "none", "guard", "supply", "link", "watchdog", "late", "stack", "brownout",
 ];
 
-/// From what stops the robot to what it says of it.
+/// From what stops the robot to its report.
 const UNTIL_SAID: u64 = 300 * MS;
 
 /// The LED.
@@ -51,7 +51,7 @@ fn was_told(record: &Record, from: u64, to: u64) -> bool {
     })
 }
 
-/// A hang and a low supply are told, and what is told is told until an order.
+/// A hang and a low supply are reported, and stay reported until a command.
 pub fn stops_are_told(record: &Record, rules: &Rules) -> Result<(), String> {
     let statuses = record.exchanges.iter().filter_map(|exchange| {
         let at = exchange.answer.as_ref()?.cycle;

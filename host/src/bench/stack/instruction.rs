@@ -130,7 +130,7 @@ fn far(code: u16, second: u16) -> u32 {
     (high << 16 | u32::from(second)) * 2
 }
 
-/// A target relative to the next instruction, in words of so many bits with a sign.
+/// A target relative to the next instruction, in words of this many bits with a sign.
 fn near(offset: u16, bits: u32, at: u32) -> u32 {
     let shift = 16 - bits;
     let words = (offset << shift) as i16 >> shift;

@@ -24,7 +24,7 @@ pub enum Context {
 enum Pointer {
     /// Something that does not matter here.
     Unknown,
-    /// The stack pointer with so many bytes pushed since the function's beginning.
+    /// The stack pointer with this many bytes pushed since the function's beginning.
     Depth(i32),
     /// A constant.
     Address(u16),
@@ -173,7 +173,7 @@ impl<'a> Walk<'a> {
                         after.clear();
                     }
                 }
-                // The program begins anew, and so does its stack.
+                // The program restarts, and so does its stack.
                 Effect::Jump(0) => after.clear(),
                 Effect::Jump(target) => after = vec![target],
                 Effect::Branch(target) => after.push(target),

@@ -42,7 +42,7 @@ pub enum Key {
     Yes,
     /// The answer is no.
     No,
-    /// Turn the servo by so many degrees, counter-clockwise if positive.
+    /// Turn the servo by this many degrees, counter-clockwise if positive.
     Turn(f64),
 }
 
@@ -288,7 +288,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Sets the scale with which a servo that was moved turns by so many degrees more. Its
+    /// Sets the scale with which a servo that was moved turns by this many degrees more. Its
     /// middle stays where it is, so its trim counts in the new degrees.
     fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let Some(by) = self.moved else {

@@ -30,7 +30,7 @@ pub struct Args {
 
 /// How often the robot is listened to while no key comes.
 const TURN: Duration = Duration::from_millis(200);
-/// How often the keys are looked at.
+/// How often the keys are checked.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs `lizard calibrate`.
@@ -48,7 +48,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let ended = ended.and_then(|mut guide| with_keys(&mut guide));
     match ended {
         Ok(saved) => {
-            // The terminal may be gone; then nobody is left to be told.
+            // The terminal may be gone; then nobody can read this.
             let words = if saved {
                 "the calibration is saved"
             } else {

@@ -68,7 +68,7 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// All points of the triangle. `own` says how many pieces of all are looked at here.
+    /// All points of the triangle. `own` says how many of all pieces are computed here.
     pub fn new(
         step: f64,
         demands: Demands,

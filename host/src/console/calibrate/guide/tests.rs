@@ -217,7 +217,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     press(&mut guide, &[Key::Act]);
     let by = guide.moved.expect("it was moved");
     assert!(by.abs() >= 20.0, "{by}");
-    // Four times half a degree more in so many.
+    // Four times half a degree more in this many.
     press(&mut guide, &[Key::Turn(0.5); 4]);
     let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
     let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
