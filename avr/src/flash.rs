@@ -167,7 +167,7 @@ impl<'a, T> Flash<'a, [T]> {
 }
 
 impl<'a> Flash<'a, [u8]> {
-    /// The same bytes as values of a type of which any bytes are one; what is left over
+    /// The same bytes as values of a type for which any bytes are a value; what is left over
     /// at the end is not among them.
     #[inline]
     pub const fn of<T: Plain>(self) -> Flash<'a, [T]> {
@@ -199,7 +199,7 @@ const fn nonzero(size: usize) -> usize {
     size
 }
 
-/// A type of which any bytes are a value, low bytes first and without padding: the same
+/// A type for which any bytes are a value, low bytes first and without padding: the same
 /// in the flash of an AVR and in the memory of a host. See [`plain!`](crate::plain!).
 ///
 /// # Safety

@@ -207,7 +207,7 @@ impl Product {
     }
 }
 
-/// What the roundings of an end depend on beside its true bars.
+/// What the roundings of an end depend on besides its true bars.
 #[derive(Clone, Copy, Debug)]
 pub struct Bars {
     /// Of its lengths.

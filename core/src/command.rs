@@ -51,7 +51,7 @@ pub enum Misread {
 /// The rarest report: every 200 s.
 pub const WATCH_MOST: u16 = 10_000;
 
-/// The longest silence that `deadman` bears, a minute.
+/// The longest time that `deadman` allows, a minute.
 pub const DEADMAN_MOST: u16 = 60_000;
 
 /// Larger angles are taken for mistakes; a turn either way is enough.

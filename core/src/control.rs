@@ -209,7 +209,7 @@ impl Control {
         self.safety.is_lit()
     }
 
-    /// A byte has come: somebody is there.
+    /// A byte has come, so a computer is connected.
     pub fn byte_came(&mut self) {
         self.safety.byte_came();
     }
@@ -343,7 +343,7 @@ impl Control {
         Ok(Taken::Done)
     }
 
-    /// Whether there is anything to do for what somebody asks for.
+    /// Whether a command leaves anything to do.
     ///
     /// # Errors
     /// Why it is refused.
@@ -366,7 +366,7 @@ impl Control {
         Ok(())
     }
 
-    /// A motion begins by somebody's order: faults are over, and the pose of the last
+    /// A motion begins by a command: faults are over, and the pose of the last
     /// rest is, too.
     fn moves(&mut self) {
         self.safety.clear();

@@ -16,7 +16,7 @@ pub enum Fault {
     Supply,
     /// No line has come for as long as `deadman` allows.
     Link,
-    /// The program hung and was begun again.
+    /// The program hung and was restarted.
     Watchdog,
     /// An edge of a pulse came late: a rising edge was not made, so its pulse is
     /// missing; a falling edge made its pulse longer.

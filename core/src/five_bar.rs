@@ -279,7 +279,7 @@ mod tests {
     use crate::sample::{Loop, bounds, degrees, sine};
     use crate::units::Angle;
 
-    /// Any bars, mm, whose couplers are long enough beside the rest.
+    /// Any bars, mm, whose couplers are long enough for the others.
     fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
         let crank = || 1.0..100.0f64;
         let coupler = || 5.0..120.0f64;

@@ -1,4 +1,4 @@
-//! What somebody may order the robot to do.
+//! The orders that the robot takes.
 
 use crate::gait::GaitId;
 use crate::part::Servo;

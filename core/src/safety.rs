@@ -231,7 +231,7 @@ impl Safety {
         self.fault = None;
     }
 
-    /// A byte has come: somebody is there, and `boot` is called off.
+    /// A byte has come, so a computer is connected, and `boot` is cancelled.
     pub fn byte_came(&mut self) {
         self.boot = 0;
     }

@@ -144,7 +144,7 @@ impl Bars {
 
 impl Loop {
     /// Bars in mm, in the finest step that holds them; none if a coupler is too
-    /// short beside the rest.
+    /// short compared with the rest.
     pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
         let couplers = [bars.coupler_left, bars.coupler_right];

@@ -87,7 +87,7 @@ pub trait Board {
     fn counters(&self) -> Counters;
 }
 
-/// The robot, somebody at its serial line, and the tick that it has computed a frame
+/// The robot, the console at its serial line, and the tick that it has computed a frame
 /// for.
 #[derive(Clone, Debug)]
 pub struct Main {

@@ -60,7 +60,7 @@ pub enum Response {
     RefuseResting,
     /// It is refused, because the supply is too low.
     RefuseSupply,
-    /// The pose is frozen, if there is one, and the fault told until somebody orders
+    /// The pose is frozen, if there is one, and the fault shown until a command orders
     /// a motion.
     Freeze(Fault),
     /// The pulses end, and the fault is shown until a command moves the robot.

@@ -29,7 +29,7 @@ pub enum Action {
     Reset(Cause),
     /// Power is lost and comes back; a byte that was being written holds this.
     LosePower(Option<u8>),
-    /// Nobody takes what the robot says, or somebody does again.
+    /// The listener stops reading the output, or reads it again.
     Deaf(bool),
 }
 

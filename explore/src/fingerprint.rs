@@ -65,7 +65,7 @@ const A_LINE_CAME: &[Field] = &[
     ("Console", "banner", Skip),
     ("Safety", "silence", Skip),
     ("Safety", "boot", Skip),
-    // Any line shows that somebody opened the port, which resets the board.
+    // Any line shows that a program opened the port, which resets the board.
     ("Control", "may_be_supply", Skip),
     ("Control", "brown_outs", Skip),
 ];

@@ -2,7 +2,7 @@
 //!
 //! The firmware is one image for any lizard; its robot is a section of flash behind the
 //! code. So a command takes whatever image there is and puts the robot that it was told
-//! into it. Where somebody names an image that has another robot in it, one of the two is
+//! into it. If a user names an image that has another robot in it, one of the two is
 //! not what was meant, and it is not run.
 
 use std::path::{Path, PathBuf};

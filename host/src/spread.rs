@@ -64,7 +64,7 @@ impl From<Part> for String {
 
 impl Part {
     /// Whether a piece is this part's. Pieces in a row go to different parts, for what takes
-    /// long often does so beside its like.
+    /// long often has neighbours that do, too.
     fn has(self, piece: usize) -> bool {
         piece % self.of as usize == self.number as usize - 1
     }

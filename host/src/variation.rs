@@ -37,7 +37,7 @@ pub struct Variation {
     ground: Ground,
     /// How much harder each pad presses.
     pads: [f64; 4],
-    /// Friction backward over forward, beside the ground's own.
+    /// Factor on the ground's friction backward over forward.
     ratio: f64,
 }
 

@@ -43,8 +43,8 @@ fn run() -> Result<ExitCode, String> {
     })
 }
 
-/// Writes the shorter form of an object beside it, and what it calls; their names. None for
-/// what is no object.
+/// Writes the shorter form of an object next to it, and the routines it calls; returns
+/// their names. None for what is no object.
 fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     // If a file cannot be read, avr-gcc reports that.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {

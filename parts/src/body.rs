@@ -129,7 +129,7 @@ fn sorted([a, b]: [usize; 2]) -> Vec<usize> {
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Its name, of which there is no second: `link A1`, `strut LF`.
+    /// Its unique name: `link A1`, `strut LF`.
     pub name: String,
     /// What it is.
     pub kind: Kind,

@@ -43,7 +43,7 @@ impl fmt::Display for Clearance {
     }
 }
 
-/// One layer's shapes beside another's.
+/// One layer's shapes and another's.
 struct Pair<'a> {
     bodies: [usize; 2],
     shapes: [&'a [Shape]; 2],

@@ -18,7 +18,7 @@ const TIE_SLOT: [f64; 2] = [4.0, 2.0];
 /// From the middle of the plate to the middles of the terminal strips, mm.
 const STRIPS: f64 = 12.5;
 
-/// Slots in the plate: for the strap beside the battery, if the plate is so wide, and
+/// Slots in the plate: for the strap beside the battery, if the plate is wide enough, and
 /// for cable ties beside the terminal strips.
 pub fn slots(builder: &Builder) -> Vec<Shape> {
     let slot = |x: f64, y: f64, [along, across]: [f64; 2]| {

@@ -23,7 +23,7 @@ use crate::unfit::Unfit;
 
 /// How far new parts are lifted in the exploded pictures, mm.
 const LIFT: f64 = 45.0;
-/// Width of a picture without the names beside it, pixels.
+/// Width of a picture without the names next to it, pixels.
 const WIDE: f64 = 950.0;
 /// The corner that is printed first, and seen from nearby: that of A1.
 pub const CORNER: usize = 0;

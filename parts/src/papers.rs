@@ -1,4 +1,4 @@
-//! What `lizard parts` writes beside the files of the parts: the list to buy and the guide.
+//! What `lizard parts` writes besides the files of the parts: the list to buy and the guide.
 
 use lizard_kinematics::Solution;
 

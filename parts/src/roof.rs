@@ -13,7 +13,7 @@ use crate::shape::Shape;
 
 /// What a printer lays at once, mm: a hole is closed by one of its layers.
 pub const LAYER: f64 = 0.2;
-/// How far beside a hole is looked for what it stands on, mm.
+/// How far around a hole to search for its support, mm.
 const BESIDE: f64 = 0.3;
 /// Heights that differ by less are the same, mm.
 const SAME: f64 = 1e-6;

@@ -100,7 +100,7 @@ impl Shape {
         sum * (1.0 / self.points.len() as f64)
     }
 
-    /// How far anything of it is from one point, mm, at the most.
+    /// The largest distance of any of its points from one point, mm.
     #[must_use]
     pub fn farthest(&self, from: Vector) -> f64 {
         let away = self.points.iter().map(|&point| (point - from).length());

@@ -16,7 +16,7 @@ use crate::stack::Span;
 pub const BESIDE: f64 = 9.0;
 /// Width of a rod, mm.
 pub(crate) const ROD: f64 = 6.0;
-/// What the rod stays in its sleeve at the least, mm.
+/// The least length of the rod inside its sleeve, mm.
 const OVERLAP: f64 = 20.0;
 /// From the sleeve's end to the front pin at the shortest, mm.
 const SHORT: f64 = 8.0;

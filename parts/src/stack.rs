@@ -77,7 +77,7 @@ pub struct Stack {
     pub anchor: Span,
     /// The floor of the strut, along which its spring lies.
     pub strut: Span,
-    /// Its walls, beside spring, hooks and heads.
+    /// Its walls, next to spring, hooks and heads.
     pub recess: Span,
     /// The middle of the spring's coil, and of its hooks.
     pub coil: f64,

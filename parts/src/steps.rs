@@ -24,7 +24,7 @@ pub struct Step {
     pub near: Near,
 }
 
-/// A picture beside the two of the whole robot.
+/// A picture besides the two of the whole robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Near {
     /// None.

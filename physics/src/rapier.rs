@@ -27,7 +27,7 @@ impl Yaw {
     /// A leg that does not give.
     pub const RIGID: Self = Self(50.0, 0.08);
 
-    /// A spring of this many N mm/deg. Its damping is small beside the friction.
+    /// A spring of this many N mm/deg. Its damping is small compared with the friction.
     pub fn spring(rate: f64) -> Self {
         Self((rate / 1000.0).to_degrees() as f32, 0.0001)
     }

@@ -186,7 +186,7 @@ fn manner(one: &Section) -> Checked<&'static str> {
     }
 }
 
-/// Refuses keys that mean nothing beside `with`.
+/// Refuses keys that mean nothing together with `with`.
 fn only(one: &Section, allowed: &[&str], with: &str) -> Checked<()> {
     match one.names().into_iter().find(|name| !allowed.contains(name)) {
         Some(name) => Err(Problem::Conflict(with.to_string()).at(one.path(name))),

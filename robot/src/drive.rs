@@ -37,7 +37,7 @@ pub enum Kind {
 
 const TABLE: &str = "drive";
 const KEYS: [&str; 6] = ["kind", "play", "force", "rate", "stiffness", "preload"];
-/// The kinds' words, and the keys beside `kind` and `play` that each of them has.
+/// The kinds' words, and the keys that each of them has besides `kind` and `play`.
 const KINDS: [(&str, &[&str]); 3] = [
     ("rigid", &[]),
     ("strut", &["force", "rate"]),

@@ -109,7 +109,7 @@ pub enum Problem {
         /// What it must hold.
         expected: &'static str,
     },
-    /// A number outside what the robot or the fixed point can bear.
+    /// A number outside what the robot or the fixed point allows.
     #[error("is {}; it must be within {min} to {max} {unit}", short(*value))]
     Range {
         /// The number found.
@@ -165,7 +165,7 @@ pub enum Problem {
         /// That key's value.
         other_value: f64,
     },
-    /// A coupler that is short beside the rest of its loop.
+    /// A coupler that is short compared with the rest of its loop.
     #[error(
         "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {least:.1} mm, or for shorter cranks and a shorter base"
     )]

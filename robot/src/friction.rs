@@ -294,7 +294,7 @@ impl Scale {
 }
 
 impl Expansion {
-    /// What the legs' own steps gain, at first order, beside the twist's.
+    /// What the legs' own steps gain, to first order, besides that of the twist.
     fn gained(&self) -> f64 {
         let own = |leg: &Row| match leg.curvature {
             0.0 => 0.0,
@@ -305,7 +305,7 @@ impl Expansion {
 }
 
 impl Row {
-    /// The leg's step beside this step of the twist.
+    /// The leg's step together with this step of the twist.
     fn step(&self, twist: [f64; 3]) -> f64 {
         if self.curvature == 0.0 {
             return 0.0;
@@ -531,7 +531,7 @@ mod tests {
             assert_least(&Pads { at: AT, swing, ratio, load, give });
         }
 
-        // Play beside stops, and slotted struts that yield one way.
+        // Play together with stops, and slotted struts that yield one way.
         #[test]
         fn nor_does_another_place_within_the_play_or_the_slot(
             swing in prop::array::uniform4(point(5.0)),

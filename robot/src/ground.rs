@@ -21,7 +21,7 @@ pub struct Ground {
     pub body: Body,
     /// How they share it.
     pub stance: Stance,
-    /// Friction coefficient of a pad that slides forward. It matters only beside a
+    /// Friction coefficient of a pad that slides forward. It matters only together with a
     /// spring.
     pub friction: f64,
     /// Friction of a pad that slides backward over that of one that slides

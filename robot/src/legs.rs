@@ -126,7 +126,7 @@ fn driven(servo: usize, parts: &Parts) -> Vector {
     outward(servo, parts.pivot)
 }
 
-/// A way outward and towards the middle, as it is beside a servo, chassis frame.
+/// A vector outward and towards the middle, as at a servo, in the chassis frame.
 pub(crate) fn outward(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
     Vector::new(-LEFT[servo] * outward, -FRONT[servo] * inward)
 }

@@ -18,7 +18,7 @@ use crate::supply::Supplies;
 
 /// Lengths of a robot that hobby servos move, mm.
 const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
-/// Widths that a hobby servo can bear, us; within a 4 ms slot.
+/// Widths that a hobby servo tolerates, us; within a 4 ms slot.
 const WIDTHS: (f64, f64) = (500.0, 2500.0);
 /// 22 us per degree is the most that the firmware's i16 gain holds.
 const GAINS: (f64, f64) = (1.0, 22.0);
@@ -86,7 +86,7 @@ impl Measures {
     }
 
     /// What the firmware's 16-bit integers ask of the lengths: couplers that are not
-    /// short beside the rest of their loop, and a stroke that leaves the slider a
+    /// short compared with the rest of their loop, and a stroke that leaves the slider a
     /// length.
     fn fits(&self) -> Checked<()> {
         for (end, names) in [

@@ -44,7 +44,7 @@ pub struct Parts {
     pub horn: Horn,
     /// Screws that are joints.
     pub screw: Screw,
-    /// The legs' springs, which are hung in their struts.
+    /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
     /// The battery: to the right, forward, up.
     pub battery: [f64; 3],

@@ -6,7 +6,7 @@ use lizard_kinematics::{End, Vector};
 use crate::legs::LegPlan;
 use crate::parts::Parts;
 
-/// Width of the plate beside a servo's case, mm.
+/// Width of the plate next to a servo's case, mm.
 const BESIDE_SERVO: f64 = 5.0;
 /// Length of the plate beyond a servo's flange, mm.
 const BEYOND_FLANGE: f64 = 2.0;

@@ -19,7 +19,7 @@ const DECIDED_LENGTH: f64 = 1.0;
 /// So is a turn that differs by less than this, rad.
 const DECIDED_TURN: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
-/// A way with pads that are a little uneven, beside the even one.
+/// The movement with slightly uneven pads, and that with even ones.
 struct Uneven {
     walker: Walker,
     /// All differences of its steps from the even ones: forward, left, turn.

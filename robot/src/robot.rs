@@ -235,7 +235,7 @@ impl Robot {
         }
     }
 
-    /// The same with a spring from the shop hung in it.
+    /// The same with a spring from the shop mounted in it.
     pub fn strut_of(&self, coil: &Coil) -> Strut {
         Strut::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
     }

@@ -5,7 +5,7 @@ use crate::checked_gait::CheckedGait;
 use crate::ground::Ground;
 use crate::travel::Prediction;
 
-/// A gait on legs that lag beside the same gait on rigid ones.
+/// A gait on legs that lag, compared with the same gait on rigid ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sprung {
     /// Where a cycle leads, as [`CheckedGait::predict`] has it.

@@ -11,7 +11,7 @@ const REFERENCE: f64 = 1.1;
 const REFERENCES: (f64, f64) = (1.0, 1.2);
 
 /// What the board's supply may be asked to have, V: the brown-out detector ends it
-/// at 2.7, and the chip bears 5.5.
+/// at 2.7, and the chip tolerates 5.5.
 const BOARD: (f64, f64) = (2.7, 5.5);
 
 /// Low, too low to move, too low to hold. With a reference that nobody has measured a

@@ -1,4 +1,4 @@
-//! A gait beside the table that was made of it.
+//! A gait and the table that was made from it.
 
 use std::sync::Arc;
 

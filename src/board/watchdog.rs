@@ -42,7 +42,7 @@ pub fn feed() {
     avr_device::asm::wdr();
 }
 
-// The program has hung for 125 ms; the chip resets in as many.
+// The program has hung for 125 ms; the chip resets after 125 ms more.
 #[avr_device::interrupt(atmega328p)]
 fn WDT() {
     kept::mark_hung();

@@ -1,4 +1,4 @@
-//! The console as somebody at the other end of the line meets it.
+//! The console as seen from the other end of the line.
 
 use std::format;
 use std::string::{String, ToString};

@@ -1,4 +1,4 @@
-//! A robot that runs on a virtual board, with somebody at the other end of its line.
+//! A robot that runs on a virtual board, with a user at the other end of its line.
 
 use std::string::{String, ToString};
 use std::vec::Vec;

@@ -163,7 +163,7 @@ pub fn program() -> clap::Command {
 }
 
 /// Does what the command line asks for; without a command, what is chosen from a menu where
-/// there is somebody to choose.
+/// standard input is a terminal.
 ///
 /// # Errors
 /// Those of the command.

@@ -65,7 +65,7 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
         }
     }
 
-    /// The legs' parts that lie beside the plate and under it; the feet in these colours.
+    /// The legs' parts that lie next to the plate and under it; the feet in these colours.
     pub fn feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [driven, idle] = leg.joints;

@@ -8,7 +8,7 @@ use lizard_kinematics::Pose;
 use crate::Failure;
 use crate::pose_args::{ANGLES, NumberFault, Quantity};
 
-/// A column that may stand beside the angles, as in `lizard gaits --trace`.
+/// A column that may accompany the angles, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";
 
 /// What a field of a line is: one of the four angles, or a time.

@@ -10,7 +10,7 @@ use crate::paper::tidy::tidy;
 use crate::pose_args::{acceleration, rate};
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Longest step of the finite differences that the result is shown beside, s.
+/// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;
 
 /// Furthest that a servo may go in a step, deg: beyond it the differences are of

@@ -67,7 +67,7 @@ impl Spreads for Args {
 /// remainder of `one_in`, another one in each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Share {
-    /// One pair in this many; at least 1.
+    /// One pair in N is checked; at least 1.
     pub one_in: u32,
     /// Which of them.
     pub offset: u32,

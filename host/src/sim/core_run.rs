@@ -1,4 +1,4 @@
-//! The firmware's core run on this machine beside the simulated chip.
+//! The firmware's core run on this machine, compared with the simulated chip.
 //!
 //! The core is plain integer Rust, so with the same bytes received before the same ticks
 //! it must ask for the same widths here as on the AVR, to the bit. What the pins then do
@@ -83,7 +83,7 @@ pub struct Commands {
     pub written: String,
 }
 
-/// Runs the core of a robot beside a recording: `received` are the bytes that
+/// Runs the core of a robot along with a recording: `received` are the bytes that
 /// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
 /// frames from there on. Exact but for the lines of [`undecided`].
 #[must_use]

@@ -15,7 +15,7 @@ pub enum Geometry {
     Strut,
 }
 
-/// A spring where it is hung.
+/// A mounted spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hung {
     pub coil: Coil,

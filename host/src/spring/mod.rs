@@ -63,20 +63,20 @@ fn length(text: &str) -> Result<f64, String> {
 
 /// What a gait must keep of its way.
 const ENOUGH: f64 = 0.9;
-/// The shear stress that spring wire bears for good, N/mm^2.
+/// The shear stress that spring wire tolerates permanently, N/mm^2.
 const BEARS: f64 = 800.0;
 
-/// More than this (N) no printed lever and no servo shaft should bear.
+/// The largest force (N) for a printed lever or a servo shaft.
 const PULLS: f64 = 15.0;
 
-/// What is known of a spring where it is hung.
+/// The data of a mounted spring.
 #[derive(Debug, Serialize)]
 struct Answer {
     /// N/mm
     rate: f64,
     /// N
     initial_tension: f64,
-    /// N, where it is hung and the leg does not lag
+    /// N, mounted, when the leg does not lag
     force: f64,
     /// N/mm^2, likewise
     stress: f64,
@@ -105,7 +105,7 @@ struct GaitAnswer {
 /// Computes and says.
 ///
 /// # Errors
-/// A spring that cannot be wound, or that is hung shorter than it is.
+/// A spring that cannot be wound, or that is mounted shorter than its free length.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let coil = Coil {

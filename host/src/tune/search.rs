@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Members of the population.
 const MEMBERS: usize = 20;
-/// A trial goes towards one of this many of the best, which keeps the search from one hill alone.
+/// A trial goes towards one of this many of the best, so the search does not get stuck on one hill.
 const LEADERS: usize = 5;
 /// How many of a member's parameters a trial changes on average.
 const CHANGED: f64 = 0.9;

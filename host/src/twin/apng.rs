@@ -246,7 +246,7 @@ mod drawn {
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_palette(palette.concat());
         encoder.set_compression(png::Compression::High);
-        // Numbers of colours are no shades: what lies beside tells nothing.
+        // Colour numbers are not shades, so neighbouring pixels predict nothing.
         encoder.set_filter(png::Filter::NoFilter);
         encoder.set_animated(pictures.len() as u32, 0)?;
         encoder.set_frame_delay((1000.0 * FRAME) as u16 * EVERY as u16, 1000)?;

@@ -208,7 +208,7 @@ impl Solid {
         self.at_least(place, |_| Vector::default())
     }
 
-    /// How far they are apart at the least in a region, from where they are in its
+    /// Their least distance in a region, from where they are in its
     /// middle and how far each point can stray from there.
     pub fn apart_within<const N: usize>(
         &self,

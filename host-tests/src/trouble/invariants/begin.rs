@@ -70,7 +70,7 @@ fn name(begin: &Begin) -> String {
     format!("A{} begins at {ms:.3} ms", begin.servo + 1)
 }
 
-/// Only by somebody's order, by `boot` or at power-on.
+/// Only by a command, by `boot` or at power-on.
 pub fn only_by_order(record: &Record, rules: &Rules) -> Result<(), String> {
     for begin in record.begins() {
         if !may_begin(record, rules, begin.pulse.start) {

@@ -27,7 +27,7 @@ const STYLES: [(&str, &str); 10] = [
 const A1: &str = "#882255";
 const A2: &str = "#b58900";
 
-/// Least margin of the head over theta1 and theta4; the gaits beside it.
+/// Least margin of the head over theta1 and theta4, with the gaits.
 pub fn singularity(robot: &Robot) -> String {
     let scale = Scale {
         least: 0.3,
