@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package docs install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .docs .install .release .release-test .parallel-test .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .install .release .release-test .parallel-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -75,6 +75,8 @@ fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, 
 	$(call prepared,.fuzz)
 package: ## the crates that stand alone, as a registry would get them, each built from its package
 	$(call prepared,.package)
+code-image: ## firmware/code.hex anew: the firmware's code, which the program and the page have inside
+	$(call prepared,.code-image)
 docs: ## write anew the pages and pictures that programs make; the book of docs/ in out/book
 	$(call prepared,.docs)
 install: ## the program, its manual pages and completions, into PREFIX=~/.local
@@ -226,6 +228,10 @@ TESTS ?= --workspace
 	@rm -f host/target/package/*.crate
 	@cd host && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics
 	@cd host && for package in target/package/*.crate; do echo "$$package"; done
+
+# The code is the same for every robot: see firmware/README.md.
+.code-image: .firmware
+	@scripts/code-image
 
 PREFIX ?= $(HOME)/.local
 .install: .cli

@@ -15,6 +15,11 @@ use simulated_uno::{Image, LoadError};
 use crate::board::BoardError;
 use crate::{Failure, RobotFile};
 
+/// The code of the firmware in Intel HEX, up to where the robot's section begins.
+///
+/// `make code-image` writes the file anew, and a test compares it with what the source builds.
+pub const CODE: &str = include_str!("../../firmware/code.hex");
+
 /// Where `make firmware` leaves it.
 const BUILT: &str = "target/avr-atmega328p/release/lizard.elf";
 
@@ -100,7 +105,8 @@ fn robot_in(flash: &[u8]) -> Option<CoreRobot<'_>> {
 }
 
 /// A robot's name and hash, as its banner says them.
-fn named(robot: &CoreRobot) -> String {
+#[must_use]
+pub fn named(robot: &CoreRobot) -> String {
     let name: String = robot.label().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())
 }

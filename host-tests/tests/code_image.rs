@@ -1,0 +1,134 @@
+//! The code that the program has inside is the code that the source builds.
+//!
+//! The source says what the firmware is, and `firmware/code.hex` is what users get without a
+//! compiler. A change of the one without the other would be seen by nobody until a board does
+//! something else than its source says.
+
+use std::io::Write as _;
+use std::process::Command;
+
+use lizard_core::section::START;
+use lizard_host::firmware::CODE;
+use lizard_host::sim::frame::servo_pins;
+use lizard_host::sim::script::{Script, Step};
+use lizard_host::sim::session::{Recording, play};
+use lizard_host::sim::supplies;
+use lizard_host_tests::{FirmwareBench, robot, root};
+use simulated_uno::{Fidelity, Image, State, Uno};
+
+/// What is to be done where it is not.
+const RENEW: &str =
+    "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
+
+/// Code without a robot, from address 0 to where the robot's section begins.
+fn code_of(image: &Image) -> Vec<u8> {
+    let mut flash = image.flash();
+    flash.resize(START.into(), 0xff);
+    flash
+}
+
+/// The image inside the program, with the robot under test.
+fn inside() -> Image {
+    let mut image = Image::parse_hex(CODE).expect("it is Intel HEX");
+    let space = u32::from(START)..0x7e00;
+    image
+        .replace(space, &robot().section())
+        .expect("the section fits");
+    image
+}
+
+/// The compiler and the linker of the firmware that was built, a line each.
+fn tools_here() -> String {
+    let script = root().join("scripts/code-image");
+    let output = Command::new(script)
+        .arg("--tools")
+        .arg(FirmwareBench::elf())
+        .output();
+    let output = output.expect("scripts/code-image runs");
+    let said = String::from_utf8(output.stdout).expect("it is text");
+    assert!(said.starts_with("rustc version "), "{said}");
+    said
+}
+
+/// A minute of the walk, of other commands and of rest.
+fn minute(image: Image) -> Recording {
+    let commands = [
+        (1000, "status"),
+        (2003, "walk"),
+        (21_007, "speed 40"),
+        (35_011, "stop"),
+        (38_017, "pose 90 90 318.59 221.41"),
+        (45_019, "no such thing"),
+        (48_023, "stand"),
+        (55_027, "rest"),
+    ];
+    let script = Script {
+        steps: commands
+            .map(|(ms, command)| Step {
+                ms,
+                command: command.to_owned(),
+            })
+            .to_vec(),
+        end_ms: 60_000,
+    };
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    supplies::connect(&mut uno, robot());
+    let pins = servo_pins(robot());
+    let recording = play(&mut uno, pins, &script, false, |_| Ok(())).expect("it is not written");
+    assert_eq!(recording.state, State::Alive);
+    recording
+}
+
+#[test]
+fn the_code_inside_the_program_is_what_the_source_builds() {
+    let inside_code = code_of(&Image::parse_hex(CODE).expect("it is Intel HEX"));
+    let mut built = FirmwareBench::image();
+    built
+        .replace(u32::from(START)..0x7e00, &[])
+        .expect("the robot is taken out");
+    let built_code = code_of(&built);
+    let made_by = std::fs::read_to_string(root().join("firmware/tools.txt"));
+    let made_by = made_by.expect("firmware/tools.txt");
+    if made_by == tools_here() {
+        let wrong = (0..START.into()).find(|&at| inside_code[at] != built_code[at]);
+        assert_eq!(wrong, None, "{RENEW} (the first byte that differs)");
+        return;
+    }
+    // Not by eprintln!, which a test that passes keeps to itself.
+    let note = format!(
+        "code_image: firmware/code.hex was made by other tools than those here, so its bytes are \
+         not compared, but what both do in a minute. It was made by\n{made_by}and here are\n{}",
+        tools_here()
+    );
+    std::io::stderr()
+        .write_all(note.as_bytes())
+        .expect("it is said");
+    let [inside, built] = [inside(), FirmwareBench::image()].map(minute);
+    assert_eq!(inside.banner, built.banner, "{RENEW} (its banner)");
+    assert_eq!(inside.answers, built.answers, "{RENEW} (its answers)");
+    assert_eq!(inside.frames.widths.len(), built.frames.widths.len());
+    for (n, (inside, built)) in inside
+        .frames
+        .widths
+        .iter()
+        .zip(&built.frames.widths)
+        .enumerate()
+    {
+        assert_eq!(inside, built, "{RENEW} (the pulses of frame {n})");
+    }
+}
+
+#[test]
+fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_behind_it() {
+    let recording = minute(inside());
+    let banner = recording.banner.expect("a banner");
+    let its = lizard_host::firmware::named(robot().firmware());
+    assert!(banner.contains(&format!(" robot {its}")), "{banner}");
+    assert!(recording.frames.widths.len() > 2700);
+    let code = Image::parse_hex(CODE).expect("it is Intel HEX").flash();
+    assert!(
+        (26_000..=usize::from(START)).contains(&code.len()),
+        "{} bytes",
+        code.len()
+    );
+}
