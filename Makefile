@@ -187,7 +187,7 @@ TESTS ?= --workspace
 	@cd host && cargo clippy -p lizard-physics --features engines --all-targets --quiet -- -D warnings
 	@cd host && cargo test -p lizard-physics --features engines --test rapier --quiet
 	@cd host && cargo build --workspace --bin lizard --quiet
-	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk $(FOR_ROBOT)
+	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python physics/judge.py target/physics/walk.xml
 	@cd host && cargo run -p lizard-physics --features engines --quiet -- $(if $(WRITE),--write)
 

@@ -25,11 +25,16 @@ fn main() {
     write(&out.join("robot.bin"), &robot.section());
     // Where the section is in flash, as lizard_core::section::START has it.
     println!("cargo::rustc-link-arg-bins=-Wl,--section-start=.robot={START:#x}");
-    // No instruction names it, so it would be left out.
-    println!("cargo::rustc-link-arg-bins=-Wl,--undefined=ROBOT");
+    // No instruction names it or the mark of the code, so they would be left out.
+    for name in ["ROBOT", "MARK"] {
+        println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
+    }
     // OUT_DIR is build/<package>/out in the folder that the firmware goes to.
     if let Some(beside) = out.ancestors().nth(3) {
-        write(&beside.join("gaits.txt"), Report::of(&robot).to_string().as_bytes());
+        write(
+            &beside.join("gaits.txt"),
+            Report::of(&robot).to_string().as_bytes(),
+        );
     }
 }
 

@@ -9,6 +9,7 @@ use lizard_core::step::{Main, Step};
 use panic_halt as _;
 
 mod board;
+mod mark;
 mod robot;
 
 use board::{Uno, sleep};

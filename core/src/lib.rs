@@ -88,6 +88,7 @@ pub mod hazard;
 pub mod kept;
 pub mod limits;
 pub mod line;
+pub mod mark;
 pub mod memory;
 pub mod motion;
 pub mod order;

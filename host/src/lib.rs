@@ -11,11 +11,13 @@ pub mod completions;
 pub mod console;
 pub mod draw;
 mod failure;
-#[cfg(feature = "simulator")]
+#[cfg(any(feature = "simulator", feature = "console"))]
 pub mod firmware;
 #[cfg(feature = "console")]
 pub mod flash;
 pub mod gaits;
+#[cfg(feature = "console")]
+pub mod image;
 mod json;
 #[cfg(all(feature = "simulator", feature = "parts"))]
 pub mod mjcf;

@@ -39,8 +39,8 @@ pub struct Args {
     /// pulses
     #[arg(long, value_name = "GAIT")]
     drive: Option<String>,
-    /// The firmware for --drive [default: target/avr-atmega328p/release/lizard.elf in this
-    /// folder or one above it]
+    /// The firmware for --drive: an ELF that has this robot in it [default: the one inside this
+    /// program]
     #[arg(long, value_name = "FILE", requires = "drive")]
     elf: Option<PathBuf>,
     /// Make the foot LF, RF, RH or LH longer by this many mm; a negative number makes it
@@ -161,7 +161,7 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
 
 /// Three cycles of a gait by the firmware on the simulated UNO.
 fn course(args: &Args, robot: &Robot, gait: &CheckedGait) -> Result<Course, Failure> {
-    let (_, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, robot)?;
+    let image = firmware::of_robot(args.elf.as_deref(), &args.robot, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::every(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;

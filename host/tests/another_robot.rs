@@ -47,7 +47,7 @@ fn lizard(arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn every_command_that_runs_an_image_refuses_one_of_another_robot() {
+fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
     let (robot, wanted) = another();
     let image = of_the_image();
     let elf = release().join("lizard.elf").display().to_string();
@@ -65,7 +65,7 @@ fn every_command_that_runs_an_image_refuses_one_of_another_robot() {
             String::from_utf8_lossy(&output.stderr).trim(),
             format!(
                 "lizard: {elf} has the robot {image} in it, and not {robot}, which is {wanted}; \
-                 without --elf, the program that `make firmware` has built runs with any robot"
+                 without --elf, the firmware inside this program runs with any robot"
             ),
             "{words:?}"
         );

@@ -30,11 +30,12 @@ fn complaint(arguments: &[&str]) -> (String, Option<i32>) {
 }
 
 #[test]
-fn a_missing_firmware_says_how_to_build_it() {
+fn a_firmware_that_is_not_there_is_named() {
     let (words, code) = complaint(&["sim", "--elf", "no/such.elf"]);
     assert_eq!(
         words,
-        "lizard: there is no firmware at no/such.elf; build it with `make firmware`"
+        "lizard: there is no firmware at no/such.elf; without --elf, the one inside this program \
+         is taken"
     );
     assert_eq!(code, Some(2));
 }

@@ -27,10 +27,10 @@ pub use stack::{StackDepth, StackError};
 /// broken.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
-    /// folder or one above it]
+    /// The firmware that was built, with the names of its functions:
+    /// target/avr-atmega328p/release/lizard.elf
     #[arg(long, value_name = "FILE")]
-    elf: Option<PathBuf>,
+    elf: PathBuf,
     /// Print the table as one JSON object
     #[arg(long)]
     json: bool,
@@ -59,7 +59,8 @@ impl<'a> Judged<'a> {
 /// No firmware, a firmware that dies or does not answer, a broken budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let (elf, _) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let elf = args.elf;
+    firmware::of_robot(Some(&elf), &args.robot, &robot)?;
     let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
     let progress = ProgressBar::new_spinner();
     progress.set_style(style.expect("the template is well formed"));

@@ -80,6 +80,7 @@ macro_rules! commands {
 commands! {
     Drive {
         Flash(crate::flash::Args) => crate::flash::run, needs "console";
+        Image(crate::image::Args) => crate::image::run, needs "console";
         Console(crate::console::interactive::ConsoleArgs) => crate::console::interactive::console, needs "console", also "monitor";
         Calibrate(crate::console::calibrate::Args) => crate::console::calibrate::run, needs "console";
         Backup(crate::console::backup::BackupArgs) => crate::console::backup::backup, needs "console";

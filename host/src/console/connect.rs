@@ -10,7 +10,7 @@ use super::port;
 use crate::plain::plain;
 use crate::{Failure, RobotFile};
 
-/// Which board a command talks to.
+/// Which board a subcommand is about.
 #[derive(clap::Args, Debug)]
 pub struct Connect {
     /// The board's serial port [default: the one that has a UNO, or the only one]
@@ -18,16 +18,17 @@ pub struct Connect {
     /// Use a simulated UNO instead, in real time
     #[arg(long, conflicts_with = "port")]
     sim: bool,
-    /// With --sim: the firmware [default: target/avr-atmega328p/release/lizard.elf
-    /// in this folder or one above it]
+    /// With --sim: the firmware: an ELF that has this robot in it [default: the one inside this
+    /// program]
     #[arg(long, value_name = "FILE", requires = "sim")]
     elf: Option<PathBuf>,
-    /// With --sim: the robot [default: robot.toml in this folder or one above it]
+    /// With --sim: the robot that is simulated, a file or a name as for `lizard sim` [default:
+    /// robot.toml in this folder or one above it, else the one this program was built with]
     #[arg(long, value_name = "FILE", requires = "sim")]
     robot: Option<PathBuf>,
 }
 
-/// Where to search the board, each time again: a board that is plugged in
+/// Where the board is looked for, each time anew: a board that is plugged in
 /// again may get another port.
 #[derive(Debug)]
 pub struct Finder {
@@ -41,7 +42,7 @@ pub struct Finder {
 pub struct Connection {
     /// The connection.
     pub link: Link<Box<dyn SerialPort>>,
-    /// How messages name the board.
+    /// What the user is told where the board is.
     pub name: String,
 }
 
@@ -72,7 +73,7 @@ fn simulated(
 ) -> Result<Finder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
     let robot = file.load()?;
-    let (_, image) = crate::firmware::of_robot(elf, file, &robot)?;
+    let image = crate::firmware::of_robot(elf, file, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     crate::sim::supplies::connect(&mut uno, &robot);
     let port = Port::new().map_err(|error| {

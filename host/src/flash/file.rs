@@ -5,37 +5,27 @@ use std::path::Path;
 use lizard_core::section::START;
 use lizard_robot::Robot;
 
-use super::image::Image;
+use super::image::{BLANK, Image, ImageError};
 use crate::Failure;
+use crate::firmware::CODE;
 
-/// What `make firmware` leaves.
-const BUILT: &str = "target/avr-atmega328p/release/lizard.hex";
-
-/// The image of a robot: the code that `make firmware` has left in this folder or one above
-/// it, with this robot's section behind it.
+/// The image of a robot: the code inside this program with this robot's section behind it.
 ///
 /// # Errors
-/// There is none, or it is no image for a UNO.
-pub fn image(robot: &Robot) -> Result<Image, Failure> {
-    let here = std::env::current_dir()?;
-    image_of(robot, &here)
+/// Never: a test makes one for every robot there is.
+pub fn image(robot: &Robot) -> Result<Image, ImageError> {
+    let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
+    bytes.resize(START.into(), BLANK);
+    bytes.extend(robot.section());
+    Image::new(bytes)
 }
 
-fn image_of(robot: &Robot, here: &Path) -> Result<Image, Failure> {
-    let found = here
-        .ancestors()
-        .map(|folder| folder.join(BUILT))
-        .find(|path| path.is_file());
-    let missing = || {
-        Failure::Input(format!(
-            "there is no firmware at {BUILT}; build it with `make firmware`"
-        ))
-    };
-    let path = found.ok_or_else(missing)?;
-    let mut bytes = read(&path)?.bytes().to_vec();
-    bytes.resize(START.into(), 0xff);
-    bytes.extend(robot.section());
-    Image::new(bytes).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
+/// A robot's section alone.
+///
+/// # Errors
+/// Never: a section has room.
+pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
+    Image::robot_alone(robot.section())
 }
 
 /// Reads an image from a file of Intel HEX.
@@ -51,35 +41,32 @@ pub fn read(path: &Path) -> Result<Image, Failure> {
 
 #[cfg(test)]
 mod tests {
+    use lizard_core::mark::Mark;
+
     use super::*;
 
     #[test]
-    fn the_code_that_was_built_gets_the_robot_that_was_asked_for() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let built = folder.path().join(BUILT);
-        let robot = |name: &str| {
-            let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-            Robot::load(Path::new(&path)).expect("it is right")
-        };
-        let [paper, other] = ["paper", "unequal"].map(robot);
-        let words = image_of(&paper, folder.path()).expect_err("there is none");
-        assert!(
-            words
-                .to_string()
-                .starts_with("there is no firmware at target/")
-        );
-        std::fs::create_dir_all(built.parent().expect("a folder")).expect("it is made");
-        // With a longer section than either has.
-        let image = Image::new(vec![7; 0x7e00]).expect("it fits");
-        std::fs::write(&built, image.to_hex()).expect("it is written");
-        let inside = folder.path().join("a/b");
-        std::fs::create_dir_all(&inside).expect("it is made");
-        for robot in [&paper, &other] {
-            let image = image_of(robot, &inside).expect("it is found");
-            let (code, section) = image.bytes().split_at(START.into());
-            assert!(code.iter().all(|byte| *byte == 7));
-            assert_eq!(section, robot.section());
+    fn every_robot_is_behind_the_same_code_or_alone() {
+        let code = Image::from_hex(CODE).expect("it is Intel HEX");
+        let code = code.bytes();
+        assert_eq!(Mark::find(code), Some(Mark::HERE));
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots");
+        let mut count = 0;
+        for file in std::fs::read_dir(folder).expect("robots/") {
+            let path = file.expect("a file").path();
+            let robot = Robot::load(&path).expect("it is right");
+            let image = image(&robot).expect("it fits");
+            let (begin, section) = image.bytes().split_at(START.into());
+            let (begin, gap) = begin.split_at(code.len());
+            assert!(begin == code, "{}", path.display());
+            assert!(gap.iter().all(|byte| *byte == BLANK));
+            assert!(section == robot.section(), "{}", path.display());
+            let alone = robot_alone(&robot).expect("it fits");
+            assert!(alone.bytes() == section);
+            assert_eq!(alone.end(), image.end());
+            count += 1;
         }
+        assert!(count >= 4, "{count} robots");
     }
 
     #[test]

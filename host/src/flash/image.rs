@@ -1,4 +1,4 @@
-//! What is written into the flash of a UNO, from its first byte on.
+//! What is written into the flash of a UNO: code and robot, or a robot alone.
 //!
 //! Flash is written in pages, and its last 512 bytes hold the boot loader, which writes all
 //! others and cannot write itself. So an image ends before it.
@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use ihex::Record;
+use lizard_core::section::START;
 
 /// Bytes that the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
 pub const PAGE: usize = 128;
@@ -17,11 +18,18 @@ pub const BLANK: u8 = 0xff;
 /// Bytes of a line of Intel HEX, as avr-objcopy has them.
 const LINE: usize = 16;
 
-/// The firmware.
+/// The firmware with its robot, or a robot alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
+    /// Address of the first byte, at the beginning of a page.
+    start: usize,
     bytes: Vec<u8>,
 }
+
+/// Where a robot's section begins.
+const ROBOT: usize = START as usize;
+
+const _: () = assert!(ROBOT.is_multiple_of(PAGE), "code and robot share no page");
 
 /// A page of flash that an image fills, or a part of which it fills.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,6 +46,9 @@ pub enum ImageError {
     /// A chip starts at address 0.
     #[error("there is no code at address 0, where the chip starts")]
     NoStart,
+    /// A robot without a byte.
+    #[error("there is no robot")]
+    NoRobot,
     /// The code reaches into the boot loader.
     #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
     Long(usize),
@@ -73,6 +84,12 @@ pub enum ImageError {
     },
 }
 
+impl From<ImageError> for crate::Failure {
+    fn from(error: ImageError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
 impl Image {
     /// An image of these bytes, from address 0 on.
     ///
@@ -81,9 +98,30 @@ impl Image {
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
-            1..=BOOT => Ok(Self { bytes }),
+            1..=BOOT => Ok(Self { start: 0, bytes }),
             long => Err(ImageError::Long(long)),
         }
+    }
+
+    /// A robot's section without code.
+    ///
+    /// # Errors
+    /// It has no bytes, or too many.
+    pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
+        match ROBOT + section.len() {
+            ROBOT => Err(ImageError::NoRobot),
+            end if end > BOOT => Err(ImageError::Long(end)),
+            _ => Ok(Self {
+                start: ROBOT,
+                bytes: section,
+            }),
+        }
+    }
+
+    /// Whether it has no code.
+    #[must_use]
+    pub fn is_robot_alone(&self) -> bool {
+        self.start == ROBOT
     }
 
     /// Reads Intel HEX.
@@ -133,7 +171,7 @@ impl Image {
         let mut records = Vec::new();
         for (index, line) in self.bytes.chunks(LINE).enumerate() {
             records.push(Record::Data {
-                offset: (index * LINE) as u16,
+                offset: (self.start + index * LINE) as u16,
                 value: line.to_vec(),
             });
         }
@@ -142,19 +180,25 @@ impl Image {
         text.expect("short lines and one end")
     }
 
-    /// The image as flash holds it from address 0 on, up to its last byte.
+    /// Its bytes as flash holds them, from its first to its last.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Its pages, from address 0 on.
+    /// Address behind its last byte.
+    #[must_use]
+    pub fn end(&self) -> usize {
+        self.start + self.bytes.len()
+    }
+
+    /// Its pages in the order of their addresses.
     #[must_use]
     pub fn pages(&self) -> Vec<Page> {
         let page = |(index, part): (usize, &[u8])| {
             let mut bytes = [BLANK; PAGE];
             bytes[..part.len()].copy_from_slice(part);
-            let address = index * PAGE;
+            let address = self.start + index * PAGE;
             Page { address, bytes }
         };
         self.bytes.chunks(PAGE).enumerate().map(page).collect()
@@ -236,6 +280,19 @@ mod tests {
         assert_eq!(pages.len(), 2);
         assert_eq!(pages[1].bytes[..3], [5, 5, 0xff]);
         assert_eq!(pages[1].range(), 128..256);
+    }
+
+    #[test]
+    fn a_robot_alone_is_at_its_place_and_ends_before_the_boot_loader() {
+        let robot = Image::robot_alone(vec![5; 130]).expect("it fits");
+        let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
+        assert_eq!(addresses, [0x6a00, 0x6a80]);
+        assert_eq!(robot.end(), 0x6a82);
+        assert!(robot.is_robot_alone());
+        assert!(robot.to_hex().starts_with(":106A0000"));
+        assert_eq!(Image::robot_alone(Vec::new()), Err(ImageError::NoRobot));
+        assert!(Image::robot_alone(vec![0; 0x1400]).is_ok());
+        assert!(Image::robot_alone(vec![0; 0x1401]).is_err());
     }
 
     #[test]

@@ -25,8 +25,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
+use crate::firmware::{self, Firmware};
 use crate::suggestion::did_you_mean;
-use crate::{Failure, RobotFile, firmware, json, whole_file};
+use crate::{Failure, RobotFile, json, whole_file};
 use analysis::Run;
 use dialogue::Printer;
 use report::Report;
@@ -41,8 +42,8 @@ use session::{DialogueLine, Event, Recording};
 /// seconds.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
-    /// folder or one above it]
+    /// The firmware: an ELF that has this robot in it [default: the one inside this
+    /// program]
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
     /// Play one gait of robot.toml
@@ -120,7 +121,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let mut uno = match &args.boot_loader {
             Some(loader) => served::as_sold(loader, fidelity)?,
             None => {
-                let (_, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+                let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
                 Uno::with_image(image, fidelity)
             }
         };
@@ -128,7 +129,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return served::until_interrupted(uno, link.as_deref());
     }
     let script = script(&args, &robot)?;
-    let (elf, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let Firmware { name, image } = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
     let mut kept = Vec::new();
@@ -142,7 +143,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
     whole_file::write_picture(&args.svg, picture.as_bytes())?;
     let report = Report {
-        elf: elf.display().to_string(),
+        elf: name,
         fidelity: match fidelity {
             Fidelity::DataSheet => "data-sheet",
             Fidelity::Stock => "stock",

@@ -44,8 +44,8 @@ pub struct Args {
     /// Walk one gait of robot.toml
     #[arg(long, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
-    /// The firmware [default: target/avr-atmega328p/release/lizard.elf in this
-    /// folder or one above it]
+    /// The firmware: an ELF that has this robot in it [default: the one inside this
+    /// program]
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
     /// What the servos can do
@@ -84,7 +84,7 @@ enum ServoArg {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
-    let (_, image) = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let recording = record(&mut uno, &robot, &script)?;
     if recording.state != State::Alive {

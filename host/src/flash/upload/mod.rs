@@ -5,20 +5,29 @@
 //! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
 //! other pages are written and read back, and that first page comes last.
 //!
+//! A robot alone is written likewise: the first page of its section is made blank, and comes
+//! last. The firmware then meets either a whole robot or none, for which it has a fault and
+//! moves no servo. Since the code stays, it must be code that reads this robot: its mark
+//! ([`lizard_core::mark`]) is read before anything is written.
+//!
 //! Pages that are right already are left alone: it saves time, and flash wears out (10 000 times,
 //! ATmega328P data sheet, "Features").
 
 use std::fmt;
+use std::ops::Range;
+
+use lizard_core::mark::Mark;
+use lizard_core::section::{FORMAT, Header, MAGIC, Region, START};
 
 use super::chip::Chip;
-use super::found::Found;
+use super::found::{Found, IDLE, Program};
 use super::image::{BLANK, BOOT, Image, PAGE, Page};
 use super::stk500::{Board, Loader, Trouble};
 
 /// How often a board is reset and all is begun again, when bytes were lost on the way.
 const ATTEMPTS: usize = 3;
-/// `rjmp .-2`: a jump to itself.
-const IDLE: [u8; 2] = [0xff, 0xcf];
+/// The page where a robot's section begins.
+const ROBOT: usize = START as usize / PAGE;
 
 /// What is being done with pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,6 +73,23 @@ pub enum UploadError {
     /// Not the chip of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
+    /// A robot alone, and no code that it could be written behind.
+    #[error(
+        "{0}, and a robot alone moves nothing: write both, without --only-robot. Nothing was written"
+    )]
+    NoLizard(Found),
+    /// A robot alone, and code that reads other ones.
+    #[error(
+        "{found}, whose robots are of format {}; this program's are of format {FORMAT}. Write \
+         both, without --only-robot. Nothing was written",
+        mark.format
+    )]
+    Format {
+        /// What the board has.
+        found: Found,
+        /// What its code says of itself.
+        mark: Mark,
+    },
     /// A byte was written twice and is still another.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
@@ -96,12 +122,18 @@ pub enum Left {
     AsBefore,
     /// The loop that does nothing, and a part of the code.
     Idle,
+    /// The firmware, and no robot that it could move.
+    NoRobot,
 }
 
 impl fmt::Display for Left {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::AsBefore => "Nothing was written: the board has what it had",
+            Self::NoRobot => {
+                "The board has half a robot now: its firmware says fault=robot and moves no \
+                 servo. Run this command again"
+            }
             Self::Idle => {
                 "The board has half a program now, and does nothing. Its boot loader is still \
                  there: run this command again"
@@ -131,7 +163,7 @@ pub fn upload<B: Board>(
         image,
         tell,
         answered: false,
-        found: None,
+        told: false,
         left: Left::AsBefore,
     };
     let mut written = vec![false; BOOT / PAGE];
@@ -172,7 +204,8 @@ struct Upload<'a, B> {
     tell: &'a mut dyn FnMut(Event<'_>),
     /// The loader has answered once.
     answered: bool,
-    found: Option<Found>,
+    /// What the board has was said.
+    told: bool,
     left: Left,
 }
 
@@ -192,8 +225,8 @@ impl<B: Board> Upload<'_, B> {
             for page in &goal {
                 written[page.address / PAGE] = true;
             }
-            // Where the chip starts, there was the loop meanwhile.
-            written[0] = true;
+            // There was something else meanwhile.
+            written[self.first_page().address / PAGE] = true;
             self.write_pages(goal, &flash)?;
         }
         // All is written; the program starts after a second in any case.
@@ -201,34 +234,73 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    /// Writes pages: the first of flash comes last.
-    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
-        let mut idle = [BLANK; PAGE];
-        idle[..IDLE.len()].copy_from_slice(&IDLE);
-        goal.retain(|page| page.address != 0);
-        self.left = Left::Idle;
-        if !goal.is_empty() && flash[..PAGE] != idle {
-            self.write_page(0, &idle)?;
-        }
-        self.write(&goal)?;
-        let first = self.image.pages().into_iter().take(1);
-        self.write(&first.collect::<Vec<_>>())
+    /// The page without which the others do nothing: where the chip starts, or where the
+    /// robot's section begins.
+    fn first_page(&self) -> Page {
+        let mut pages = self.image.pages();
+        pages.swap_remove(0)
     }
 
-    /// Reads flash: all of it but the boot loader.
+    /// Writes pages: the first of the image comes last.
+    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
+        let first = self.first_page();
+        let mut closed = [BLANK; PAGE];
+        if self.image.is_robot_alone() {
+            self.left = Left::NoRobot;
+        } else {
+            self.left = Left::Idle;
+            closed[..IDLE.len()].copy_from_slice(&IDLE);
+        }
+        goal.retain(|page| page.address != first.address);
+        if !goal.is_empty() && flash[first.range()] != closed {
+            self.write_page(first.address, &closed)?;
+        }
+        self.write(&goal)?;
+        self.write(&[first])
+    }
+
+    /// Reads flash, all of it but the boot loader, and says what is there. Of the code, a
+    /// robot alone needs only the first page.
     fn look(&mut self) -> Result<Vec<u8>, Stop> {
         let mut flash = vec![BLANK; BOOT];
-        let pages = BOOT / PAGE;
-        for (done, bytes) in flash.chunks_mut(PAGE).enumerate() {
-            bytes.copy_from_slice(&self.loader.read_page(done * PAGE)?);
-            (self.tell)(Event::Progress(Step::Reading, done + 1, pages));
+        if self.image.is_robot_alone() {
+            self.read(&mut flash, 0..1)?;
+            self.read(&mut flash, ROBOT..ROBOT + 1)?;
+            let end = self.image.end().max(end_of_robot(&flash));
+            self.read(&mut flash, ROBOT + 1..end.div_ceil(PAGE))?;
+        } else {
+            self.read(&mut flash, 0..BOOT / PAGE)?;
         }
-        if self.found.is_none() {
-            let found = Found::in_flash(&flash, self.image);
-            self.found = Some(found);
+        let found = Found::in_flash(&flash, self.image);
+        if self.image.is_robot_alone() {
+            self.fits(&found)?;
+        }
+        if !self.told {
+            self.told = true;
             (self.tell)(Event::Found(found));
         }
         Ok(flash)
+    }
+
+    /// Whether the code that was found reads the robot that is to be written behind it.
+    fn fits(&self, found: &Found) -> Result<(), Stop> {
+        let found = found.clone();
+        Err(Stop::Error(match found.program {
+            Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
+            Program::Lizard { mark, .. } => UploadError::Format { found, mark },
+            _ => UploadError::NoLizard(found),
+        }))
+    }
+
+    fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), Stop> {
+        let of = pages.len();
+        for (done, page) in pages.enumerate() {
+            let address = page * PAGE;
+            let read = self.loader.read_page(address)?;
+            flash[address..address + PAGE].copy_from_slice(&read);
+            (self.tell)(Event::Progress(Step::Reading, done + 1, of));
+        }
+        Ok(())
     }
 
     /// Writes pages and reads them back. One that has changed on the way is written again.
@@ -269,6 +341,19 @@ impl<B: Board> Upload<'_, B> {
                 left: self.left,
             },
         }
+    }
+}
+
+/// Where the robot in a flash ends, as its header says, of which only the first page needs to
+/// be there.
+fn end_of_robot(flash: &[u8]) -> usize {
+    let start = usize::from(START);
+    let header: Header = Region::new(&flash[start..]).read(0);
+    let end = start + usize::from(header.length);
+    if header.magic == MAGIC && end <= BOOT {
+        end
+    } else {
+        start
     }
 }
 
