@@ -10,7 +10,7 @@ use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::{Arc, Mutex};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use lizard_host_tests::root;
@@ -25,6 +25,7 @@ pub struct Shell {
     child: Mutex<Child>,
     keyboard: ChildStdin,
     screen: Arc<Mutex<Vec<u8>>>,
+    readers: [JoinHandle<()>; 2],
 }
 
 impl Shell {
@@ -45,8 +46,10 @@ impl Shell {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("the command starts");
         let screen = Arc::default();
-        show(child.stdout.take().expect("it is piped"), &screen);
-        show(child.stderr.take().expect("it is piped"), &screen);
+        let readers = [
+            show(child.stdout.take().expect("it is piped"), &screen),
+            show(child.stderr.take().expect("it is piped"), &screen),
+        ];
         // Kept open: ravedude's console reads without a pause after its end.
         let keyboard = child.stdin.take().expect("it is piped");
         let child = Mutex::new(child);
@@ -55,6 +58,7 @@ impl Shell {
             child,
             keyboard,
             screen,
+            readers,
         }
     }
 
@@ -62,6 +66,15 @@ impl Shell {
     pub fn screen(&self) -> String {
         let screen = self.screen.lock().expect("nobody panics with it");
         String::from_utf8_lossy(&screen).into_owned()
+    }
+
+    /// All that a command that has ended, and nothing of which goes on, has printed: its last
+    /// words may still be in a pipe.
+    pub fn last_screen(&self) -> String {
+        let read = LIMIT.comes(|| self.readers.iter().all(JoinHandle::is_finished));
+        let screen = self.screen();
+        assert!(read, "waited {LIMIT} for the rest of\n{screen}");
+        screen
     }
 
     pub fn say(&mut self, line: &str) {
@@ -111,7 +124,7 @@ impl Drop for Shell {
     }
 }
 
-fn show(mut pipe: impl Read + Send + 'static, screen: &Arc<Mutex<Vec<u8>>>) {
+fn show(mut pipe: impl Read + Send + 'static, screen: &Arc<Mutex<Vec<u8>>>) -> JoinHandle<()> {
     let screen = Arc::clone(screen);
     thread::spawn(move || {
         let mut bytes = [0; 1024];
@@ -119,5 +132,5 @@ fn show(mut pipe: impl Read + Send + 'static, screen: &Arc<Mutex<Vec<u8>>>) {
             let mut screen = screen.lock().expect("nobody panics with it");
             screen.extend_from_slice(&bytes[..count]);
         }
-    });
+    })
 }

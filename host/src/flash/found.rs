@@ -67,7 +67,6 @@ impl Found {
     pub fn in_flash(flash: &[u8], image: &Image) -> Self {
         let pages = image.pages();
         let is_there = |page: &&super::image::Page| flash[page.range()] == page.bytes;
-        let has_image = pages.iter().all(|page| is_there(&page));
         let code = pages.iter().filter(|page| page.address < ROBOT);
         let program = match Mark::find(flash) {
             Some(mark) => Program::Lizard {
@@ -84,6 +83,9 @@ impl Found {
                 },
             },
         };
+        // A robot behind another program is one that nobody reads.
+        let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
+        let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
             Some(robot) => TheirRobot::Named(named(&robot)),
             None if is_blank(&flash[ROBOT..ROBOT + PAGE]) => TheirRobot::None,
@@ -180,6 +182,10 @@ mod tests {
         assert_eq!(found(&flash, &alone), format!("{} already", its(&paper)));
         let other = file::image(&large).expect("it fits");
         assert_eq!(found(&flash, &other), its(&paper));
+        // A sketch, shorter than the firmware, whose robot is still there.
+        let mut sketch = flash.clone();
+        sketch[..1000].fill(0x95);
+        assert_eq!(found(&sketch, &alone), "the board has another program");
         let mut damaged = flash.clone();
         damaged[ROBOT + 100] ^= 1;
         assert_eq!(
