@@ -1,4 +1,5 @@
 // The page: a session, and the views that show it.
+import { Address, fileIn } from './address';
 import { run } from './clock';
 import { files } from './files';
 import { kept } from './kept';
@@ -53,6 +54,7 @@ async function start(): Promise<void> {
   const robot = await Robot.load(module);
   const choice = await Choice.load();
   const now = () => session;
+  const address = new Address(now, choice.robot);
 
   const connect = element<HTMLButtonElement>('connect');
   const scope = new ScopeView();
@@ -127,6 +129,7 @@ async function start(): Promise<void> {
       parts.take();
       gaits.take();
       path.take();
+      address.follow();
       text.take();
       keep.take(description);
       predict();
@@ -237,14 +240,26 @@ async function start(): Promise<void> {
   });
 
   const before = kept.get();
-  if (before) choice.show(before.file);
+  const asked = fileIn(location.hash);
+  const wanted = asked ?? before?.file;
+  const isThere = wanted === undefined || choice.show(wanted);
   await choose();
-  if (before && session.file === before.file && !(await session.recall(before))) {
+  const missing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
+  if (asked !== null && !isThere) missing(asked);
+  // What the address has is not lost, whatever was kept.
+  const isAsked = location.hash !== '';
+  if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
     const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
     const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
     troubles.say('robot', said, remedy);
   }
-  await text.fromAddress();
+  if (await text.fromAddress()) address.begin();
+  addEventListener('hashchange', () => {
+    const file = fileIn(location.hash);
+    if (file === null) return void text.fromAddress().then((isRight) => isRight && address.begin());
+    if (choice.show(file)) void choose();
+    else missing(file);
+  });
   window.lizard = session;
   // After what the first step needs has come.
   void keepOffline((take) => {

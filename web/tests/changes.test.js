@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy, type } from './browser.js';
+import { address, advance, close, complaints, open, standing, tidy, type } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -101,7 +101,9 @@ test('changes of a file that is another now are not taken, and that is said', as
     const kept = JSON.parse(localStorage.getItem(key));
     localStorage.setItem(key, JSON.stringify({ ...kept, original: `${kept.original}\n` }));
   });
-  await opened.reload();
+  // With the robot in the address nothing would be lost.
+  await opened.waitForFunction(() => location.hash !== '');
+  await opened.goto(address());
   await opened.waitForFunction(() => window.lizard);
   await opened.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
   assert.equal(await opened.evaluate(() => window.lizard.toml), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));

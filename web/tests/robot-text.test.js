@@ -102,6 +102,29 @@ test('a link is a robot, also over a reload', async () => {
   await other.getByText('The address has no whole robot behind its #').waitFor();
 });
 
+test('the address is the robot that is shown, at every change', async () => {
+  const page = await opened();
+  const first = await toml(page);
+  assert.equal(page.url(), address(), 'the robot of the page itself needs none');
+  const changed = first.replace('amplitude = 15.0', 'amplitude = 14.0');
+  await box(page).fill(changed);
+  await page.locator('#robot-take').click();
+  await page.waitForFunction(() => location.hash.startsWith('#robot='));
+  // A page that knows nothing of the first has it from the address alone.
+  const other = await load();
+  await other.evaluate(() => localStorage.clear());
+  await other.goto(page.url());
+  await takes(other, changed);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction((plain) => location.href === plain, address());
+  await page.locator('#robot').selectOption('large');
+  await page.waitForFunction(() => location.hash === '#file=large');
+  await other.goto(page.url());
+  await other.waitForFunction(() => window.lizard.file === 'large');
+  await other.goto(`${address()}#file=nothing`);
+  await other.locator('#trouble', { hasText: 'This page has no nothing.toml' }).waitFor();
+});
+
 test('a hostile file runs no script', async () => {
   const page = await opened();
   const hostile = `${await toml(page)}\n[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n`;

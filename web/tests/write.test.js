@@ -126,8 +126,9 @@ test('where a board has not said its firmware, its code is read and compared', a
 test('a board that is unplugged half way has no robot, says so, moves nothing, and is written again', async () => {
   const opened = await panel(await connected('large', 8000));
   await robotAlone(opened);
-  await said(opened, /^writing/);
-  await opened.clock.runFor(100);
+  // Some of its twenty pages, which take 17 ms each.
+  for (let ms = 0; ms < 20_000 && !(await text(opened, '#flash-said')).startsWith('writing'); ms += 20) await opened.clock.runFor(20);
+  await opened.clock.runFor(60);
   await opened.evaluate(() => window.unplug());
   await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is written again: try again$/);
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());

@@ -37,9 +37,11 @@ export class Choice {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
 
-  /** Shows another one, by the name of its file, if it is there. */
-  show(name: string): void {
-    if (this.robots.includes(name)) this.list.value = name;
+  /** Shows another one, by the name of its file; whether it is there. */
+  show(name: string): boolean {
+    const isThere = this.robots.includes(name);
+    if (isThere) this.list.value = name;
+    return isThere;
   }
 
   /** Whether a person may choose. */

@@ -48,7 +48,6 @@ export class RobotText {
       event.preventDefault();
       void this.open(file);
     });
-    addEventListener('hashchange', () => void this.fromAddress());
   }
 
   /** Shows the session's robot. */
@@ -63,16 +62,15 @@ export class RobotText {
     this.say(null);
   }
 
-  /** Takes the robot that the page's address has, if any, and has the address forget it: from then on a reload keeps it. */
-  async fromAddress(): Promise<void> {
+  /** Takes the robot that the page's address has, if any; whether nothing was wrong with that. */
+  async fromAddress(): Promise<boolean> {
     try {
       const toml = await linked(location.hash);
-      if (toml === null) return;
-      history.replaceState(null, '', location.pathname + location.search);
-      await this.give(toml);
+      return toml === null || toml === this.session().toml || (await this.give(toml));
     } catch (error) {
       this.panel.open = true;
       this.say({ refused: sentence(error), line: null, key: '' });
+      return false;
     }
   }
 
@@ -84,13 +82,14 @@ export class RobotText {
     await this.give(toml);
   }
 
-  /** The text becomes the robot, or stays in the box with what is wrong. */
-  private async give(toml: string): Promise<void> {
+  /** The text becomes the robot, or stays in the box with what is wrong; whether it became that. */
+  private async give(toml: string): Promise<boolean> {
     const refused = await this.session().change(toml);
-    if (!refused) return;
+    if (!refused) return true;
     this.panel.open = true;
     this.box.value = toml;
     this.say(refused);
+    return false;
   }
 
   /** The text becomes the robot, also that of the board on USB. */

@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn it_greets_walks_and_keeps_what_is_saved() {
         let robot = Robot::parse(include_str!("../../../robots/large.toml")).expect("right");
-        let mut core = CoreRun::begin(robot.firmware().clone(), Eeprom::blank());
+        let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
         let mut said = String::new();
         let stands = run(&mut said, &mut core, "", 200);
         assert!(said.starts_with("# lizard "), "{said}");
@@ -96,7 +96,7 @@ mod tests {
             said.contains("ok trim 1 3") && said.contains("ok save"),
             "{said}"
         );
-        let mut again = CoreRun::begin(robot.firmware().clone(), core.into_memory());
+        let mut again = CoreRun::begin(*robot.firmware(), core.into_memory());
         assert_eq!(run(&mut said, &mut again, "", 200), trimmed);
         assert_ne!(run(&mut said, &mut again, "walk\n", 60), trimmed);
     }
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn a_low_supply_stops_it() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
-        let mut core = CoreRun::begin(robot.firmware().clone(), Eeprom::blank());
+        let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
         let mut said = String::new();
         run(&mut said, &mut core, "", 200);
         for _ in 0..200 {

@@ -290,7 +290,7 @@ impl Page {
             .take()
             .map_or_else(Eeprom::default, CoreRun::into_memory);
         let robot = self.robot();
-        self.run = robot.map(|robot| CoreRun::begin(robot.firmware().clone(), memory));
+        self.run = robot.map(|robot| CoreRun::begin(*robot.firmware(), memory));
     }
 
     /// A frame of the core, after bytes from the serial line, at a supply in V.
