@@ -30,6 +30,7 @@ import { RobotText } from './view/robot-text';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
 import { Setup } from './view/setup';
+import { Sketch } from './view/sketch';
 import { Troubles } from './view/troubles';
 import { World } from './view/world';
 import { Writer } from './view/writer';
@@ -94,6 +95,7 @@ async function start(): Promise<void> {
   const world = new World(now, predict);
   const health = new Health(now);
   const lengths = new Lengths(now);
+  const sketch = new Sketch(module, now);
   const parts = new PartsView(now);
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
@@ -123,6 +125,7 @@ async function start(): Promise<void> {
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
       lengths.take(description.lengths);
+      sketch.take();
       setup.update();
       floor.clear();
       world.take();

@@ -1,0 +1,136 @@
+// The bars and joints of a robot in its neutral pose, and what becomes of the lengths when a joint is dragged. Servos
+// keep their neutral angles: so the end of a crank goes along its crank, and what hangs on it follows.
+import type { Scene, Spot } from '../robot';
+import type { Edits } from './sketches';
+
+/** A bar between two points: its key in robot.toml. */
+export interface Bar {
+  key: string;
+  from: Spot;
+  to: Spot;
+}
+
+/** A joint that can be dragged. */
+export interface Joint {
+  name: string;
+  at: Spot;
+  /** The lengths with it there; `alike` keeps left and right alike. */
+  moved(to: Spot, alike: boolean): Edits;
+}
+
+const links = (n: number) => `links.l${n}`;
+/** Lengths are whole halves of a mm. */
+const round = (mm: number) => Math.round(mm * 2) / 2;
+const far = ([x, y]: Spot, [u, v]: Spot) => Math.hypot(x - u, y - v);
+
+/** How far a point is from another along the direction to a third. */
+function along(from: Spot, towards: Spot, to: Spot): number {
+  const long = far(from, towards) || 1;
+  return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / long;
+}
+
+/** Of a side: its servos in front and behind, and its lengths. */
+const SIDES = [
+  { name: 'left', front: 0, rear: 3, chassis: 10, rearArm: 11, rearHalf: 12, frontHalf: 13, frontArm: 14 },
+  { name: 'right', front: 1, rear: 2, chassis: 15, rearArm: 16, rearHalf: 17, frontHalf: 18, frontArm: 19 },
+] as const;
+
+/** Of an end: its left and right servo, and its lengths. */
+const ENDS = [
+  { name: 'head', left: 0, right: 1, base: 0, leftCrank: 1, leftCoupler: 2, rightCoupler: 3, rightCrank: 4 },
+  { name: 'tail', left: 3, right: 2, base: 5, leftCrank: 6, leftCoupler: 7, rightCoupler: 8, rightCrank: 9 },
+] as const;
+
+export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
+  const bar = (key: string, from: Spot, to: Spot): Bar => ({ key, from, to });
+  return [
+    ...SIDES.flatMap((side, n) => {
+      const { tips: [front, rear], tube } = sliders[n];
+      return [
+        bar(links(side.chassis), shafts[side.front], shafts[side.rear]),
+        bar(links(side.frontArm), shafts[side.front], front),
+        bar(links(side.rearArm), shafts[side.rear], rear),
+        bar(links(side.rearHalf), rear, tube),
+        bar(links(side.frontHalf), tube, front),
+      ];
+    }),
+    ...ENDS.flatMap((end, n) => [
+      bar(links(end.base), shafts[end.left], shafts[end.right]),
+      bar(links(end.leftCrank), shafts[end.left], tips[end.left]),
+      bar(links(end.rightCrank), shafts[end.right], tips[end.right]),
+      bar(links(end.leftCoupler), tips[end.left], points[n]),
+      bar(links(end.rightCoupler), tips[end.right], points[n]),
+    ]),
+    ...legs.flatMap(({ pivots, joints }) => [
+      bar('leg.ground', pivots[0], pivots[1]),
+      bar('leg.crank', pivots[0], joints[0]),
+      bar('leg.coupler', joints[0], joints[1]),
+      bar('leg.follower', pivots[1], joints[1]),
+    ]),
+  ];
+}
+
+export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (key: string) => number): Joint[] {
+  /** The halves of a slider follow what is between their ends, so that its travel stays. */
+  const halves = (side: (typeof SIDES)[number], longer: number): Edits => [
+    [links(side.rearHalf), round(value(links(side.rearHalf)) + longer / 2)],
+    [links(side.frontHalf), round(value(links(side.frontHalf)) + longer / 2)],
+  ];
+  const cranks = ENDS.flatMap((end): Joint[] =>
+    (['left', 'right'] as const).map((hand) => {
+      const servo = end[hand];
+      const [own, other] = hand === 'left' ? [end.leftCrank, end.rightCrank] : [end.rightCrank, end.leftCrank];
+      return {
+        name: `end of the ${end.name}'s ${hand} crank`,
+        at: tips[servo],
+        moved: (to, alike) => [own, ...(alike ? [other] : [])].map((n) => [links(n), round(along(shafts[servo], tips[servo], to))]),
+      };
+    }),
+  );
+  const ends = ENDS.map((end, n): Joint => ({
+    name: `point of the ${end.name}`,
+    at: points[n],
+    moved(to, alike) {
+      const middle = (tips[end.left][0] + tips[end.right][0]) / 2;
+      const at: Spot = alike ? [middle, to[1]] : to;
+      return [[links(end.leftCoupler), round(far(tips[end.left], at))], [links(end.rightCoupler), round(far(tips[end.right], at))]];
+    },
+  }));
+  const arms = SIDES.flatMap((side, n): Joint[] =>
+    (['front', 'rear'] as const).map((place, which) => {
+      const { tips: [front, rear] } = sliders[n];
+      const [shaft, tip, key] = place === 'front' ? [shafts[side.front], front, 'frontArm' as const] : [shafts[side.rear], rear, 'rearArm' as const];
+      return {
+        name: `end of the ${place} ${side.name} arm`,
+        at: [front, rear][which],
+        moved(to, alike) {
+          const long = round(along(shaft, tip, to));
+          const share = long / far(shaft, tip);
+          const moved: Spot = [shaft[0] + share * (tip[0] - shaft[0]), shaft[1] + share * (tip[1] - shaft[1])];
+          const longer = place === 'front' ? far(moved, rear) - far(front, rear) : far(front, moved) - far(front, rear);
+          return (alike ? SIDES : [side]).flatMap((each): Edits => [[links(each[key]), long], ...halves(each, longer)]);
+        },
+      };
+    }),
+  );
+  const bases = ENDS.flatMap((end, n): Joint[] =>
+    (['left', 'right'] as const).map((hand) => ({
+      name: `the ${end.name}'s ${hand} servo`,
+      at: shafts[end[hand]],
+      moved(to) {
+        const [own, other] = [shafts[end[hand]], shafts[end[hand === 'left' ? 'right' : 'left']]];
+        const middle = (own[0] + other[0]) / 2;
+        const longer = round((n === 0 ? 1 : -1) * (to[1] - own[1]));
+        // Both sides: the chassis stays a rectangle or a trapezium.
+        const chassis = SIDES.flatMap((side): Edits => (longer === 0 ? [] : [[links(side.chassis), value(links(side.chassis)) + longer], ...halves(side, longer)]));
+        return [[links(end.base), round(2 * Math.abs(to[0] - middle))], ...chassis];
+      },
+    })),
+  );
+  const knees = legs.map(({ pivots, joints }, n): Joint => ({
+    name: `knee of leg ${n + 1}`,
+    at: joints[0],
+    moved: (to, alike) => ['leg.crank', ...(alike ? ['leg.follower'] : [])].map((key) => [key, round(along(pivots[0], joints[0], to))]),
+  }));
+  return [...bases, ...arms, ...knees, ...cranks, ...ends];
+}

@@ -1,0 +1,61 @@
+// The other end of Sketches: the robot in WebAssembly once more, which takes other lengths.
+import { type Four, isRefused, type Refused, Robot } from '../robot';
+import type { Answer, Edits, Question } from './sketches';
+
+/** Lengths are whole halves of a mm. */
+const HALF = 0.5;
+
+let robot: Promise<Robot>;
+
+addEventListener('message', ({ data }: MessageEvent<WebAssembly.Module | Question>) => {
+  if (data instanceof WebAssembly.Module) robot = Robot.load(data);
+  else void answer(data);
+});
+
+async function answer({ toml, edits, isLast }: Question): Promise<void> {
+  const page = await robot;
+  const [text, refused] = edited(page, toml, edits);
+  const read = refused ? null : page.read(text);
+  let said: Answer = { edits, toml: text, refused, scene: null, nearest: null, isLast };
+  if (read && isRefused(read)) said = { ...said, refused: read };
+  else if (read) {
+    const neutral = read.servos.map(({ neutral }) => neutral) as Four<number>;
+    said = { ...said, scene: page.pose(neutral, 1)?.scene ?? null };
+  }
+  if (said.refused && isLast) said = { ...said, nearest: nearest(page, toml, edits) };
+  postMessage(said);
+}
+
+/** A robot.toml with these lengths, or why not. */
+function edited(page: Robot, toml: string, edits: Edits): [string, Refused | null] {
+  let text = toml;
+  for (const [key, value] of edits) {
+    const edited = page.edit(text, key, value);
+    if (isRefused(edited)) return [text, edited];
+    text = edited.text;
+  }
+  return [text, null];
+}
+
+/** What will do between the robot as it is and one that will not, half by half towards that. */
+function nearest(page: Robot, toml: string, edits: Edits): Answer['nearest'] {
+  const read = page.read(toml);
+  if (isRefused(read)) return null;
+  const now = new Map(read.lengths.map(({ key, value }) => [key, value]));
+  const way = edits.map(([key, value]): [string, number, number] => [key, now.get(key) ?? value, value]);
+  const steps = Math.ceil(Math.max(0, ...way.map(([, from, to]) => Math.abs(to - from))) / HALF);
+  const at = (step: number): Edits => way.map(([key, from, to]) => [key, Math.round((from + ((to - from) * step) / steps) / HALF) * HALF]);
+  let best: Answer['nearest'] = null;
+  let [does, not] = [0, steps];
+  while (not - does > 1) {
+    const middle = Math.floor((does + not) / 2);
+    const tried = at(middle);
+    const [text, refused] = edited(page, toml, tried);
+    if (refused || isRefused(page.read(text))) not = middle;
+    else {
+      does = middle;
+      best = { edits: tried, toml: text };
+    }
+  }
+  return best;
+}

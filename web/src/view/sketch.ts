@@ -1,0 +1,158 @@
+// The drawing of the robot on which joints are dragged: lengths follow, and what cannot walk is refused while one drags.
+import type { Length, Scene, Spot } from '../robot';
+import type { Session } from '../session';
+import { bars, type Joint, joints } from '../sketch/joints';
+import { type Answer, type Edits, Sketches } from '../sketch/sketches';
+import { element } from './canvas';
+
+const SVG = 'http://www.w3.org/2000/svg';
+/** A press that goes no farther than this is no drag, points of the screen. */
+const STILL = 3;
+/** mm around the robot. */
+const RIM = 14;
+
+export class Sketch {
+  private readonly panel = element<HTMLDetailsElement>('lengths-panel');
+  private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
+  private readonly said = element('sketch-said');
+  private readonly alike = element<HTMLInputElement>('alike');
+  private readonly drawnBars = this.picture.appendChild(document.createElementNS(SVG, 'g'));
+  private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
+  private sketches: Sketches | null = null;
+  private toml = '';
+  /** What is dragged: the joint as it was when it was taken. */
+  private held: Joint | null = null;
+  /** A joint was let go, and its last place is not answered yet. */
+  private isEnding = false;
+
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly session: () => Session,
+  ) {
+    this.panel.addEventListener('toggle', () => this.take());
+  }
+
+  /** Draws the session's robot in its neutral pose, if the panel is open. */
+  take(): void {
+    if (!this.panel.open) return;
+    const { toml } = this.session();
+    if (toml === this.toml) return;
+    this.toml = toml;
+    this.held = null;
+    this.sketches ??= new Sketches(this.module, (answer) => this.answered(answer));
+    this.sketches.ask({ toml, edits: [], isLast: false });
+  }
+
+  private lengths(): Map<string, Length> {
+    return new Map(this.session().description.lengths.map((length) => [length.key, length]));
+  }
+
+  private answered({ edits, toml, refused, scene, nearest, isLast }: Answer): void {
+    if (scene) this.draw(scene, edits.length === 0);
+    if (edits.length === 0) return;
+    const stays = !isLast ? '' : nearest ? ` It is ${words(nearest.edits)}, the nearest that does.` : ' It stays as it was.';
+    this.said.textContent = refused ? `${words(edits)} is refused: ${refused.refused}.${stays}` : `${words(edits)}.`;
+    this.said.classList.toggle('refusal', refused !== null);
+    if (isLast && this.isEnding) void this.end(refused ? (nearest?.toml ?? null) : toml);
+  }
+
+  /** The joint was let go: this is the robot; null where it stays as it was. */
+  private async end(toml: string | null): Promise<void> {
+    const session = this.session();
+    this.isEnding = false;
+    this.held = null;
+    if (toml !== null && toml !== session.toml) await session.change(toml);
+    else this.sketches?.ask({ toml: session.toml, edits: [], isLast: false });
+  }
+
+  /** `isWhole`: the joints, too, which stay while one of them is held. */
+  private draw(scene: Scene, isWhole: boolean): void {
+    const at = ([x, y]: Spot): Spot => [x, -y];
+    const lengths = this.lengths();
+    this.drawnBars.replaceChildren(
+      ...bars(scene).map(({ key, from, to }) => {
+        const line = document.createElementNS(SVG, 'line');
+        const [[x1, y1], [x2, y2]] = [at(from), at(to)];
+        for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) line.setAttribute(name, String(value));
+        line.dataset.key = key;
+        const length = lengths.get(key);
+        const title = line.appendChild(document.createElementNS(SVG, 'title'));
+        title.textContent = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
+        line.addEventListener('click', () => this.point(key));
+        return line;
+      }),
+    );
+    const spots = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(at);
+    if (isWhole && !this.held) {
+      const [xs, ys] = [spots.map(([x]) => x), spots.map(([, y]) => y)];
+      const [left, top] = [Math.min(...xs) - RIM, Math.min(...ys) - RIM];
+      this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + RIM - left} ${Math.max(...ys) + RIM - top}`);
+    }
+    if (this.held) {
+      // The one that is held is where it came to, as far as its lengths let it.
+      joints(scene, () => 0).forEach(({ at: spot }, n) => this.place(this.drawnJoints.children[n], at(spot)));
+      return;
+    }
+    const value = (key: string) => lengths.get(key)?.value ?? 0;
+    this.drawnJoints.replaceChildren(...joints(scene, value).map((joint) => this.joint(joint, at(joint.at))));
+  }
+
+  private place(mark: Element | undefined, [x, y]: Spot): void {
+    mark?.setAttribute('cx', String(x));
+    mark?.setAttribute('cy', String(y));
+  }
+
+  private joint(joint: Joint, at: Spot): SVGCircleElement {
+    let begun: [number, number] | null = null;
+    const isDragged = ({ clientX, clientY }: PointerEvent) => {
+      if (begun && Math.hypot(clientX - begun[0], clientY - begun[1]) > STILL) begun = null;
+      return this.held === joint && begun === null;
+    };
+    const mark = document.createElementNS(SVG, 'circle');
+    mark.setAttribute('r', '3.6');
+    mark.dataset.joint = joint.name;
+    this.place(mark, at);
+    mark.appendChild(document.createElementNS(SVG, 'title')).textContent = joint.name;
+    mark.addEventListener('pointerdown', (event) => {
+      if (this.isEnding) return;
+      mark.setPointerCapture(event.pointerId);
+      begun = [event.clientX, event.clientY];
+      this.held = joint;
+    });
+    mark.addEventListener('pointermove', (event) => isDragged(event) && this.drag(joint, event));
+    mark.addEventListener('pointerup', (event) => {
+      if (this.held !== joint) return;
+      if (!isDragged(event)) return void (this.held = null);
+      this.isEnding = true;
+      this.drag(joint, event, true);
+    });
+    mark.addEventListener('pointercancel', () => {
+      if (this.held !== joint) return;
+      this.held = null;
+      this.sketches?.ask({ toml: this.toml, edits: [], isLast: false });
+    });
+    return mark;
+  }
+
+  private drag(joint: Joint, { clientX, clientY }: PointerEvent, isLast = false): void {
+    const place = this.picture.getScreenCTM();
+    if (!place) return;
+    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
+    const edits = joint.moved([x, -y], this.alike.checked);
+    this.sketches?.ask({ toml: this.toml, edits, isLast });
+  }
+
+  /** A bar was pointed at: its number is beside. */
+  private point(key: string): void {
+    const input = document.querySelector<HTMLInputElement>(`#lengths input[name="${key}"]`);
+    input?.focus();
+    input?.select();
+  }
+}
+
+/** Lengths in words, those that are the same on both sides once. */
+function words(edits: Edits): string {
+  const by = new Map<number, string[]>();
+  for (const [key, value] of edits) by.set(value, [...(by.get(value) ?? []), key.replace('links.', '')]);
+  return [...by].map(([value, keys]) => `${keys.join(' = ')} = ${value} mm`).join(', ');
+}

@@ -1,0 +1,112 @@
+// Joints are dragged on the drawing of the robot: its lengths follow, and what cannot walk is refused meanwhile.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { advance, close, complaints, open, standing, tidy } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+async function opened(options) {
+  const page = await standing(options);
+  await page.locator('#lengths-panel summary').click();
+  await page.locator('#sketch circle').first().waitFor();
+  await page.locator('#sketch').evaluate((sketch) => sketch.scrollIntoView({ block: 'center' }));
+  return page;
+}
+
+const length = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((each) => each.key === key).value, key);
+const joint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
+
+/** Where a joint is on the screen, and so many mm of the robot ahead of it and to its right. */
+async function place(page, name, [right, ahead] = [0, 0]) {
+  return joint(page, name).evaluate(
+    (mark, [right, ahead]) => {
+      const at = new DOMPoint(Number(mark.getAttribute('cx')) + right, Number(mark.getAttribute('cy')) - ahead).matrixTransform(mark.getScreenCTM());
+      return [at.x, at.y];
+    },
+    [right, ahead],
+  );
+}
+
+/** Takes a joint and moves it so far, mm, in ten steps; it is not let go. */
+async function drag(page, name, [right, ahead]) {
+  const from = await place(page, name);
+  const to = await place(page, name, [right, ahead]);
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  for (let step = 1; step <= 10; step++) await page.mouse.move(from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
+}
+
+const said = (page) => page.locator('#sketch-said').innerText();
+const isSaid = (page, what) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#sketch-said').textContent), what.source);
+
+test('the point of the head is dragged, and both couplers follow', async () => {
+  const page = await opened();
+  const before = [await length(page, 'links.l2'), await length(page, 'links.l3')];
+  assert.deepEqual(before, [50, 50]);
+  // From the tip of a crank the coupler goes inward and ahead.
+  const tip = await joint(page, "end of the head's left crank").evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const point = await joint(page, 'point of the head').evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const wanted = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
+  await drag(page, 'point of the head', [0, -4]);
+  await isSaid(page, new RegExp(`^l2 = l3 = ${wanted} mm\\.$`));
+  assert.equal(await length(page, 'links.l2'), 50, 'not before it is let go');
+  await page.mouse.up();
+  await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
+  assert.equal(await length(page, 'links.l3'), wanted);
+  assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(wanted));
+  // It walks on the simulated UNO with it.
+  await advance(page, 3000);
+  await page.locator('#gaits button[data-command="walk"]').click();
+  await advance(page, 2000);
+  assert.equal(await page.locator('#doing').innerText(), 'walk');
+  await page.locator('#robot-editor summary').click();
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 50);
+});
+
+test('where a joint may not be, that is said while it is held, and it goes to the nearest place that does', async () => {
+  const page = await opened();
+  await drag(page, 'point of the head', [0, -40]);
+  await isSaid(page, /is refused: /);
+  await page.mouse.up();
+  await isSaid(page, /(the nearest that does|It stays as it was)\.$/);
+  const wanted = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await said(page))[1]);
+  await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
+});
+
+test('a crank is made longer on one side alone where both need not be alike', async () => {
+  const page = await opened();
+  await page.locator('#alike').uncheck();
+  const [from, to] = await page.evaluate(() => {
+    const bar = document.querySelector('#sketch line[data-key="links.l1"]');
+    return [['x1', 'y1'], ['x2', 'y2']].map((names) => names.map((name) => Number(bar.getAttribute(name))));
+  });
+  const long = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  await drag(page, "end of the head's left crank", [to[0] - from[0], from[1] - to[1]].map((way) => (5 * way) / long));
+  await isSaid(page, /^l1 = 35 mm\.$/);
+  await page.mouse.up();
+  await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l1').value === 35);
+  assert.equal(await length(page, 'links.l4'), 30);
+});
+
+test('a bar that is pressed leads to its number', async () => {
+  const page = await opened();
+  await page.locator('#sketch line[data-key="links.l2"]').click({ force: true });
+  assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');
+});
+
+test('every joint and bar of a robot is on the drawing, also on a phone, and a tap changes nothing', async () => {
+  const page = await opened({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  assert.equal(await page.locator('#sketch circle').count(), 18);
+  assert.equal(await page.locator('#sketch line').count(), 36);
+  const toml = await page.evaluate(() => window.lizard.toml);
+  await joint(page, 'point of the tail').tap();
+  assert.equal(await page.evaluate(() => window.lizard.toml), toml);
+  const { wide, seen } = await page.evaluate(() => ({ wide: document.documentElement.scrollWidth, seen: document.documentElement.clientWidth }));
+  assert.ok(wide <= seen, `${wide} of ${seen} pixels`);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
