@@ -43,15 +43,15 @@ firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and
 	$(call prepared,.gaits)
 flash: ## build, write to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
-flash-test: ## what `make flash` and `lizard flash` do, and say when they cannot, with a simulated board
+flash-test: ## `make flash` and `lizard flash`, and their errors, with a simulated board
 	$(call prepared,.flash-test)
 web: ## the robot in the browser: a folder for any web server, web/dist
 	$(call prepared,.web)
-web-test: ## the page in a real browser: it walks, turns, refuses, calibrates, flashes
+web-test: ## test the page in a real browser: walk, turn, refuse, calibrate, flash
 	$(call prepared,.web-test)
 lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
-parts-test: ## the files of `lizard parts`, read by ezdxf, FreeCAD, admesh, sliced by PrusaSlicer, put together by trimesh
+parts-test: ## check the files of `lizard parts` with ezdxf, FreeCAD, admesh, PrusaSlicer and trimesh
 	$(call prepared,.parts-test)
 cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)
@@ -59,33 +59,33 @@ bench: ## measured budgets, beside the Arduino Servo library's; speed beside num
 	$(call prepared,.bench)
 fit: ## proof that no two parts meet at any pose that the guard accepts
 	$(call prepared,.fit)
-prove: ## the guard against floating point at every pose there is; a minute or two
+prove: ## compare the guard with floating point at every pose; a minute or two
 	$(call prepared,.prove)
-physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 keeps what they say
+physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 stores the figures
 	$(call prepared,.physics)
-mutants: ## mistakes on purpose: which does no test notice? PART=board, core or kinematics
+mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics
 	$(call prepared,.mutants)
 other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10
 	$(call prepared,.other-robots)
 trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
-explore: ## everything that may happen to the robot, in every order; STATES=10000000
+explore: ## a model checker: everything that may happen to the robot, in any order; STATES=10000000
 	$(call prepared,.explore)
-fuzz: ## bytes that do harm, looked for by libFuzzer; TARGET=console or memory, MINUTES=1
+fuzz: ## search harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
-package: ## the crates that stand alone, as a registry would get them, each built from its package
+package: ## package the stand-alone crates as for a registry, and build each from its package
 	$(call prepared,.package)
-code-image: ## firmware/code.hex anew: the firmware's code, which the program and the page have inside
+code-image: ## write firmware/code.hex, the code inside the program and the page, after a change of the firmware
 	$(call prepared,.code-image)
-docs: ## write anew the pages and pictures that programs make; the book of docs/ in out/book
+docs: ## write the generated pages and pictures; build the book of docs/ in out/book
 	$(call prepared,.docs)
 install: ## the program, its manual pages and completions, into PREFIX=~/.local
 	$(call prepared,.install)
-release: ## what users take, from the commit that is checked out, in dist/; takes a while
+release: ## build all files of a release from the current commit, in dist/; takes a while
 	$(call prepared,.release)
-release-test: ## a release twice, in different folders: the same bytes, and each file does
+release-test: ## build a release twice, in different folders; compare the bytes, and try each file
 	$(call prepared,.release-test)
-parallel-test: ## long computations in parts by GNU parallel, merged: byte for byte what one process prints
+parallel-test: ## long computations in parts by GNU parallel, merged, compared with one process
 	$(call prepared,.parallel-test)
 clean: ## remove everything that was built
 	rm -rf target host/target out dist judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
