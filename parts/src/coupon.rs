@@ -1,8 +1,8 @@
 //! A fit coupon: an hour of printing that shows which `fit` a printer needs.
 //!
-//! Each column has another fit, 0.0 to 0.4 mm from the left, and a dot for each tenth: an
-//! M3 hole, a horn's pocket, a servo's opening with the notch for its lead, a piece of a
-//! sleeve. Use the first column in which all of them go together by hand.
+//! Each column has another fit, 0.0 to 0.4 mm from the left, marked by one to five dots:
+//! an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, a piece of
+//! a sleeve. Use the first column in which all of them go together by hand.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
