@@ -37,7 +37,7 @@ use upload::{Done, Event, Step};
 /// The firmware is inside this program and needs no compiler; the robot is that of
 /// robot.toml. Says what the board has, writes the pages that differ, reads them back, starts the
 /// firmware and prints its first line. The EEPROM, and the calibration in it, is left as it is.
-/// It takes about eight seconds, and with --only-robot about one.
+/// A new board takes about ten seconds; with --only-robot it is one.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The board's serial port [default: the one that has a UNO, or the only one]

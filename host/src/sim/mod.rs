@@ -30,7 +30,7 @@ use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile, json, whole_file};
 use analysis::Run;
 use dialogue::Printer;
-use report::Report;
+use report::{Ram, Report};
 use script::Script;
 use session::{DialogueLine, Event, Recording};
 
@@ -156,8 +156,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: uno.image().flash_used(),
-        static_ram: uno.image().static_ram(),
-        stack_spare: uno.stack_spare(),
+        ram: Ram::of(&uno),
         overruns: uno.overruns(),
         resets: uno.resets(),
         ended: ended(&recording.state),

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use lizard_robot::UNDECIDED;
 use serde::Serialize;
+use simulated_uno::Uno;
 
 use super::analysis::{Leg, Run, Safety, ServoReport};
 use super::session::DialogueLine;
@@ -31,12 +32,11 @@ pub struct Report<'a> {
     pub most_pins_high: u32,
     /// Share of cycles that the CPU was asleep, percent.
     pub asleep_percent: f64,
-    /// Bytes of flash and of static RAM in the ELF.
+    /// Bytes of flash that the firmware has.
     pub flash: u32,
-    /// See `flash`.
-    pub static_ram: u16,
-    /// Fewest bytes between the stack and static data.
-    pub stack_spare: u16,
+    /// What an ELF tells of RAM and an image without one does not.
+    #[serde(flatten)]
+    pub ram: Option<Ram>,
     /// Received bytes that the UNO lost.
     pub overruns: u64,
     /// Watchdog resets.
@@ -151,17 +151,14 @@ impl Report<'_> {
                 "{frames} frames break a limit of robot.toml, the first: {reason}"
             )?;
         }
+        let ram = self.ram.as_ref().map_or_else(String::new, |ram| {
+            let (spare, data) = (ram.stack_spare, ram.static_ram);
+            format!("static RAM {data} B, stack {spare} B from it, ")
+        });
         writeln!(
             out,
-            "CPU asleep {:.1} %, stack {} B from data, flash {} B, static RAM {} B, \
-             bytes lost {}, resets {}, pins high at once {}",
-            self.asleep_percent,
-            self.stack_spare,
-            self.flash,
-            self.static_ram,
-            self.overruns,
-            self.resets,
-            self.most_pins_high
+            "CPU asleep {:.1} %, flash {} B, {ram}bytes lost {}, resets {}, pins high at once {}",
+            self.asleep_percent, self.flash, self.overruns, self.resets, self.most_pins_high
         )?;
         writeln!(
             out,
@@ -172,6 +169,27 @@ impl Report<'_> {
             writeln!(out, "picture: {svg}")?;
         }
         Ok(())
+    }
+}
+
+/// Where a program keeps what changes.
+#[derive(Debug, Serialize)]
+pub struct Ram {
+    /// Bytes of static data.
+    pub static_ram: u16,
+    /// Fewest bytes between the stack and static data.
+    pub stack_spare: u16,
+}
+
+impl Ram {
+    /// That of a UNO's program; none where the image does not say where its data ends.
+    #[must_use]
+    pub fn of(uno: &Uno) -> Option<Self> {
+        let static_ram = uno.image().static_ram();
+        (static_ram > 0).then(|| Self {
+            static_ram,
+            stack_spare: uno.stack_spare(),
+        })
     }
 }
 

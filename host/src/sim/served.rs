@@ -62,7 +62,7 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
 fn ended(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
-            "there is no firmware in this board yet; `make flash RAVEDUDE_PORT={}` writes it",
+            "there is no firmware in this board yet; `lizard flash {}` writes it",
             port.display()
         ),
         _ => super::ended(state),
@@ -121,7 +121,7 @@ mod tests {
         let port = Path::new("out/uno");
         assert_eq!(
             ended(&crashed, &[0xff; 8], port),
-            "there is no firmware in this board yet; `make flash RAVEDUDE_PORT=out/uno` writes it"
+            "there is no firmware in this board yet; `lizard flash out/uno` writes it"
         );
         assert_eq!(
             ended(&crashed, &[0x0c, 0x94, 0xff], port),
