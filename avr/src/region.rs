@@ -48,16 +48,34 @@ impl<'a> Region<'a> {
         }
     }
 
+    /// Its first `length` bytes: what is behind them is no part of it.
+    pub fn first(self, length: u16) -> Self {
+        Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
+    }
+
     /// The value whose bytes begin at `at`; where it is not wholly there, one of zeros.
+    /// Of a region that is not empty nobody should ask for that, and a test does not let
+    /// it pass.
     pub fn read<T: Plain>(self, at: u16) -> T {
+        self.must_have(at, size_of::<T>());
         Flash::from(self.bytes).read(at.into())
     }
 
-    /// `count` values whose bytes begin at `at`; none where they are not wholly there.
+    /// `count` values whose bytes begin at `at`; none where they are not wholly there,
+    /// likewise.
     pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
+        self.must_have(at, length);
         let part = Flash::from(self.bytes).part(at.into(), length);
         part.map_or(Flash::EMPTY, Flash::of)
+    }
+
+    fn must_have(self, at: u16, length: usize) {
+        debug_assert!(
+            self.bytes.is_empty() || usize::from(at) + length <= self.bytes.len(),
+            "{length} bytes at {at} are not in a region of {}",
+            self.bytes.len()
+        );
     }
 }
 
@@ -72,6 +90,13 @@ impl<'a> Region<'a> {
     #[inline(always)]
     pub const fn len(self) -> u16 {
         SPACE
+    }
+
+    /// Its first `length` bytes, of which nothing is kept here: what reads them has been
+    /// checked.
+    #[inline(always)]
+    pub const fn first(self, _length: u16) -> Self {
+        self
     }
 
     /// The value whose bytes begin at `at`.

@@ -36,9 +36,13 @@ use crate::units::Angle;
 
 #[cfg(any(test, feature = "host"))]
 pub use content::{Content, Loop, Map};
+#[cfg(any(test, feature = "host"))]
+pub use seal::seal;
 
 #[cfg(any(test, feature = "host"))]
 mod content;
+#[cfg(any(test, feature = "host"))]
+mod seal;
 
 /// Raised when the meaning of a byte changes.
 pub const FORMAT: u16 = 1;
@@ -176,6 +180,9 @@ const CHECKED: usize = offset_of!(Header, name);
 /// [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
 #[inline(never)]
 pub fn find(flash: Region) -> Result<u16, Damage> {
+    if flash.len() < NUMBERS {
+        return Err(Damage::Missing);
+    }
     if flash.read::<u32>(offset_of!(Header, magic) as u16) != MAGIC {
         return Err(Damage::Missing);
     }

@@ -179,9 +179,11 @@ impl Robot {
             right,
         } = self.cell_maps();
         content.maps = [head, tail, left, right];
-        if content.length() > usize::from(SPACE) {
-            content.maps = Default::default();
+        let section = content.section();
+        if section.len() <= usize::from(SPACE) {
+            return section;
         }
+        content.maps = Default::default();
         content.section()
     }
 

@@ -6,13 +6,11 @@ use std::vec::Vec;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use lizard_avr::{Flash, Plain};
 
-use super::{
-    CHECKED, CURVES, FORMAT, Header, LONGEST_NAME, MAGIC, MapHead, Numbers, Part, Place, REST,
-};
+use super::seal::sealed;
+use super::{CURVES, FORMAT, Header, LONGEST_NAME, MAGIC, MapHead, Numbers, Part, Place, REST};
 use crate::adjustment::Reach;
 use crate::calibration::Calibration;
 use crate::cells::Cells;
-use crate::checksum::Checksum;
 use crate::couplers::{self, Couplers};
 use crate::curve::Table;
 use crate::five_bar::Bars;
@@ -117,7 +115,8 @@ impl Loop {
 }
 
 impl Content {
-    /// Bytes of the section, which may be more than fits a board.
+    /// Bytes of the section, which may be more than fits a board; where chance wants it,
+    /// [`Content::section`] has one more.
     #[must_use]
     pub fn length(&self) -> usize {
         let mut curves = Vec::new();
@@ -199,19 +198,16 @@ impl Content {
         of_robot.update(&rest[..rest.len() - columns.len()]);
         let mut name = [0; LONGEST_NAME];
         name[..self.name.len()].copy_from_slice(self.name.as_bytes());
-        let length = size_of::<Header>() + size_of::<Numbers>() + rest.len();
-        let mut header = Header {
+        let header = Header {
             magic: MAGIC,
             format: FORMAT,
-            length: u16::try_from(length).expect("at most 65535"),
+            length: 0,
             crc: 0,
             hash: of_robot.finalize(),
             servo_hash: self.servo_hash,
             name,
         };
-        let written = |header: &Header| [header.bytes(), numbers.bytes(), &rest].concat();
-        header.crc = Checksum::of(&written(&header)[CHECKED..]).0;
-        written(&header)
+        sealed([header.bytes(), numbers.bytes(), &rest].concat())
     }
 
     /// Appends the curves of both ends, those that are the same once; where each begins.

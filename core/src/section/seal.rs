@@ -1,0 +1,141 @@
+//! What makes a section whole: its length and its checksum.
+//!
+//! Sixteen bits of a checksum miss one change in 65 536. A section that was written to some
+//! byte, with erased flash behind it, is a change that happens, and a section has
+//! thousands of bytes to end at; so is a flipped bit of its length. None of these may be
+//! missed, so whoever makes a section tries them all, and adds a byte where one would be.
+
+use core::mem::offset_of;
+use std::vec::Vec;
+
+use super::{CHECKED, Header};
+use crate::checksum::Checksum;
+
+/// A byte of erased flash.
+const ERASED: u8 = 0xff;
+
+/// Where the length is, and the checksum, which what it is of follows.
+const LENGTH: usize = offset_of!(Header, length);
+const CRC: usize = offset_of!(Header, crc);
+
+/// Puts the checksum of a section right, whatever its bytes are.
+///
+/// # Panics
+/// Where they are fewer than a header.
+pub fn seal(section: &mut [u8]) {
+    let crc = Checksum::of(&section[CHECKED..]).0;
+    section[CRC..CHECKED].copy_from_slice(&crc.to_le_bytes());
+}
+
+/// The section with its length and checksum: none of its beginnings with erased flash
+/// behind it has the same sum, and neither has another length that is one bit off. For that
+/// it may get a byte more.
+///
+/// # Panics
+/// Where it is longer than two bytes count.
+pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
+    loop {
+        let length = u16::try_from(section.len()).expect("at most 65535");
+        section[LENGTH..CRC].copy_from_slice(&length.to_le_bytes());
+        seal(&mut section);
+        if !a_beginning_passes(&section[CHECKED..]) && !another_length_passes(&section) {
+            return section;
+        }
+        section.push(0);
+    }
+}
+
+/// Whether bytes that were written to some place, with erased flash behind them, have the
+/// sum of all of them. They may be all of them: the last ones may be erased flash's own.
+fn a_beginning_passes(bytes: &[u8]) -> bool {
+    // The sum is linear: that of a beginning differs by the sum, from zero, of what the
+    // bytes behind it differ by. What each bit adds to that sum moves on by eight steps with
+    // every byte that follows it.
+    let mut of_bits: [u16; 8] = core::array::from_fn(|bit| Checksum(0).and(1 << bit).0);
+    let mut differs = 0;
+    let mut is_whole = true;
+    for byte in bytes.iter().rev() {
+        for (bit, sum) in of_bits.iter_mut().enumerate() {
+            if (byte ^ ERASED) >> bit & 1 == 1 {
+                differs ^= *sum;
+            }
+            *sum = Checksum(*sum).and(0).0;
+        }
+        is_whole &= *byte == ERASED;
+        if differs == 0 && !is_whole {
+            return true;
+        }
+    }
+    false
+}
+
+/// Whether a length that is one bit off has the sum of this one, with erased flash behind
+/// the section.
+fn another_length_passes(section: &[u8]) -> bool {
+    let own = Checksum::of(&section[CHECKED..]);
+    (0..16).any(|bit| {
+        let length = section.len() ^ 1 << bit;
+        let Some(behind) = length.checked_sub(section.len()) else {
+            return length > CHECKED && Checksum::of(&section[CHECKED..length]) == own;
+        };
+        (0..behind).fold(own, |sum, _| sum.and(ERASED)) == own
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The same, byte by byte.
+    fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
+        let own = Checksum::of(bytes);
+        (0..bytes.len()).any(|end| {
+            let mut cut = bytes.to_vec();
+            cut[end..].fill(ERASED);
+            cut != bytes && Checksum::of(&cut) == own
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn a_beginning_that_has_the_sum_of_all_is_found(
+            bytes in prop::collection::vec(any::<u8>(), 0..300),
+            erased in 0..4usize,
+            end in 0..300usize,
+        ) {
+            let mut bytes = bytes;
+            bytes.extend(std::vec![ERASED; erased]);
+            prop_assert_eq!(a_beginning_passes(&bytes), a_beginning_has_the_sum(&bytes));
+            // Two more bytes can be chosen so that the sum of a beginning is that of all:
+            // all of them are tried.
+            let end = end.min(bytes.len());
+            let mut cut = bytes.clone();
+            cut[end..].fill(ERASED);
+            let target = Checksum::of(&cut).and(ERASED).and(ERASED);
+            let before = Checksum::of(&bytes);
+            let pair = (0..=u16::MAX).map(u16::to_le_bytes).find(|[low, high]| {
+                before.and(*low).and(*high) == target
+            });
+            bytes.extend(pair.expect("a sum of sixteen bits takes two bytes"));
+            prop_assert_eq!(a_beginning_passes(&bytes), a_beginning_has_the_sum(&bytes));
+            let differs = cut[end..].iter().chain(&[ERASED; 2]).ne(&bytes[end..]);
+            prop_assert_eq!(a_beginning_passes(&bytes), differs || a_beginning_has_the_sum(&bytes));
+        }
+
+        #[test]
+        fn a_sealed_section_has_its_length_and_sum_and_at_most_some_bytes_more(
+            bytes in prop::collection::vec(any::<u8>(), CHECKED..600),
+        ) {
+            let section = sealed(bytes.clone());
+            let length = u16::from_le_bytes([section[LENGTH], section[LENGTH + 1]]);
+            let crc = u16::from_le_bytes([section[CRC], section[CRC + 1]]);
+            prop_assert_eq!(usize::from(length), section.len());
+            prop_assert_eq!(crc, Checksum::of(&section[CHECKED..]).0);
+            prop_assert!(section.len() <= bytes.len() + 3);
+            prop_assert!(!a_beginning_has_the_sum(&section[CHECKED..]));
+            prop_assert_eq!(&section[CHECKED..bytes.len()], &bytes[CHECKED..]);
+        }
+    }
+}
