@@ -25,47 +25,57 @@ flash! {
     const NO_ROWS: [[i8; 2]; 0] = [];
 }
 
-/// The cells of one pair of servos in which everything is safe that depends on the two.
+/// The cells of one pair of servos in which everything is safe that depends on the two:
+/// rows among those of several maps.
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     first: i8,
+    /// Where its rows begin, and how many they are.
+    begin: u16,
+    count: u8,
     rows: Flash<'a, [[i8; 2]]>,
 }
 
 impl Cells<'static> {
     /// No cell at all: every pose is measured.
-    pub const NONE: Self = Self::new(0, NO_ROWS.as_slice());
+    pub const NONE: Self = Self::among(0, 0, 0, NO_ROWS.as_slice());
 }
 
 impl<'a> Cells<'a> {
-    /// A map whose rows follow one another from row `first` on. Each has its first and
-    /// its last column, both of which belong to it; a row whose first column is the
-    /// greater one has none. A row or column is a sweep divided by 2 to the
-    /// [`ROW_BITS`] or [`COLUMN_BITS`], rounded down.
+    /// The map whose `count` rows begin at `begin` among `rows`. They follow one another
+    /// from row `first` on, around the turn. Each has its first and its last column, both
+    /// of which belong to it; a row whose first column is the greater one has none. A row
+    /// or column is a sweep divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded
+    /// down.
+    #[inline(always)]
+    pub const fn among(first: i8, begin: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+        Self {
+            first,
+            begin,
+            count,
+            rows,
+        }
+    }
+
+    /// A map of all of these rows, at most 255.
     pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
-        Self { first, rows }
+        Self::among(first, 0, rows.len() as u8, rows)
     }
 
     /// True where a cell holds this pair of sweeps. A column that is no `i8`, a
     /// quarter of a turn from neutral, is in no cell.
+    #[inline(always)]
     pub fn hold(&self, row: Sweep, column: Sweep) -> bool {
-        // One shift and a byte, where a shift by seven would be a loop.
-        let Some(twice) = column.0.checked_add(column.0) else {
-            return false;
-        };
-        let (row, column) = ((row.0 >> 8) as i8, (twice >> 8) as i8);
-        if row < self.first {
+        let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first) as u8;
+        if row >= self.count {
             return false;
         }
-        let place = usize::from(row.wrapping_sub(self.first) as u8);
-        if place >= self.rows.len() {
-            return false;
-        }
-        let Some(columns) = self.rows.get(place) else {
+        let Some(columns) = self.rows.get(usize::from(self.begin) + usize::from(row)) else {
             return false;
         };
         let [first, last] = columns.load();
-        first <= column && column <= last
+        let column = column.0 >> COLUMN_BITS;
+        column >= i16::from(first) && column <= i16::from(last)
     }
 }
 
@@ -80,6 +90,12 @@ mod tests {
     /// What a map says, by division and without a shortcut.
     fn held(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
+        // A turn has 256 rows, and the one behind the last is the first.
+        let row = if row < i32::from(first) {
+            row + 256
+        } else {
+            row
+        };
         let column = f64::from(column).div_euclid(128.0) as i32;
         rows.iter().enumerate().any(|(place, [low, high])| {
             i32::from(first) + place as i32 == row
@@ -152,9 +168,29 @@ mod tests {
 
     proptest! {
         #[test]
+        fn maps_whose_rows_are_together_have_their_own_each(
+            firsts: [i8; 2],
+            maps in prop::array::uniform2(prop::collection::vec(any::<[i8; 2]>(), 0..100)),
+            pairs in prop::collection::vec(any::<[i16; 2]>(), 300),
+        ) {
+            let rows = maps.concat();
+            let rows = Flash::from(rows.as_slice());
+            let begins = [0, maps[0].len() as u16];
+            for map in 0..2 {
+                let cells = Cells::among(firsts[map], begins[map], maps[map].len() as u8, rows);
+                for [row, column] in &pairs {
+                    prop_assert_eq!(
+                        cells.hold(Sweep(*row), Sweep(*column)),
+                        held(firsts[map], &maps[map], *row, *column)
+                    );
+                }
+            }
+        }
+
+        #[test]
         fn any_map_holds_what_its_rows_say(
             first: i8,
-            rows in prop::collection::vec(any::<[i8; 2]>(), 0..300),
+            rows in prop::collection::vec(any::<[i8; 2]>(), 0..256),
             pairs in prop::collection::vec(any::<[i16; 2]>(), 1000),
         ) {
             let cells = Cells::new(first, Flash::from(rows.as_slice()));

@@ -12,6 +12,7 @@ use lizard_avr::{Flash, Plain, Region};
 
 use crate::adjustment::Reach;
 use crate::calibration::Calibration;
+use crate::cells::Cells;
 use crate::couplers::Tables;
 use crate::five_bar::{Bars, FiveBar};
 use crate::gait::{Gait, GaitId, Name, Wave};
@@ -45,7 +46,7 @@ impl<'a> Robot<'a> {
         is_there: false,
     };
 
-    /// What is at the beginning of `flash`, which must be a section that is whole:
+    /// What is in `flash`, which must be a section that is whole and nothing behind it:
     /// [`Robot::open`] looks at it.
     #[inline(always)]
     pub(crate) const fn at(flash: Region<'a>) -> Self {
@@ -59,7 +60,8 @@ impl<'a> Robot<'a> {
     /// for the code that is about to check them.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
-        section::find(flash).ok().map(|_| Self::at(flash))
+        let length = section::find(flash).ok()?;
+        Some(Self::at(flash.first(length)))
     }
 
     /// Whether there is no robot.
@@ -228,20 +230,12 @@ impl<'a> Robot<'a> {
             let MapHead { first, rows } =
                 self.number(offset_of!(Numbers, maps) + pair * size_of::<MapHead>());
             let [row, column] = PAIRS.at(pair).load();
-            let row = ((pose.0[usize::from(row & 3)].0 >> 8) as i8).wrapping_sub(first) as u8;
-            let column = pose.0[usize::from(column & 3)].0;
-            if row >= rows {
+            let row = pose.0[usize::from(row & 3)];
+            let column = pose.0[usize::from(column & 3)];
+            if !Cells::among(first, begin, rows, maps).hold(row, column) {
                 return false;
             }
-            let Some(cells) = maps.get(begin + usize::from(row)) else {
-                return false;
-            };
-            let [least, most] = cells.load();
-            let column = column >> 7;
-            if column < i16::from(least) || column > i16::from(most) {
-                return false;
-            }
-            begin += usize::from(rows);
+            begin += u16::from(rows);
             pair += 1;
         }
         true
