@@ -256,6 +256,10 @@ impl Control {
 
     /// Watches what may go wrong, and does what that asks for.
     fn look_after(&mut self, health: &Health) {
+        // Without a robot there is nothing to stop, and no voltage that would be too low.
+        if self.motion.robot().is_none() {
+            return;
+        }
         let state = self.state();
         let supplies = self.motion.robot().supplies();
         let deadman = self.settings.deadman();

@@ -115,7 +115,7 @@ mod tests {
 
     use super::*;
 
-    const ALL: [Fault; 7] = [
+    const ALL: [Fault; 8] = [
         Fault::Guard,
         Fault::Supply,
         Fault::Link,
@@ -123,6 +123,7 @@ mod tests {
         Fault::Late,
         Fault::Stack,
         Fault::BrownOut,
+        Fault::Robot,
     ];
 
     /// How long the LED is lit and dark, in turn, for some frames.

@@ -87,6 +87,10 @@ where
     /// Without the line end.
     const ROOM: u8 = LONGEST_LINE - 2;
     Text::HelpGaits.print(out)?;
+    // Whatever is in the flash then is no name.
+    if robot.is_none() {
+        return Ok(None);
+    }
     let mut length = Text::HelpGaits.length();
     let mut gait = first;
     loop {
