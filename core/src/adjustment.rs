@@ -85,7 +85,11 @@ impl Adjustment {
     pub fn set_scale(&mut self, scale: u16) {
         // 16 cycles * 360 deg / 65536 * 2^14 / 100 is 14.4.
         let gain = ((mul_unsigned(scale, 58_982) + 0x800) >> 12) as i16;
-        self.gain = if self.gain < 0 { -gain } else { gain };
+        self.gain = if self.gain < 0 {
+            gain.wrapping_neg()
+        } else {
+            gain
+        };
     }
 
     /// Whether a longer pulse turns the servo counter-clockwise.
@@ -96,7 +100,7 @@ impl Adjustment {
     /// Sets the sense of turning.
     pub fn set_direct(&mut self, direct: bool) {
         if self.is_direct() != direct {
-            self.gain = -self.gain;
+            self.gain = self.gain.wrapping_neg();
         }
     }
 }
@@ -115,7 +119,11 @@ fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> S
     };
     let steps = quotient(most, servo.gain.unsigned_abs());
     let within = end.0.unsigned_abs().min(steps) as i16;
-    Sweep(if end.0 < 0 { -within } else { within })
+    Sweep(if end.0 < 0 {
+        within.wrapping_neg()
+    } else {
+        within
+    })
 }
 
 /// Half of 1.0 in Q14.

@@ -18,7 +18,7 @@ use crate::part::Servo;
 use crate::pose::Pose;
 use crate::robot::Robot;
 use crate::section::{self, CURVES, Damage, MapHead, NUMBERS, Numbers, PARTS, Part, Place};
-use crate::units::CYCLES_PER_US;
+use crate::units::{CYCLES_PER_US, Sweep};
 
 /// The shortest and the longest pulse of a hobby servo, cycles, with one of rounding.
 const PULSES: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
@@ -44,7 +44,7 @@ impl<'a> Robot<'a> {
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
         let length = section::find(flash)?;
-        let robot = Self::at(flash);
+        let robot = Self::at(flash.first(length));
         match robot.is_possible(length) {
             true => Ok(robot),
             false => Err(Damage::Impossible),
@@ -164,7 +164,8 @@ impl<'a> Robot<'a> {
             let calibration: Calibration = self.servo(name);
             let [least, most] = PULSES;
             let fits = |pulse: u16| pulse.wrapping_sub(least) <= most - least;
-            if !fits(calibration.pulse(calibration.min))
+            if !calibration.reaches(Sweep(0))
+                || !fits(calibration.pulse(calibration.min))
                 || !fits(calibration.pulse(calibration.max))
                 || !self.reach(name).is_within(&calibration)
             {

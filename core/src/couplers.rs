@@ -171,7 +171,7 @@ impl<'a> Couplers<'a> {
             Some(skew) => {
                 let size = Curve::of_octave(skew, lengths.reach_zeros).falling(tips_sq)?;
                 if lengths.left < lengths.right {
-                    -size
+                    size.wrapping_neg()
                 } else {
                     size
                 }

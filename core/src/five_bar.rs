@@ -215,10 +215,12 @@ impl<'a> FiveBar<'a> {
         // Half the step of the bars, so that the distance of the crank tips fits
         // and the shift is one of whole bytes.
         let tips = Tips {
-            along: (bars.base >> 1) + upper(mul(bars.right, right.cos) - mul(bars.left, left.cos)),
+            along: (bars.base >> 1)
+                .wrapping_add(upper(mul(bars.right, right.cos) - mul(bars.left, left.cos))),
             across: upper(mul(bars.right, right.sin) - mul(bars.left, left.sin)),
         };
-        let tips_sq = (mul(tips.along, tips.along) + mul(tips.across, tips.across)) as u32;
+        let tips_sq =
+            mul(tips.along, tips.along).wrapping_add(mul(tips.across, tips.across)) as u32;
         let Some(Lean { rise, skew }) = Couplers::new(bars.couplers, self.tables).at(tips_sq)
         else {
             return EndMargins::default();
@@ -230,8 +232,8 @@ impl<'a> FiveBar<'a> {
         let size = saturate((mul_unsigned(area, bars.per_area) >> 15) as i32);
         EndMargins {
             type2: Sine(if tips.along > 0 { size } else { -size }),
-            type1_left: tips.elbow(left, -rise, skew, bars.per_left),
-            type1_right: tips.elbow(right, rise, -skew, bars.per_right),
+            type1_left: tips.elbow(left, rise.wrapping_neg(), skew, bars.per_left),
+            type1_right: tips.elbow(right, rise, skew.wrapping_neg(), bars.per_right),
         }
     }
 }

@@ -141,7 +141,7 @@ impl Gait {
 
     /// The phase one frame later, at `pace` (1024 is the gait's own).
     pub const fn advance(&self, phase: u32, pace: u16) -> u32 {
-        let step = (self.increment * pace as i32) >> 10;
+        let step = self.increment.wrapping_mul(pace as i32) >> 10;
         phase.wrapping_add(step as u32) & (CYCLE - 1)
     }
 }

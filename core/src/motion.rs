@@ -423,9 +423,11 @@ impl Motion {
                 gait.pose(self.robot.waves(), *phase)
             }
         };
-        if let Some(hazard) = self.hazard_of(&pose) {
+        let hazard = self.hazard_of(&pose);
+        // A gait is within the travel, if its section says the truth of what it reaches.
+        if hazard.is_some() || pose.beyond(&self.calibration).is_some() {
             self.freeze(State::Holding { asked: false });
-            self.hazard = Some(hazard);
+            self.hazard = hazard;
             return;
         }
         self.stance.pose = pose;

@@ -58,7 +58,7 @@ impl Slider {
     /// The right side as a left one.
     pub const fn mirrored(self) -> Self {
         Self {
-            offset: -self.offset,
+            offset: self.offset.wrapping_neg(),
             ..self
         }
     }
@@ -72,9 +72,9 @@ impl Slider {
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let aside = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
         let ahead = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
-        let x = (self.offset + aside).unsigned_abs();
+        let x = self.offset.wrapping_add(aside).unsigned_abs();
         let y = (i32::from(self.base) + i32::from(ahead)).unsigned_abs() as u16;
-        mul_unsigned(x, x) + mul_unsigned(y, y)
+        mul_unsigned(x, x).wrapping_add(mul_unsigned(y, y))
     }
 
     /// True where a squared length is within the stroke.

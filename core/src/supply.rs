@@ -137,11 +137,11 @@ const MOST_HUNDREDTHS: u16 = (1 << 13) - 1;
 impl Thresholds {
     /// The level of a voltage, `above` the thresholds.
     fn level(&self, voltage: Voltage, above: u16) -> Level {
-        if !voltage.is_below(self.slow + above) {
+        if !voltage.is_below(self.slow.wrapping_add(above)) {
             Level::Good
-        } else if !voltage.is_below(self.stop + above) {
+        } else if !voltage.is_below(self.stop.wrapping_add(above)) {
             Level::Slow
-        } else if !voltage.is_below(self.rest + above) {
+        } else if !voltage.is_below(self.rest.wrapping_add(above)) {
             Level::Stop
         } else {
             Level::Rest

@@ -143,7 +143,8 @@ impl Scale {
     pub fn hundredths(self, length: i32) -> i32 {
         let size = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
         let signed = if length < 0 { -size } else { size };
-        (signed + ((1 << self.bits) >> 1)) >> self.bits
+        let bits = self.bits.into();
+        (signed + (1i32.wrapping_shl(bits) >> 1)).wrapping_shr(bits)
     }
 }
 

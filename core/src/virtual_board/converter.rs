@@ -73,13 +73,14 @@ impl Converter {
 /// What the converter reads of a supply, and of a rail behind its divider, mV.
 #[must_use]
 pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
-    let parts = |mv: u32| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
-    let reference = u32::from(supplies.reference);
+    let board = u64::from(board);
+    let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
+    let reference = u64::from(supplies.reference);
     Reading {
         reference: parts(reference),
         rail: match supplies.rail_reference {
             0 => 0,
-            divided => parts(rail * reference / u32::from(divided)),
+            divided => parts(u64::from(rail) * reference / u64::from(divided)),
         },
     }
 }

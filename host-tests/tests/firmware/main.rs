@@ -22,6 +22,7 @@ mod console;
 mod core_run;
 mod costs;
 mod counters;
+mod damaged_robot;
 mod every_cycle;
 mod faults;
 mod gaits;

@@ -1,0 +1,321 @@
+//! Whatever is in the flash where the robot's section should be: no pulse ever, and all
+//! else alive. The core's own tests try every bit (`section/damaged.rs`); here the image
+//! does what they say, on the chip's own flash, in which there is no end of a slice.
+
+use std::mem::offset_of;
+use std::ops::Range;
+
+use lizard_core::section::{Header, Numbers, Part, Place, SPACE, START, seal};
+use lizard_host::board::SimulatedBoard;
+use lizard_host::firmware::with_robot;
+use lizard_host_tests::{FRAME, FirmwareBench, rng, robot, root};
+use lizard_robot::Robot;
+use simulated_uno::{Edge, Fidelity, Image, Pin};
+
+use crate::{for_each, in_both, moving, pose_at};
+
+const MISSING: &str = "# fault: no robot in the flash, write one";
+const FORMAT: &str = "# fault: the robot in the flash is for another version, write it again";
+const DAMAGED: &str = "# fault: the robot in the flash is damaged, write it again";
+
+const LED: Pin = Pin::d(13);
+
+/// What is in the flash instead of a robot.
+struct Damage {
+    what: String,
+    section: Vec<u8>,
+    /// The one line that says so.
+    said: &'static str,
+}
+
+impl std::fmt::Debug for Damage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.what)
+    }
+}
+
+/// The robot's section, changed.
+fn changed(
+    what: impl Into<String>,
+    said: &'static str,
+    change: impl FnOnce(&mut Vec<u8>),
+) -> Damage {
+    let mut section = robot().section();
+    change(&mut section);
+    Damage {
+        what: what.into(),
+        section,
+        said,
+    }
+}
+
+/// The same under a checksum that is right: somebody wrote it so.
+fn impossible(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
+    changed(what, DAMAGED, |section| {
+        change(section);
+        seal(section);
+    })
+}
+
+/// The word of the numbers at a field's offset.
+fn put(section: &mut [u8], offset: usize, word: u16) {
+    let at = size_of::<Header>() + offset;
+    section[at..at + 2].copy_from_slice(&word.to_le_bytes());
+}
+
+/// The place of a part.
+fn place(section: &[u8], part: Part) -> Place {
+    let at = size_of::<Header>() + offset_of!(Numbers, parts) + part as usize * size_of::<Place>();
+    let word = |at: usize| u16::from_le_bytes([section[at], section[at + 1]]);
+    Place {
+        at: word(at),
+        count: word(at + 2),
+    }
+}
+
+/// Nothing, a part, a section for another version.
+fn missing() -> Vec<Damage> {
+    let mut all = vec![
+        changed("erased flash", MISSING, Vec::clear),
+        changed("zeros", MISSING, |section| {
+            *section = vec![0; SPACE.into()];
+        }),
+        changed("a program's noise", MISSING, |section| {
+            *section = vec![0; SPACE.into()];
+            rng(160).fill(section);
+        }),
+    ];
+    let length = robot().section().len();
+    let header = size_of::<Header>();
+    for (end, said) in [
+        (3, MISSING),
+        (5, FORMAT),
+        (7, DAMAGED),
+        (header, DAMAGED),
+        (header + size_of::<Numbers>() + 1, DAMAGED),
+        (length / 2, DAMAGED),
+        (length - 30, DAMAGED),
+    ] {
+        let what = format!("cut at byte {end}");
+        all.push(changed(what, said, |section| section.truncate(end)));
+    }
+    for format in [0u16, 2, 0xffff] {
+        all.push(changed(format!("version {format}"), FORMAT, |section| {
+            section[4..6].copy_from_slice(&format.to_le_bytes());
+        }));
+    }
+    all
+}
+
+/// A flipped bit in each field of the header, and in forty stretches of the rest.
+fn flipped() -> Vec<Damage> {
+    let rng = &mut rng(161);
+    let header = size_of::<Header>();
+    let rest = robot().section().len() - header;
+    let stretches = (0..40).map(|n| header + n * rest / 40..header + (n + 1) * rest / 40);
+    let fields: [Range<usize>; 7] = [
+        offset_of!(Header, magic)..offset_of!(Header, format),
+        offset_of!(Header, format)..offset_of!(Header, length),
+        offset_of!(Header, length)..offset_of!(Header, crc),
+        offset_of!(Header, crc)..offset_of!(Header, name),
+        offset_of!(Header, name)..offset_of!(Header, hash),
+        offset_of!(Header, hash)..offset_of!(Header, servo_hash),
+        offset_of!(Header, servo_hash)..header,
+    ];
+    let mut flip = |bytes: Range<usize>, said| {
+        let (byte, bit) = (rng.usize(bytes), rng.u8(..8));
+        changed(format!("bit {bit} of byte {byte}"), said, |section| {
+            section[byte] ^= 1 << bit;
+        })
+    };
+    let said = [MISSING, FORMAT].into_iter().chain([DAMAGED; 5]);
+    let mut all: Vec<Damage> = fields
+        .into_iter()
+        .zip(said)
+        .map(|(at, said)| flip(at, said))
+        .collect();
+    all.extend(stretches.map(|at| flip(at, DAMAGED)));
+    all
+}
+
+/// What somebody may write who has the checksum right and nothing else.
+fn wrong() -> Vec<Damage> {
+    let part = |part: Part| offset_of!(Numbers, parts) + part as usize * size_of::<Place>();
+    vec![
+        impossible("a servo on the serial line", |section| {
+            section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
+        }),
+        impossible("two servos on one pin", |section| {
+            let at = size_of::<Header>() + offset_of!(Numbers, pins);
+            section[at] = section[at + 1];
+        }),
+        impossible("a rail on a pin that measures nothing", |section| {
+            put(section, offset_of!(Numbers, rail), 20);
+        }),
+        impossible("no gait", |section| put(section, part(Part::Gaits) + 2, 0)),
+        impossible("more gaits than there is flash", |section| {
+            put(section, part(Part::Gaits) + 2, 0xffff);
+        }),
+        impossible("waveforms behind the end", |section| {
+            put(section, part(Part::Waves), 0xfff0);
+        }),
+        impossible("a curve behind the end", |section| {
+            put(section, offset_of!(Numbers, curves), SPACE);
+        }),
+        impossible("maps of more rows than there are", |section| {
+            put(section, part(Part::Rows) + 2, 1);
+        }),
+        impossible("a name behind the names", |section| {
+            let gait = usize::from(place(section, Part::Gaits).at);
+            section[gait + 28..gait + 30].fill(0xff);
+        }),
+        impossible("a waveform that there is not", |section| {
+            let gait = usize::from(place(section, Part::Gaits).at);
+            section[gait + 4..gait + 6].fill(0xff);
+        }),
+        impossible("a stand that moves", |section| {
+            let gait = usize::from(place(section, Part::Gaits).at);
+            section[gait + 8] = 1;
+        }),
+        impossible("a neutral pulse that no servo bears", |section| {
+            put(section, offset_of!(Numbers, calibration), 60_000);
+        }),
+        impossible("a travel on one side of neutral", |section| {
+            put(section, offset_of!(Numbers, calibration) + 4, 5);
+        }),
+        impossible("no cranks", |section| {
+            let at = size_of::<Header>() + offset_of!(Numbers, ends);
+            section[at..at + 20].fill(0);
+        }),
+        impossible("ones for numbers", |section| {
+            section[size_of::<Header>()..].fill(0xff);
+        }),
+        impossible("zeros for numbers", |section| {
+            section[size_of::<Header>()..].fill(0);
+        }),
+    ]
+}
+
+/// A board with that in its flash, just powered on.
+fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
+    let mut image: Image = FirmwareBench::image();
+    let space = u32::from(START)..u32::from(START) + u32::from(SPACE);
+    image.replace(space, &damage.section).expect("it fits");
+    FirmwareBench::with_board(SimulatedBoard::with_image(image, fidelity, robot()))
+}
+
+/// What all damage has in common.
+fn is_no_robot(damage: &Damage) {
+    let bench = &mut board(damage, Fidelity::DataSheet);
+    bench.run_ms(300);
+    let banner = format!("# lizard {} without a robot", env!("CARGO_PKG_VERSION"));
+    let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
+    assert!(lines[0].starts_with(&banner), "{lines:?}");
+    assert_eq!(lines[1..], [damage.said]);
+    for line in [
+        &moving(),
+        "stand",
+        &pose_at([1.0; 4]),
+        "center",
+        "rest",
+        "stop",
+        "speed 50",
+        "trim 1 2",
+        "limit 1 100 150",
+        "scale 2 10",
+        "dir 1 -",
+        "boot rest",
+        "deadman 1000",
+        "cal",
+        "save",
+        "load",
+        "factory",
+    ] {
+        let (notes, answer) = bench.ask(line);
+        assert_eq!(answer, "err 10 no robot in the flash", "{line}");
+        assert!(notes.is_empty(), "{line}: {notes:?}");
+    }
+    let (notes, answer) = bench.ask("help");
+    assert_eq!(answer, "ok help");
+    assert!(notes.len() < 10, "{notes:?}");
+    assert_eq!(bench.ask("watch 0"), (vec![], "ok watch 0".into()));
+    // Past the time of `boot`.
+    bench.run_ms(3_200);
+    let (notes, status) = bench.ask("status");
+    assert!(notes.is_empty(), "{notes:?}");
+    assert!(status.starts_with("ok gait=rest "), "{status}");
+    assert!(
+        status.contains(" fault=robot reset=power resets=0 "),
+        "{status}"
+    );
+    let unasked = bench
+        .lines()
+        .iter()
+        .filter(|line| line.text.starts_with("# fault:"));
+    assert_eq!(unasked.count(), 1, "one line");
+    let moved = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
+    assert_eq!(moved, None, "a pin besides the LED's");
+    for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
+        assert!(!bench.uno.is_high(pin), "{pin}");
+    }
+    assert_eq!(bench.uno.resets(), 0);
+    assert_eq!(bench.uno.reset_events().len(), 1);
+    assert_eq!(bench.uno.eeprom_operations(), []);
+    assert!(bench.uno.eeprom().iter().all(|byte| *byte == 0xff));
+}
+
+#[test]
+fn without_a_whole_robot_there_is_no_pulse_and_the_console_says_why() {
+    for_each(&missing(), is_no_robot);
+}
+
+#[test]
+fn a_bit_that_is_flipped_in_any_part_of_the_robot_ends_all_pulses() {
+    for_each(&flipped(), is_no_robot);
+}
+
+#[test]
+fn numbers_that_no_robot_can_have_move_no_servo_whatever_their_checksum() {
+    for_each(&wrong(), is_no_robot);
+}
+
+/// All that the program does longer at its start than one into which its robot is compiled.
+#[test]
+fn the_largest_section_is_checked_within_a_frame() {
+    for_each(&["large", "own-gaits", "paper", "unequal"], |name| {
+        let robot = Robot::load(root().join(format!("robots/{name}.toml"))).expect("a robot");
+        let image = with_robot(&FirmwareBench::elf(), &robot).expect("make firmware");
+        let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
+        let calls = FirmwareBench::with_board(board).time_calls("Robot::open", 200);
+        let [call] = calls[..] else {
+            panic!("{name}: {calls:?}");
+        };
+        let bytes = robot.section().len();
+        println!(
+            "{name}: {bytes} bytes in {:.1} ms",
+            call.cycles() as f64 / 16_000.0
+        );
+        assert!(call.cycles() < FRAME, "{name}: {call:?}");
+    });
+}
+
+#[test]
+fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
+    in_both(|fidelity| {
+        let bench = &mut board(&missing()[0], fidelity);
+        bench.run_ms(8_000);
+        let edges = bench.uno.edges();
+        let led: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
+        // Frames that it is lit or dark, in turn.
+        let frames = led.windows(2).map(|pair| {
+            let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME as f64;
+            (pair[0].high, frames.round() as u64)
+        });
+        let frames: Vec<(bool, u64)> = frames.collect();
+        let mut pattern = [(true, 8), (false, 8)].repeat(8);
+        pattern[15] = (false, 56);
+        // The first flash begins with the program.
+        assert_eq!(frames[1..16], pattern[1..], "{frames:?}");
+        assert_eq!(frames[16..32], pattern[..], "{frames:?}");
+    });
+}

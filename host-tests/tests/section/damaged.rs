@@ -1,0 +1,314 @@
+//! The core believes nothing of a section. It runs here with checks that the chip has
+//! no room for: a number that overflows, or a byte that is read behind the section's end,
+//! ends the test.
+
+use fastrand::Rng;
+use lizard_core::calibration::Calibration;
+use lizard_core::gait::GaitId;
+use lizard_core::limits::Limits;
+use lizard_core::motion::Activity;
+use lizard_core::robot::Robot;
+use lizard_core::section::{Damage, Header, MAGIC, Numbers, Region, SPACE, seal};
+use lizard_core::units::{Sine, Sweep, Width};
+use lizard_core::virtual_board::Running;
+use lizard_host_tests::rng;
+use lizard_robot::flash;
+
+use crate::sections;
+
+/// Where things are in a header.
+const FORMAT: std::ops::Range<usize> = 4..6;
+const LENGTH: std::ops::Range<usize> = 6..8;
+const BEHIND_CRC: usize = 10;
+
+fn damage(section: &[u8]) -> Option<Damage> {
+    Robot::open(Region::new(section)).err()
+}
+
+/// What is in the flash of a chip whose section was written no farther than that.
+fn erased_behind(section: &[u8]) -> Vec<u8> {
+    let mut flash = section.to_vec();
+    flash.resize(SPACE.into(), 0xff);
+    flash
+}
+
+#[test]
+fn every_robot_is_read_with_anything_behind_its_section() {
+    for (named, section) in sections() {
+        assert_eq!(damage(section), None, "{}", named.name);
+        for filler in [0, 0x55, 0xff] {
+            let mut flash = section.clone();
+            flash.resize(SPACE.into(), filler);
+            assert_eq!(damage(&flash), None, "{} before {filler}", named.name);
+        }
+    }
+}
+
+#[test]
+fn a_section_of_any_file_with_any_one_bit_flipped_is_no_robot() {
+    let files = sections()
+        .iter()
+        .filter(|(named, _)| named.name.ends_with(".toml"));
+    let mut count = 0;
+    for (named, section) in files {
+        count += 1;
+        let mut section = erased_behind(section);
+        let length = u16::from_le_bytes([section[LENGTH.start], section[LENGTH.start + 1]]);
+        for bit in 0..8 * usize::from(length) {
+            section[bit / 8] ^= 1 << (bit % 8);
+            let expected = match bit / 8 {
+                0..4 => Damage::Missing,
+                at if FORMAT.contains(&at) => Damage::Format,
+                _ => Damage::Damaged,
+            };
+            assert_eq!(damage(&section), Some(expected), "{} bit {bit}", named.name);
+            section[bit / 8] ^= 1 << (bit % 8);
+        }
+    }
+    assert!(count >= 4, "{count} files");
+}
+
+#[test]
+fn a_section_that_ends_at_any_byte_is_no_robot() {
+    for (named, section) in sections() {
+        for length in 0..section.len() {
+            let cut = &section[..length];
+            assert!(damage(cut).is_some(), "{} cut at {length}", named.name);
+            // The last bytes may be those of erased flash themselves.
+            if section[length..].iter().any(|byte| *byte != 0xff) {
+                let cut = erased_behind(cut);
+                assert!(damage(&cut).is_some(), "{} erased at {length}", named.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_section_of_any_other_version_is_told_to_be_that() {
+    let (_, section) = &sections()[0];
+    let mut section = section.clone();
+    let own = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
+    for format in (0..=u16::MAX).filter(|format| *format != own) {
+        section[FORMAT].copy_from_slice(&format.to_le_bytes());
+        assert_eq!(damage(&section), Some(Damage::Format), "{format}");
+    }
+}
+
+#[test]
+fn erased_flash_and_flash_of_one_byte_is_no_robot() {
+    for byte in 0..=u8::MAX {
+        let flash = [byte; SPACE as usize];
+        assert_eq!(damage(&flash), Some(Damage::Missing), "{byte}");
+    }
+    assert_eq!(damage(&[]), Some(Damage::Missing));
+}
+
+#[test]
+fn a_hundred_thousand_random_sections_are_no_robot() {
+    let rng = &mut rng(150);
+    for n in 0..100_000 {
+        let mut section = vec![0; rng.usize(..=usize::from(SPACE))];
+        rng.fill(&mut section);
+        // Each part of the header on its own lets the next one be looked at.
+        if n % 4 > 0 {
+            put(&mut section, 0, &MAGIC.to_le_bytes());
+        }
+        if n % 4 > 1 {
+            put(&mut section, FORMAT.start, &1u16.to_le_bytes());
+        }
+        if n % 4 > 2 {
+            let length = section.len() as u16;
+            put(&mut section, LENGTH.start, &length.to_le_bytes());
+        }
+        // One in 65 536 has the right checksum, and then still is none.
+        assert!(damage(&section).is_some(), "section {n}");
+    }
+}
+
+fn put(section: &mut [u8], at: usize, bytes: &[u8]) {
+    if let Some(place) = section.get_mut(at..at + bytes.len()) {
+        place.copy_from_slice(bytes);
+    }
+}
+
+#[test]
+fn random_sections_with_a_right_header_and_checksum_are_no_robot_or_a_harmless_one() {
+    let rng = &mut rng(151);
+    for _ in 0..20_000 {
+        let least = size_of::<Header>() + size_of::<Numbers>();
+        let mut section = vec![0; rng.usize(least..=usize::from(SPACE))];
+        rng.fill(&mut section);
+        let (_, valid) = rng.choice(sections()).expect("sections");
+        put(&mut section, 0, &valid[..LENGTH.start]);
+        let length = section.len() as u16;
+        put(&mut section, LENGTH.start, &length.to_le_bytes());
+        seal(&mut section);
+        if damage(&section).is_none() {
+            live(rng, &section);
+        }
+    }
+}
+
+#[test]
+fn robots_whose_numbers_were_changed_are_no_robots_or_harmless_ones() {
+    let rng = &mut rng(152);
+    let (mut refused, mut lived) = (0, 0);
+    for n in 0..100_000 {
+        let (_, section) = rng.choice(sections()).expect("sections");
+        let mut section = section.clone();
+        for _ in 0..=rng.usize(..4) {
+            change(rng, &mut section);
+        }
+        seal(&mut section);
+        match damage(&section) {
+            Some(Damage::Impossible) => refused += 1,
+            Some(other) => panic!("section {n} is {other:?}"),
+            None => {
+                lived += 1;
+                if lived % 20 == 0 {
+                    live(rng, &section);
+                }
+            }
+        }
+    }
+    println!("{refused} refused, {lived} accepted");
+    assert!(refused > 10_000 && lived > 5_000, "{refused} {lived}");
+}
+
+/// A gait that goes beyond what its section says that gaits need of the servos, where no
+/// limit of the guard is in its way.
+#[test]
+fn a_gait_that_would_leave_the_travel_is_held_within_it() {
+    let rng = &mut rng(154);
+    let mut held = 0;
+    for (named, _) in sections() {
+        let mut content = named.robot.content().clone();
+        content.limits = Limits {
+            type2: Sine(i16::MIN),
+            type1: Sine(i16::MIN),
+            leg: Sine(i16::MIN),
+        };
+        for side in &mut content.sides {
+            (side.min, side.max) = (0, u16::MAX);
+        }
+        for wave in &mut content.waves {
+            wave.fill_with(|| rng.i16(..));
+        }
+        for channel in content.gaits[1..]
+            .iter_mut()
+            .flat_map(|gait| &mut gait.channels)
+        {
+            channel.gain = rng.i16(..);
+        }
+        let robot = Robot::open(flash(&content.section())).expect("nothing is out of range");
+        for id in GaitId::all(robot.gait_count()).skip(1) {
+            let mut running = Running::power_on(robot);
+            frames(&mut running, 30);
+            let name: String = robot.name(id).map(char::from).collect();
+            assert_eq!(running.say(&name), format!("ok {name}"));
+            frames(&mut running, 300);
+            held += usize::from(running.motion().activity() == Activity::Stop);
+        }
+    }
+    assert!(held > 50, "{held} gaits were held");
+}
+
+/// Neutral angles beyond the travel, in which the robot would stand.
+#[test]
+fn a_servo_whose_travel_has_no_neutral_angle_is_no_robots() {
+    for (named, _) in sections() {
+        for servo in 0..4 {
+            for [min, max] in [[1, 9000], [-9000, -1], [1, -1], [100, 50]] {
+                let mut content = named.robot.content().clone();
+                let calibration = &mut content.calibration[servo];
+                (calibration.min, calibration.max) = (Sweep(min), Sweep(max));
+                let reach = &mut content.reach[servo];
+                (reach.min, reach.max) = (Sweep(min), Sweep(max));
+                let found = damage(&content.section());
+                let name = &named.name;
+                assert_eq!(
+                    found,
+                    Some(Damage::Impossible),
+                    "{name} {servo} {min} {max}"
+                );
+            }
+        }
+    }
+}
+
+/// Changes a number somewhere: in the numbers or behind them.
+fn change(rng: &mut Rng, section: &mut [u8]) {
+    let numbers = BEHIND_CRC + 26..size_of::<Header>() + size_of::<Numbers>();
+    let at = match rng.u8(..4) {
+        0..3 => rng.usize(numbers),
+        _ => rng.usize(BEHIND_CRC..section.len() - 1),
+    };
+    let at = at & !1;
+    let was = u16::from_le_bytes([section[at], section[at + 1]]);
+    let word = match rng.u8(..6) {
+        0 => rng.u16(..),
+        1 => was ^ 1 << rng.u8(..16),
+        2 => was.wrapping_add(rng.u16(..10)).wrapping_sub(5),
+        3 => *rng
+            .choice(&[0, 1, 0x7fff, 0x8000, 0x8001, 0xffff])
+            .expect("one"),
+        4 => was.wrapping_neg(),
+        _ => was.wrapping_mul(rng.u16(2..5)),
+    };
+    section[at..at + 2].copy_from_slice(&word.to_le_bytes());
+}
+
+/// Runs a robot whose section was accepted, whatever its numbers are: it obeys or
+/// refuses, comes to an end with every frame, and turns no servo beyond its travel.
+fn live(rng: &mut Rng, section: &[u8]) {
+    let robot = Robot::open(flash(section)).expect("it was accepted");
+    let mut running = Running::power_on(robot);
+    frames(&mut running, 30);
+    let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
+    for _ in 0..8 {
+        let line = match rng.u8(..8) {
+            0..4 => {
+                let id = *rng.choice(&gaits).expect("stand at least");
+                let name: Vec<u8> = robot.name(id).collect();
+                name.into_iter().map(char::from).collect()
+            }
+            4 | 5 => {
+                let angles = robot.neutral().map(|angle| {
+                    let angle = f64::from(angle.0) * 360.0 / 65536.0 + 40.0 * rng.f64() - 20.0;
+                    format!("{:.2}", angle.rem_euclid(360.0))
+                });
+                format!("pose {}", angles.join(" "))
+            }
+            6 => "center".to_string(),
+            _ => (*rng
+                .choice(&["status", "help", "cal", "save", "rest", "stand"])
+                .expect("one"))
+            .to_string(),
+        };
+        running.board.send(line.as_bytes());
+        running.board.send(b"\r");
+        frames(&mut running, 40);
+    }
+}
+
+/// Frames in which no servo is turned beyond its travel.
+fn frames(running: &mut Running, count: u32) {
+    for _ in 0..count {
+        let pulses = running.frame();
+        running.board.transmitter.text.clear();
+        for (pulse, servo) in pulses.0.into_iter().zip(running.motion().calibration()) {
+            within(pulse, servo);
+        }
+    }
+}
+
+/// A pulse is none, or one within the travel and within what a hobby servo bears.
+fn within(pulse: Width, servo: &Calibration) {
+    let ends = [servo.pulse(servo.min), servo.pulse(servo.max)];
+    let travel = ends[0].min(ends[1])..=ends[0].max(ends[1]);
+    let bearable = 500 * 16 - 1..=2500 * 16 + 1;
+    assert!(
+        pulse.0 == 0 || travel.contains(&pulse.0) && bearable.contains(&pulse.0),
+        "{pulse:?} of {servo:?}"
+    );
+}

@@ -1,0 +1,18 @@
+//! The robot's section of flash, from the outside: what is written is what the core
+//! reads, and what nobody wrote for a robot moves no servo.
+
+use std::sync::LazyLock;
+
+use lizard_host_tests::{Named, robots};
+
+mod damaged;
+mod read_back;
+
+/// The sections of all robots, those of files first.
+fn sections() -> &'static [(&'static Named, Vec<u8>)] {
+    static SECTIONS: LazyLock<Vec<(&'static Named, Vec<u8>)>> = LazyLock::new(|| {
+        let sections = robots().iter().map(|named| (named, named.robot.section()));
+        sections.collect()
+    });
+    &SECTIONS
+}

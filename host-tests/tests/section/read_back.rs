@@ -1,0 +1,416 @@
+//! What the core reads from a section is what robot.toml says, field by field: the
+//! reader is the one of the AVR, and the truth is the robot in floating point, not the
+//! numbers that the section was made of.
+
+use lizard_core::curve::{ENTRIES, Table, argument};
+use lizard_core::five_bar::Bars;
+use lizard_core::gait::GaitId;
+use lizard_core::guard::Clearance;
+use lizard_core::part::{End, Servo, Side};
+use lizard_core::pose::Pose;
+use lizard_core::robot::Robot;
+use lizard_core::section::{Header, MapHead, Numbers, Part, Region};
+use lizard_core::units::{Scale, Sine, Sweep};
+use lizard_host_tests::rng;
+use lizard_robot::{Robot as Toml, STEPS_PER_DEGREE};
+
+use crate::sections;
+
+/// Every robot as the core reads it, beside the robot that was written.
+fn each(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
+    for (named, section) in sections() {
+        let flash = Region::new(section);
+        let robot = Robot::open(flash).unwrap_or_else(|why| panic!("{}: {why:?}", named.name));
+        test(&named.name, &robot, &named.robot, flash);
+    }
+}
+
+fn numbers(flash: Region<'_>) -> Numbers {
+    flash.read(size_of::<Header>() as u16)
+}
+
+/// Steps of a length, rounded to nearest.
+fn steps(mm: f64, scale: Scale) -> f64 {
+    (mm * f64::from(1u32 << scale.bits)).round()
+}
+
+fn degrees(sweep: i32) -> f64 {
+    f64::from(sweep) / STEPS_PER_DEGREE
+}
+
+#[test]
+fn the_name_the_pins_and_the_supplies() {
+    each(|name, robot, toml, _| {
+        let label: String = robot.label().map(char::from).collect();
+        assert_eq!(label, toml.name(), "{name}");
+        assert_eq!(robot.pins(), toml.servos().map(|servo| servo.pin), "{name}");
+        let supplies = toml.supplies();
+        assert_eq!(
+            robot.rail_pin(),
+            supplies.rail.map(|rail| rail.pin),
+            "{name}"
+        );
+        let read = robot.supplies();
+        let is = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
+        let three = |of: lizard_core::supply::Thresholds, volts: [f64; 3]| {
+            is(of.slow, volts[0]) && is(of.stop, volts[1]) && is(of.rest, volts[2])
+        };
+        assert!(is(read.reference, supplies.reference), "{name} {read:?}");
+        assert!(three(read.board, supplies.board), "{name} {read:?}");
+        match supplies.rail {
+            Some(rail) => {
+                let divided = supplies.reference * rail.ratio;
+                assert!(is(read.rail_reference, divided), "{name} {read:?}");
+                assert!(three(read.rail, rail.thresholds), "{name} {read:?}");
+            }
+            None => assert_eq!(read.rail_reference, 0, "{name}"),
+        }
+    });
+}
+
+#[test]
+fn the_servos() {
+    each(|name, robot, toml, _| {
+        for (place, servo) in toml.servos().iter().enumerate() {
+            let one = Servo::ALL[place];
+            let neutral = f64::from(robot.neutral_of(one).0) / STEPS_PER_DEGREE;
+            assert!(
+                (neutral - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
+                "{name}"
+            );
+            assert_eq!(robot.neutral()[place], robot.neutral_of(one));
+            let read = robot.servo(one);
+            assert_eq!(robot.calibration()[place], read);
+            let us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
+            for sweep in read.min.0..=read.max.0 {
+                let off = f64::from(read.width(Sweep(sweep)).0) - 16.0 * us(sweep.into());
+                // Half a cycle each of the neutral width and of the product; the gain's
+                // own rounding over the travel.
+                assert!(off.abs() <= 1.5, "{name} {one:?}: {off} cycles at {sweep}");
+            }
+            let bears =
+                |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&us(sweep));
+            let (min, max) = (i32::from(read.min.0), i32::from(read.max.0));
+            assert!(
+                bears(min) && !bears(min - 1) && bears(max) && !bears(max + 1),
+                "{name}"
+            );
+        }
+    });
+}
+
+#[test]
+fn the_limits_the_slew_limit_and_what_the_gaits_need() {
+    each(|name, robot, toml, _| {
+        let (read, limits) = (robot.limits(), toml.limits());
+        for (read, exact) in [
+            (read.type2, limits.type2),
+            (read.type1, limits.type1),
+            (read.leg, limits.leg),
+        ] {
+            let up = f64::from(read.0) - 32768.0 * exact;
+            assert!((-1e-5..1.0).contains(&up), "{name}: {read:?} for {exact}");
+        }
+        let per_frame = toml.pace().slew * STEPS_PER_DEGREE / 50.0;
+        let down = per_frame - f64::from(robot.slew().per_frame);
+        assert!((-1e-5..1.0).contains(&down), "{name}: {down}");
+        // The farthest sample of any gait; the tables are read by the core.
+        let mut widest = [[0.0f64; 2]; 4];
+        for gait in toml.gaits() {
+            for phase in 0..4096 {
+                let angles = gait.angles(f64::from(phase) / 4096.0);
+                for (place, widest) in widest.iter_mut().enumerate() {
+                    let sweep = angles[place] - toml.servos()[place].neutral;
+                    let sweep = (sweep + 180.0).rem_euclid(360.0) - 180.0;
+                    *widest = [widest[0].min(sweep), widest[1].max(sweep)];
+                }
+            }
+        }
+        for servo in Servo::ALL {
+            let read = robot.reach(servo);
+            let [min, max] = widest[servo.index()];
+            let off = [
+                degrees(read.min.0.into()) - min,
+                degrees(read.max.0.into()) - max,
+            ];
+            // The tables' tenth of a degree, and a step of rounding.
+            assert!(
+                off.iter().all(|off| off.abs() < 0.11),
+                "{name} {servo:?}: {off:?}"
+            );
+        }
+    });
+}
+
+#[test]
+fn the_bars_and_the_sliders() {
+    each(|name, robot, toml, _| {
+        let l = toml.lizard().links;
+        for (end, [base, left, right, a, b]) in [
+            (End::Head, [l.l0, l.l1, l.l4, l.l2, l.l3]),
+            (End::Tail, [l.l5, l.l6, l.l9, l.l7, l.l8]),
+        ] {
+            let five_bar = robot.end(end);
+            let scale = five_bar.bars().scale();
+            let length = |mm: f64| steps(mm, scale) as i16;
+            let bars = [base, left, right].map(length);
+            let expected = Bars::new(bars, [a, b].map(length), scale);
+            assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
+            // The finest step in which the lengths fit.
+            let longest = (base + left + right).max(a).max(b);
+            let fits = |bits: u32| longest * f64::from(1u32 << bits) < 127.0 * 256.0;
+            let bits = u32::from(scale.bits);
+            assert!(fits(bits), "{name} {end:?}: {bits}");
+        }
+        let aside = (l.l5 - l.l0) / 2.0;
+        let limits = toml.limits();
+        for (side, [offset, base, front, rear, nominal]) in [
+            (Side::Left, [aside, l.l10, l.l14, l.l11, l.l12 + l.l13]),
+            (Side::Right, [-aside, l.l15, l.l19, l.l16, l.l17 + l.l18]),
+        ] {
+            let read = robot.side(side);
+            let length = |mm: f64| steps(mm, read.scale);
+            let lengths = [
+                f64::from(read.offset),
+                f64::from(read.base),
+                f64::from(read.front),
+                f64::from(read.rear),
+                f64::from(read.nominal),
+            ];
+            let expected = [offset, base, front, rear, nominal].map(length);
+            assert_eq!(lengths, expected, "{name} {side:?}");
+            let per_mm = f64::from(1u32 << read.scale.bits);
+            let in_by = [
+                f64::from(read.min) - (nominal + limits.stroke_min) * per_mm,
+                (nominal + limits.stroke_max) * per_mm - f64::from(read.max),
+            ];
+            let inwards = in_by.iter().all(|by| (-1e-5..1.0).contains(by));
+            assert!(inwards, "{name} {side:?}: {in_by:?}");
+        }
+    });
+}
+
+/// What an entry of a curve should be, by the triangle of the couplers.
+#[derive(Clone, Copy, PartialEq)]
+enum Shape {
+    Rise,
+    Stretched,
+    Folded,
+    Skew,
+}
+
+#[test]
+fn the_curves_at_every_point_of_their_tables() {
+    each(|name, robot, toml, flash| {
+        let l = toml.lizard().links;
+        for (end, [a, b], curves) in [
+            (End::Head, [l.l2, l.l3], numbers(flash).curves[0]),
+            (End::Tail, [l.l7, l.l8], numbers(flash).curves[1]),
+        ] {
+            let scale = robot.end(end).bars().scale();
+            let [a, b] = [a, b].map(|mm| steps(mm, scale));
+            // Of squared distances in quarters of a step's square.
+            let [reach, least] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
+            let shapes = [Shape::Rise, Shape::Stretched, Shape::Folded, Shape::Skew];
+            assert!(
+                curves[0] != 0 && (curves[3] != 0) == (a != b),
+                "{name} {end:?}"
+            );
+            for (shape, at) in shapes.into_iter().zip(curves).filter(|(_, at)| *at != 0) {
+                let table = flash.values::<Table>(at, 1).get(0).expect("a curve").load();
+                for (index, entry) in table.into_iter().enumerate().take(ENTRIES) {
+                    let largest = match shape {
+                        Shape::Rise | Shape::Skew => reach,
+                        // Of whole numbers, as the core counts them.
+                        Shape::Stretched => (reach.floor() / 4.0).floor(),
+                        Shape::Folded => least.floor(),
+                    };
+                    let value = argument(largest as u32, index) as f64;
+                    let s = match shape {
+                        Shape::Rise => value.max(2.0 * reach * least / (reach + least)),
+                        Shape::Skew => value,
+                        Shape::Stretched => reach - value,
+                        Shape::Folded => least + value,
+                    };
+                    let exact = match shape {
+                        Shape::Skew => (a * a - b * b).abs() / 4.0 / s,
+                        _ if s <= least || s >= reach => 0.0,
+                        _ => ((reach - s) * (s - least)).sqrt() / s,
+                    };
+                    let exact = (1024.0 * exact).min(32_767.0);
+                    // One of rounding, and a quarter of a step's square in `s`, which
+                    // counts where the curve is steep.
+                    let hair = 1.01 + exact * 2.0 / (s - least).min(reach - s).max(1.0);
+                    let off = f64::from(entry) - exact;
+                    assert!(
+                        off.abs() <= hair,
+                        "{name} {end:?} {index}: {entry} for {exact}"
+                    );
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn the_gaits_their_names_and_their_waveforms_at_every_phase() {
+    each(|name, robot, toml, _| {
+        assert_eq!(robot.gait_count(), toml.gaits().len(), "{name}");
+        for (id, gait) in GaitId::all(robot.gait_count()).zip(toml.gaits()) {
+            let what = format!("{name} {}", gait.name());
+            let read: String = robot.name(id).map(char::from).collect();
+            assert_eq!(read, gait.name().replace('-', " "), "{name}");
+            let numbers = robot.gait(id);
+            let mut increment = f64::from(1 << 24) / (gait.period() * 50.0);
+            if gait.is_reversed() {
+                increment = -increment;
+            }
+            assert!(
+                (f64::from(numbers.increment) - increment).abs() <= 0.51,
+                "{what}"
+            );
+            for step in 0..8192 {
+                let pose = numbers.pose(robot.waves(), step << 11);
+                let exact = gait.angles(f64::from(step) / 8192.0);
+                for (place, angle) in pose.angles(&robot.neutral()).into_iter().enumerate() {
+                    let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
+                    let off = (angle - exact[place] + 180.0).rem_euclid(360.0) - 180.0;
+                    // What a table may be off by, and the neutral angle's half a step.
+                    assert!(off.abs() <= 0.104, "{what} A{} at {step}: {off}", place + 1);
+                }
+            }
+        }
+    });
+}
+
+/// The servos of the maps: that of the rows and that of the columns.
+const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
+
+/// The rows of the four maps: where each row's certified sweeps begin and end.
+fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
+    let numbers = numbers(flash);
+    let place = numbers.parts[Part::Rows as usize];
+    let rows = flash.values::<[i8; 2]>(place.at, place.count);
+    let mut next = 0;
+    numbers.maps.map(|MapHead { first, rows: count }| {
+        let map = (0..i32::from(count)).map(|row| {
+            let [least, most] = rows.get(next).expect("a row").load().map(i32::from);
+            next += 1;
+            let row = 256 * (i32::from(first) + row);
+            [row..=row + 255, 128 * least..=128 * most + 127]
+        });
+        map.collect()
+    })
+}
+
+/// Whether the exact guard accepts what depends on the servos of a map.
+fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
+    let clearance = Clearance::of(robot, pose);
+    let limits = robot.limits();
+    let margins = |type2: usize, first: usize| {
+        let least = |place: usize, limit: Sine| clearance.margins[place] >= limit;
+        least(type2, limits.type2)
+            && (first..first + 2)
+                .all(|place| least(2 + place, limits.type1) && least(6 + place, limits.leg))
+    };
+    match pair {
+        0 => margins(0, 0),
+        1 => margins(1, 2),
+        2 => robot.side(Side::Left).allows(clearance.sliders_sq[0]),
+        _ => robot.side(Side::Right).allows(clearance.sliders_sq[1]),
+    }
+}
+
+#[test]
+fn every_certified_cell_is_one_in_which_the_exact_guard_accepts_what_the_map_is_of() {
+    let mut checked = 0;
+    let mut with_maps = 0;
+    for (named, section) in sections() {
+        let flash = Region::new(section);
+        let robot = Robot::open(flash).expect("a robot");
+        let travel = robot.calibration();
+        with_maps += usize::from(numbers(flash).parts[Part::Rows as usize].count > 0);
+        for (pair, map) in maps(flash).into_iter().enumerate() {
+            let servos = PAIRS[pair];
+            for [row, columns] in map {
+                let cells = (*columns.start()..*columns.end()).step_by(128);
+                for cell in cells {
+                    for (along, across) in [(0, 0), (255, 0), (0, 127), (255, 127), (128, 64)] {
+                        let sweeps = [row.start() + along, cell + across];
+                        let mut pose = Pose::NEUTRAL;
+                        let mut inside = true;
+                        for (servo, sweep) in servos.into_iter().zip(sweeps) {
+                            let sweep = Sweep(sweep as i16);
+                            inside &= travel[servo].reaches(sweep);
+                            pose.0[servo] = sweep;
+                        }
+                        if inside {
+                            let name = &named.name;
+                            assert!(accepts(&robot, pair, &pose), "{name}: {pair} {pose:?}");
+                            checked += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{checked} poses of cells, {with_maps} robots with maps");
+    assert!(with_maps >= 5 && checked > 100_000, "{with_maps} {checked}");
+}
+
+#[test]
+fn a_pose_is_certified_where_all_four_maps_hold_it_and_then_the_guard_accepts_it() {
+    let rng = &mut rng(153);
+    for (named, section) in sections() {
+        let flash = Region::new(section);
+        let robot = Robot::open(flash).expect("a robot");
+        let maps = maps(flash);
+        let mut certified = 0;
+        for n in 0..20_000 {
+            let mut pose = Pose::NEUTRAL;
+            for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
+                // All sweeps that there are, those of the travel, and those near neutral.
+                *sweep = Sweep(match n % 3 {
+                    0 => rng.i16(..),
+                    1 => rng.i16(travel.min.0..=travel.max.0),
+                    _ => rng.i16(-3000..3000),
+                });
+            }
+            let held = PAIRS.iter().zip(&maps).all(|(servos, map)| {
+                let [row, column] = servos.map(|servo| i32::from(pose.0[servo].0));
+                map.iter()
+                    .any(|[rows, columns]| rows.contains(&row) && columns.contains(&column))
+            });
+            assert_eq!(robot.is_certified(&pose), held, "{} {pose:?}", named.name);
+            if held {
+                certified += 1;
+                let hazard = Clearance::of(&robot, &pose).hazard(&robot);
+                assert_eq!(hazard, None, "{} {pose:?}", named.name);
+            }
+        }
+        let has_maps = numbers(flash).parts[Part::Rows as usize].count > 0;
+        assert_eq!(certified > 100, has_maps, "{}: {certified}", named.name);
+    }
+}
+
+#[test]
+fn another_robot_has_another_hash_and_the_maps_change_nothing_in_it() {
+    let mut hashes = std::collections::HashMap::new();
+    each(|name, robot, toml, _| {
+        assert_eq!(robot.hash(), toml.firmware().hash(), "{name}");
+    });
+    for (named, section) in sections() {
+        let hash = Robot::open(Region::new(section)).expect("a robot").hash();
+        let other = hashes.insert(hash, (named, named.robot.content()));
+        // robot.toml may be one of the files of robots/.
+        if let Some((other, content)) = other {
+            assert_eq!(
+                content,
+                named.robot.content(),
+                "{} {}",
+                other.name,
+                named.name
+            );
+        }
+    }
+}
