@@ -37,6 +37,7 @@ mod no_pulse;
 mod power_cut;
 mod power_up;
 mod pulses;
+mod same_pulses;
 mod serial;
 mod slow_main;
 mod stopping;

@@ -1,0 +1,183 @@
+//! The pulses of every robot of robots/, cycle for cycle, are those that its firmware
+//! made when each robot was compiled into a program of its own.
+//!
+//! What was recorded then is one number for each robot: a digest of every edge of its
+//! servos' pins in so many simulated minutes of random commands. A pulse that is one cycle
+//! longer, later or elsewhere gives another number. So does every change of a robot's
+//! numbers or of what a command does: then the pulses are meant to be others, and the
+//! numbers here are replaced by those that the failed test prints.
+
+use lizard_host::firmware::with_robot;
+use lizard_host::sim::frame::{FRAME, servo_pins};
+use lizard_host::sim::supplies;
+use lizard_host_tests::{FirmwareBench, root};
+use lizard_robot::Robot;
+use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
+
+use crate::{SECOND, for_each};
+
+/// Random numbers that stay the same whatever a library does: xorshift64*, Vigna 2016.
+struct Random(u64);
+
+impl Random {
+    /// A number below `end`.
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) % end
+    }
+
+    /// A number of hundredths, as the console takes it.
+    fn hundredths(&mut self, least: i64, most: i64) -> String {
+        let value = least + self.below((most - least) as u64 + 1) as i64;
+        let sign = if value < 0 { "-" } else { "" };
+        let size = value.unsigned_abs();
+        format!("{sign}{}.{:02}", size / 100, size % 100)
+    }
+}
+
+/// A command: mostly gaits, now and then any other.
+fn command(random: &mut Random, robot: &Robot) -> String {
+    let servo = 1 + random.below(4);
+    let neutral = |place: usize| (robot.servos()[place].neutral * 100.0).round() as i64;
+    let near = |random: &mut Random, reach: i64| {
+        let angle = |place: usize| {
+            let angle = neutral(place);
+            random.hundredths(angle - reach, angle + reach)
+        };
+        let angles: Vec<String> = (0..4).map(angle).collect();
+        format!("pose {}", angles.join(" "))
+    };
+    match random.below(32) {
+        0..14 => {
+            let gaits = robot.gaits();
+            let gait = &gaits[random.below(gaits.len() as u64) as usize];
+            gait.name().replace('-', " ")
+        }
+        14..17 => near(random, 2_000),
+        17 => near(random, 6_000),
+        18 => "stop".into(),
+        19 => "rest".into(),
+        20 | 21 => "stand".into(),
+        22 => "center".into(),
+        23 | 24 => format!("speed {}", 10 + random.below(91)),
+        25 => format!("trim {servo} {}", random.hundredths(-2_000, 2_000)),
+        26 => {
+            let neutral = neutral(servo as usize - 1);
+            let least = random.hundredths(neutral - 9_000, neutral - 1_000);
+            let most = random.hundredths(neutral + 1_000, neutral + 9_000);
+            format!("limit {servo} {least} {most}")
+        }
+        27 => format!("scale {servo} {}", random.hundredths(500, 2_000)),
+        28 => ["save", "load", "factory"][random.below(3) as usize].into(),
+        29 => format!("deadman {}", 200 * random.below(10)),
+        30 => "status".into(),
+        _ => "help".into(),
+    }
+}
+
+/// A digest of all servo edges in ten minutes, and how many edges there were.
+fn digest(name: &str) -> (u64, u64) {
+    let frames = 600 * SECOND;
+    let robot = Robot::load(root().join(format!("robots/{name}.toml")));
+    let robot = robot.unwrap_or_else(|error| panic!("{error}"));
+    let image = with_robot(&FirmwareBench::elf(), &robot);
+    let image = image.unwrap_or_else(|error| panic!("{error}; make firmware"));
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    supplies::connect(&mut uno, &robot);
+    let pins = servo_pins(&robot);
+    // From the first pulse on: how long the program needs before it is another matter.
+    let risen = |uno: &Uno| uno.is_high(pins[0]);
+    assert!(uno.run_until(500 * CYCLES_PER_MS, 1_000, risen), "no pulse");
+    let is_first = |edge: &&Edge| edge.high && edge.pin == pins[0];
+    let first = uno
+        .edges()
+        .iter()
+        .find(is_first)
+        .expect("it has risen")
+        .cycle;
+    println!(
+        "{name}: the first pulse begins after {:.3} ms",
+        first as f64 / 16_000.0
+    );
+    let mut random = Random(0x1234_5678_9abc_def1);
+    let mut digest = 0xcbf2_9ce4_8422_2325u64;
+    let mut count = 0;
+    let mut commands = 0;
+    // The first command when all servos are awake.
+    let mut next = 50;
+    for frame in 0..frames {
+        let start = first + frame * FRAME;
+        if frame == next {
+            // A tick comes 4 ms before A1's slot. Every line has ended and been obeyed
+            // when the next one comes.
+            uno.run_until_cycle(start + random.below(8) * CYCLES_PER_MS);
+            uno.send(command(&mut random, &robot).as_bytes());
+            uno.send(b"\n");
+            commands += 1;
+            next += 16 + random.below(48);
+        }
+        uno.run_until_cycle(start + FRAME - FRAME / 10);
+        assert_eq!(*uno.state(), State::Alive);
+        for edge in uno.take_edges() {
+            if let Some(servo) = pins.iter().position(|pin| *pin == edge.pin)
+                && edge.cycle >= first
+            {
+                count += 1;
+                // FNV-1a.
+                let value = (edge.cycle - first) << 3 | (servo as u64) << 1 | u64::from(edge.high);
+                for byte in value.to_le_bytes() {
+                    digest = (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+                }
+            }
+        }
+    }
+    let answers = uno.transmitted();
+    let text: Vec<u8> = answers.iter().map(|sent| sent.byte).collect();
+    let text = String::from_utf8_lossy(&text);
+    let answers = text.lines().filter(|line| !line.starts_with('#')).count();
+    assert!(
+        (commands - 1..=commands).contains(&answers),
+        "{answers} of {commands} answers"
+    );
+    println!("{name}: {commands} commands, {count} edges, {digest:#018x}");
+    (digest, count)
+}
+
+#[test]
+fn ten_minutes_of_random_commands_give_every_robot_the_pulses_of_its_own_program() {
+    // Recorded on the firmware of e49c5b5, which was built for each robot. The large robot
+    // is the paper's, four thirds as large: its servos do the same.
+    let recorded = [
+        ("large", (0xea09_0732_5c0c_bfa8, 184_384)),
+        ("own-gaits", (0x8446_6a4f_6ebb_f387, 152_328)),
+        ("paper", (0xea09_0732_5c0c_bfa8, 184_384)),
+        ("unequal", (0x76dd_eb15_78b4_7b53, 164_444)),
+    ];
+    let of_file = |path: std::io::Result<std::fs::DirEntry>| {
+        let path = path.expect("a file").path();
+        let name = path
+            .file_stem()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        name
+    };
+    let folder = std::fs::read_dir(root().join("robots")).expect("robots/");
+    let mut files: Vec<String> = folder.map(of_file).collect();
+    files.sort();
+    assert_eq!(
+        files,
+        recorded.map(|(name, _)| name),
+        "one record for each file"
+    );
+    for_each(&recorded, |(name, expected)| {
+        let (found, edges) = digest(name);
+        assert_eq!(
+            (found, edges),
+            *expected,
+            "{name}: {found:#018x}, {edges} edges"
+        );
+    });
+}
