@@ -15,7 +15,7 @@ const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, has
 async function opened(options) {
   // axe-core is put into the page, which its policy would not have.
   const page = await standing({ ...options, bypassCSP: true });
-  for (const name of ['Keep and compare', 'Make a gait', 'Lengths', 'Calibrate', 'Flash']) await page.getByText(name, { exact: true }).click();
+  for (const name of ['Keep and compare', 'Make a gait', 'Draw a gesture', 'Lengths', 'Calibrate', 'Flash']) await page.getByText(name, { exact: true }).click();
   await page.locator('#robot-editor summary').click();
   await page.locator('#parts summary').click();
   await page.getByText('Click a part for its name').waitFor();

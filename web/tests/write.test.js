@@ -144,4 +144,32 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   await until(opened, 'it stands', async () => (await moved(opened)).length === 4);
 });
 
+test('a board that is unplugged while the firmware is written does nothing, and is written again', async () => {
+  const opened = await panel(await connected('robot', 8000));
+  assert.equal((await moved(opened)).length, 4, 'it stands');
+  await opened.locator('#flash-write').click();
+  await said(opened, /^writing/);
+  await opened.clock.runFor(1500);
+  await opened.evaluate(() => window.unplug());
+  await said(opened, /^not written: .*\. Only a part of it is on the board, which does nothing until it is written again: try again$/);
+  // What it does by itself, with its own power.
+  const pulses = await opened.evaluate(() => {
+    window.otherBoard.reset('external');
+    window.pulses = {};
+    window.otherBoard.run(16_000 * 5000);
+    return window.pulses;
+  });
+  // The boot loader itself blinks its LED.
+  assert.deepEqual(Object.keys(pulses).filter((pin) => pin !== '13'), []);
+  assert.deepEqual(await flash(opened, 0, 4), Buffer.from([0xff, 0xcf, 0xff, 0xcf]));
+  await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
+  await opened.evaluate(() => (window.same = true));
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await until(opened, 'it is named', async () => /without this firmware$/.test(await text(opened, '#where')));
+  await opened.locator('#flash-write').click();
+  await said(opened, /^written and verified in [\d.]+ s$/);
+  const wanted = Buffer.from(await imageOf('robot'));
+  assert.deepEqual(await flash(opened, 0, wanted.length), wanted);
+});
+
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -17,6 +17,8 @@ const END = 0x20;
 const FLASH = 0x46;
 
 const PAGE = 128;
+/** A page of `rjmp .-2`, a jump to itself. */
+const IDLE = Uint8Array.from({ length: PAGE }, (_, n) => (n % 2 === 0 ? 0xff : 0xcf));
 const SIGNATURE = [0x1e, 0x95, 0x0f];
 const FLASH_SIZE = 32 * 1024;
 
@@ -168,12 +170,27 @@ export async function flash(link: Link, piece: Piece, progress: Progress, under:
     throw new Unfit('the firmware of the board is another one, in which this robot may not fit: write firmware and robot');
   }
   const image = inPages(piece);
-  for (let at = 0; at < image.length; at += PAGE) {
-    progress(at, image.length, 'writing');
+  const write = async (at: number, page: Uint8Array) => {
     await goTo(piece.at + at);
-    await loader.command([PROGRAM_PAGE, 0, PAGE, FLASH, ...image.subarray(at, at + PAGE)]);
+    await loader.command([PROGRAM_PAGE, 0, PAGE, FLASH, ...page]);
+  };
+  const verify = async (part: Piece) => {
+    const wrong = await differs(part, 'verifying');
+    if (wrong >= 0) throw new Error(`the flash does not keep byte ${wrong}: try another board`);
+  };
+  // Half a program may drive servos anywhere. So meanwhile the page where the chip starts is a loop that does nothing,
+  // and it comes last.
+  const startsHere = piece.at === 0;
+  progress(0, image.length, 'writing');
+  if (startsHere) await write(0, IDLE);
+  for (let at = startsHere ? PAGE : 0; at < image.length; at += PAGE) {
+    progress(at, image.length, 'writing');
+    await write(at, image.subarray(at, at + PAGE));
   }
-  const wrong = await differs(piece, 'verifying');
-  if (wrong >= 0) throw new Error(`the flash does not keep byte ${wrong}: try another board`);
+  if (startsHere) {
+    await verify({ at: PAGE, bytes: piece.bytes.subarray(PAGE) });
+    await write(0, image.subarray(0, PAGE));
+    await verify({ at: 0, bytes: piece.bytes.subarray(0, PAGE) });
+  } else await verify(piece);
   await loader.command([LEAVE]);
 }

@@ -1,4 +1,4 @@
-// The robot's lengths: a change builds its tables and gaits anew, or is refused.
+// The robot's lengths as numbers: a change makes the robot anew, or is refused.
 import { isRefused, type Length, type Refused } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';

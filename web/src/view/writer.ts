@@ -70,7 +70,7 @@ export class Writer {
 /** What half of it means. */
 const TORN = {
   robot: '. Only a part of the robot is on the board, which moves nothing until it is written again: try again',
-  all: '. Only a part of it is on the board: write it again before the servos get their supply',
+  all: '. Only a part of it is on the board, which does nothing until it is written again: try again',
 };
 
 /** A time in seconds; a second and a half is not two. */
