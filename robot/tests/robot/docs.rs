@@ -92,7 +92,7 @@ fn the_page_on_the_twin_shows_what_springs_cost() {
         .find(|rate| sprung("trot", Some(*rate)).forward >= STOPS)
         .expect("it walks on springs");
     let text = format!(
-        "With the {} g that the parts weigh and a friction of {} that is {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm.\n\n\
+        "The parts weigh {} g. With a friction of {} that gives {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm.\n\n\
          | stiffness, N mm/deg | 2 | 5 | 10 | 20 | rigid |\n|---|---|---|---|---|---|\n\
          | lag, deg | {:.1} | {:.1} | {:.1} | {:.1} | 0 |\n\
          | `walk`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n\n\
