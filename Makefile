@@ -75,7 +75,7 @@ fuzz: ## search harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=
 	$(call prepared,.fuzz)
 package: ## package the stand-alone crates as for a registry, and build each from its package
 	$(call prepared,.package)
-code-image: ## write firmware/code.hex, the code inside the program and the page, after a change of the firmware
+code-image: ## write firmware/code.hex: the firmware's code, which the program and the page have inside
 	$(call prepared,.code-image)
 docs: ## write the generated pages and pictures; build the book of docs/ in out/book
 	$(call prepared,.docs)

@@ -22,8 +22,8 @@ pub struct Connect {
     /// program]
     #[arg(long, value_name = "FILE", requires = "sim")]
     elf: Option<PathBuf>,
-    /// With --sim: the robot that is simulated, a file or a name as for `lizard sim` [default:
-    /// robot.toml in this folder or one above it, else the one this program was built with]
+    /// With --sim: the robot, a file or a name as for `lizard sim` [default: robot.toml in
+    /// this folder or one above it, else the one this program was built with]
     #[arg(long, value_name = "FILE", requires = "sim")]
     robot: Option<PathBuf>,
 }
