@@ -64,7 +64,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
         // By another reader of Intel HEX than the one that wrote it.
         let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
         let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
-        let robot = Robot::load(&robots.join(name).with_extension("toml")).expect("it is right");
+        let robot = Robot::load(robots.join(name).with_extension("toml")).expect("it is right");
         let flash = image.flash();
         assert!(flash[0x6a00..] == robot.section());
         let is_code = flash[..2] == [0x0c, 0x94];

@@ -284,7 +284,7 @@ fn a_board_unplugged_before_the_first_page_has_what_it_had() {
 /// A file of robots/.
 fn robot(name: &str) -> Robot {
     let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
-    Robot::load(&robots.join(name).with_extension("toml")).expect("it is right")
+    Robot::load(robots.join(name).with_extension("toml")).expect("it is right")
 }
 
 /// A board with the firmware and this robot.
