@@ -39,7 +39,7 @@ impl<'a> Region<'a> {
     }
 
     /// How many bytes it has, at most [`SPACE`].
-    pub const fn len(self) -> u16 {
+    pub const fn size(self) -> u16 {
         let len = self.bytes.len();
         if len > SPACE as usize {
             SPACE
@@ -88,7 +88,7 @@ impl<'a> Region<'a> {
 
     /// How many bytes it has.
     #[inline(always)]
-    pub const fn len(self) -> u16 {
+    pub const fn size(self) -> u16 {
         SPACE
     }
 

@@ -180,7 +180,7 @@ const CHECKED: usize = offset_of!(Header, name);
 /// [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
 #[inline(never)]
 pub fn find(flash: Region) -> Result<u16, Damage> {
-    if flash.len() < NUMBERS {
+    if flash.size() < NUMBERS {
         return Err(Damage::Missing);
     }
     if flash.read::<u32>(offset_of!(Header, magic) as u16) != MAGIC {
@@ -190,7 +190,7 @@ pub fn find(flash: Region) -> Result<u16, Damage> {
         return Err(Damage::Format);
     }
     let length = flash.read(offset_of!(Header, length) as u16);
-    if length < REST || length > flash.len() {
+    if length < REST || length > flash.size() {
         return Err(Damage::Damaged);
     }
     let mut checksum = Checksum::NOTHING;
