@@ -113,13 +113,13 @@ test('the address is the robot that is shown, at every change', async () => {
   // A page that knows nothing of the first has it from the address alone.
   const other = await load();
   await other.evaluate(() => localStorage.clear());
-  await other.goto(page.url());
+  await other.goto(await page.evaluate(() => location.href));
   await takes(other, changed);
   await page.getByRole('button', { name: 'Undo' }).click();
   await page.waitForFunction((plain) => location.href === plain, address());
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => location.hash === '#file=large');
-  await other.goto(page.url());
+  await other.goto(await page.evaluate(() => location.href));
   await other.waitForFunction(() => window.lizard.file === 'large');
   await other.goto(`${address()}#file=nothing`);
   await other.locator('#trouble', { hasText: 'This page has no nothing.toml' }).waitFor();
