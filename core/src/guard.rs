@@ -70,6 +70,10 @@ impl Clearance {
             margins: [Sine(0); MARGINS],
             sliders_sq: [0; 2],
         };
+        #[expect(
+            clippy::needless_range_loop,
+            reason = "an iterator costs 36 bytes of flash here"
+        )]
         for place in 0..cranks.len() {
             let servo = Servo::at(place);
             let mut crank = Direction::of(robot.neutral_of(servo).swept(pose.0[place]));
@@ -114,7 +118,7 @@ impl Clearance {
         for (place, value) in self.margins.iter().enumerate() {
             let least = match place {
                 ..TYPE1 => limits.type2,
-                ..LEGS => limits.type1,
+                TYPE1..LEGS => limits.type1,
                 _ => limits.leg,
             };
             if *value < least {

@@ -10,7 +10,7 @@
 //! | part | bytes | what |
 //! |---|---|---|
 //! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of all behind it, name, hash of the numbers, hash of the servos |
-//! | [`Numbers`] | 198 | see there |
+//! | [`Numbers`] | 232 | see there |
 //! | curves | 354 each | of the head's couplers and, where they are others, the tail's: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
 //! | gaits | 32 each | [`crate::gait::Gait`] |
 //! | waveforms | 256 each | 128 samples |

@@ -60,7 +60,10 @@ impl Uno {
         unsafe {
             board.PORTB.portb().write(|w| w.bits(0));
             board.PORTC.portc().write(|w| w.bits(0));
-            board.PORTD.portd().modify(|port, w| w.bits(port.bits() & 0x03));
+            board
+                .PORTD
+                .portd()
+                .modify(|port, w| w.bits(port.bits() & 0x03));
         }
         let restart = kept::restart(&board.CPU);
         stack::start();
