@@ -91,7 +91,7 @@ pub const KNOWN: f64 = 0.08;
 /// t^2 f'' = f ((sum of e l)^2 - sum of e l^2)
 /// ```
 ///
-/// which [`Product::bend`] bounds over the step by the ends of each `l`. The function is
+/// which `Product::bend` bounds over the step by the ends of each `l`. The function is
 /// constant below its peak, where it has no bend at all. To that come the roundings:
 /// those of the entries and of what is read, 1 together (1.5 for the skew, whose entries
 /// are rounded to nearest and whose value down); a share of the step of 16 bits; and the

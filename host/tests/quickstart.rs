@@ -19,7 +19,7 @@ impl Board {
     fn new() -> Self {
         let robot = Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
         Self {
-            running: Running::power_on(robot.firmware().clone()),
+            running: Running::power_on(*robot.firmware()),
         }
     }
 

@@ -147,7 +147,7 @@ fn digest(name: &str) -> (u64, u64) {
 
 #[test]
 fn ten_minutes_of_random_commands_give_every_robot_the_pulses_of_its_own_program() {
-    // Recorded on the firmware of e49c5b5, which was built for each robot. The large robot
+    // Recorded on the last firmware that was built for each robot (commit e49c5b5). The large robot
     // is the paper's, four thirds as large: its servos do the same.
     let recorded = [
         ("large", (0xea09_0732_5c0c_bfa8, 184_384)),
@@ -157,12 +157,8 @@ fn ten_minutes_of_random_commands_give_every_robot_the_pulses_of_its_own_program
     ];
     let of_file = |path: std::io::Result<std::fs::DirEntry>| {
         let path = path.expect("a file").path();
-        let name = path
-            .file_stem()
-            .expect("a name")
-            .to_string_lossy()
-            .into_owned();
-        name
+        let name = path.file_stem().expect("a name");
+        name.to_string_lossy().into_owned()
     };
     let folder = std::fs::read_dir(root().join("robots")).expect("robots/");
     let mut files: Vec<String> = folder.map(of_file).collect();

@@ -37,7 +37,7 @@ pub fn robot_of(text: &str) -> Link<Double> {
 impl Double {
     fn of(robot: &Robot) -> Self {
         Self {
-            running: Running::power_on(robot.firmware().clone()),
+            running: Running::power_on(*robot.firmware()),
             out: VecDeque::new(),
             sent: String::new(),
         }

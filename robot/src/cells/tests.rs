@@ -97,7 +97,7 @@ impl Subject {
     fn of(name: &str, robot: &Robot) -> Self {
         Self {
             name: name.to_string(),
-            robot: robot.firmware().clone(),
+            robot: *robot.firmware(),
             maps: robot.cell_maps(),
         }
     }

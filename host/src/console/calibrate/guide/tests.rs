@@ -151,7 +151,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
         (slow.as_str(), 0.1),
     ] {
         let robot = lizard_robot::Robot::parse(text).expect("it is right");
-        let mut running = Running::power_on(robot.firmware().clone());
+        let mut running = Running::power_on(*robot.firmware());
         running.run(200);
         let before = running.status("pose");
         let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
