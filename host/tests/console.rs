@@ -14,12 +14,7 @@ use lizard_time_limit::LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-const ELF: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../target/avr-atmega328p/release/lizard.elf"
-);
-
-/// The robot that the image is built for, as the other tests find it: the file that
+/// The robot of the simulated board, as the other tests find it: the file that
 /// `LIZARD_ROBOT` names, seen from the root of the project, or robot.toml.
 fn robot() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -30,8 +25,7 @@ fn robot() -> PathBuf {
 fn lizard(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(arguments);
-    // A simulated board needs the voltages that the image's robot measures.
-    if arguments.contains(&"--elf") {
+    if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
         command.arg("--robot").arg(robot());
     }
     command
@@ -64,7 +58,7 @@ impl Uno {
     fn at(folder: &Path) -> Self {
         let link = folder.join("uno");
         let name = link.display().to_string();
-        let child = lizard(folder, &["sim", "--elf", ELF, "--pty", &name])
+        let child = lizard(folder, &["sim", "--pty", &name])
             .stdout(Stdio::null())
             .spawn()
             .expect("the program starts");
@@ -188,7 +182,7 @@ impl AtTerminal {
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
     let folder = tempfile::tempdir().expect("a folder");
-    let arguments = ["console", "--sim", "--elf", ELF];
+    let arguments = ["console", "--sim"];
     let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
     assert_eq!(code, Some(1), "a line was refused: {error}");
     assert!(
@@ -281,7 +275,7 @@ fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
 #[test]
 fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
-    let arguments = ["calibrate", "--sim", "--elf", ELF];
+    let arguments = ["calibrate", "--sim"];
     let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
     person.wait_for("before you begin");
     person.press("\r");
@@ -301,7 +295,7 @@ fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
 fn a_kept_session_is_drawn_and_summed_up() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let mut child = lizard(here, &["record", "a.jsonl", "--sim", "--elf", ELF])
+    let mut child = lizard(here, &["record", "a.jsonl", "--sim"])
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -336,7 +330,7 @@ fn a_kept_session_is_drawn_and_summed_up() {
         "a curve for each servo"
     );
 
-    let (_, error, code) = run(here, &["record", "a.jsonl", "--sim", "--elf", ELF], "");
+    let (_, error, code) = run(here, &["record", "a.jsonl", "--sim"], "");
     assert_eq!(code, Some(2));
     assert!(error.contains("a.jsonl is there already"), "{error}");
 }
@@ -431,7 +425,7 @@ fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_bo
     let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other).expect("a link");
     let name = other.display().to_string();
-    let (_, error, code) = run(folder.path(), &["sim", "--elf", ELF, "--pty", &name], "");
+    let (_, error, code) = run(folder.path(), &["sim", "--pty", &name], "");
     assert_eq!(
         error.trim(),
         format!("lizard: {name} is there already and no link to a pseudo terminal")
@@ -445,7 +439,7 @@ fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_bo
     // What a run that was killed leaves behind.
     std::os::unix::fs::symlink("/dev/pts/999999", &own).expect("a link");
     let name = own.display().to_string();
-    let mut child = lizard(folder.path(), &["sim", "--elf", ELF, "--pty", &name])
+    let mut child = lizard(folder.path(), &["sim", "--pty", &name])
         .stdout(Stdio::null())
         .spawn()
         .expect("the program starts");
@@ -540,7 +534,7 @@ fn a_program_whose_terminal_goes_away_ends() {
 #[test]
 fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
     let folder = tempfile::tempdir().expect("a folder");
-    let arguments = ["console", "--sim", "--elf", ELF];
+    let arguments = ["console", "--sim"];
     let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
     person.wait_for("no fault");
     // The first gait that moves, whatever robot it is.

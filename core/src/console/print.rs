@@ -65,10 +65,10 @@ where
             digits::ascii(out, line.text().iter().copied())?;
         }
         Answer::Status => {
-            status(out, control.motion(), counters)?;
+            status(out, control.motion())?;
             return Ok(Some(Answer::Health));
         }
-        Answer::Health => health(out, control)?,
+        Answer::Health => health(out, control, counters)?,
         Answer::Settings(line) => {
             if settings(out, line, control)? {
                 return Ok(Some(Answer::Settings(line + 1)));
@@ -109,7 +109,7 @@ where
 }
 
 #[inline(never)]
-fn status<W>(out: &mut W, motion: &Motion, counters: Counters) -> Result<(), W::Error>
+fn status<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
 {
@@ -132,7 +132,17 @@ where
     digits::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
     pose(out, motion)?;
     Text::StatusMargin.print(out)?;
-    digits::sine(out, Clearance::of(robot, motion.pose()).smallest())?;
+    digits::sine(out, Clearance::of(robot, motion.pose()).smallest())
+}
+
+/// ` fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
+/// measured.
+#[inline(never)]
+fn health<W>(out: &mut W, control: &Control, counters: Counters) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    let motion = control.motion();
     digits::count(out, Text::StatusSpeed, motion.speed().into())?;
     digits::count(out, Text::StatusFrames, motion.frames())?;
     digits::count(out, Text::StatusLate, counters.late.into())?;
@@ -142,16 +152,7 @@ where
         None => Text::GuardClear,
         Some(_) => Text::GuardHeld,
     }
-    .print(out)
-}
-
-/// ` fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
-/// measured.
-#[inline(never)]
-fn health<W>(out: &mut W, control: &Control) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+    .print(out)?;
     Text::StatusFault.print(out)?;
     control
         .fault()
