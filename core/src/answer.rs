@@ -21,7 +21,8 @@ pub enum Answer {
     Helped,
     /// `ok` and the state of the motion; the next answer continues the line.
     Status,
-    /// Faults, restarts and supplies: apart, so that a frame need not wait for both.
+    /// Counters, faults, restarts and supplies: apart, so that a frame need not wait for
+    /// both.
     Health,
     /// A line of what is set, by its number; after the last one `ok cal`.
     Settings(u8),

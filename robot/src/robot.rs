@@ -171,20 +171,27 @@ impl Robot {
     /// certified cells, which take a moment to prove. At most [`SPACE`] bytes: where there
     /// is no room for the maps, the firmware measures every pose.
     pub fn section(&self) -> Vec<u8> {
-        let mut content = self.content.clone();
+        self.with_maps().unwrap_or_else(|| self.content.section())
+    }
+
+    /// Whether its section has room for the maps of certified cells.
+    pub fn has_room_for_maps(&self) -> bool {
+        self.with_maps().is_some()
+    }
+
+    /// Its section with the maps, if that is not too long.
+    fn with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {
             head,
             tail,
             left,
             right,
         } = self.cell_maps();
-        content.maps = [head, tail, left, right];
-        let section = content.section();
-        if section.len() <= usize::from(SPACE) {
-            return section;
-        }
-        content.maps = Default::default();
-        content.section()
+        let content = Content {
+            maps: [head, tail, left, right],
+            ..self.content.clone()
+        };
+        Some(content.section()).filter(|section| section.len() <= usize::from(SPACE))
     }
 
     /// Its numbers as its section has them.

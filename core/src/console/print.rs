@@ -132,23 +132,22 @@ where
     digits::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
     pose(out, motion)?;
     Text::StatusMargin.print(out)?;
-    digits::sine(out, Clearance::of(robot, motion.pose()).smallest())
+    digits::sine(out, Clearance::of(robot, motion.pose()).smallest())?;
+    digits::count(out, Text::StatusSpeed, motion.speed().into())?;
+    digits::count(out, Text::StatusFrames, motion.frames())
 }
 
-/// ` fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
+/// ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
 /// measured.
 #[inline(never)]
 fn health<W>(out: &mut W, control: &Control, counters: Counters) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
 {
-    let motion = control.motion();
-    digits::count(out, Text::StatusSpeed, motion.speed().into())?;
-    digits::count(out, Text::StatusFrames, motion.frames())?;
     digits::count(out, Text::StatusLate, counters.late.into())?;
     digits::count(out, Text::StatusRxLost, counters.rx_lost.into())?;
     Text::StatusGuard.print(out)?;
-    match motion.hazard() {
+    match control.motion().hazard() {
         None => Text::GuardClear,
         Some(_) => Text::GuardHeld,
     }

@@ -25,6 +25,8 @@ pub struct Figures {
     pub code: u32,
     /// Bytes of the robot's section.
     pub section: u32,
+    /// Whether the section has maps of certified cells; else the guard measures every pose.
+    pub has_maps: bool,
     /// Bytes of RAM that are static.
     pub static_ram: u16,
     /// Fewest bytes ever between the stack and static data.
@@ -168,6 +170,7 @@ impl Figures {
         Ok(Self {
             code: long.board.uno.image().flash_used() - section,
             section,
+            has_maps: robot.has_room_for_maps(),
             static_ram: long.board.uno.image().static_ram(),
             stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
             stack_margin: stack.margin(),
