@@ -2,27 +2,38 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 6] = ["core", "kinematics", "linker", "parts", "robot", "twin"];
+const CRATES: [&str; 7] = [
+    "contact",
+    "core",
+    "kinematics",
+    "linker",
+    "parts",
+    "robot",
+    "twin",
+];
 
-/// What each module of a crate uses of the others.
+/// What each module of a folder uses of the others.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
 fn no_modules_use_each_other_in_a_circle() {
     let mut count = 0;
     for name in CRATES {
-        let uses = uses(&root().join(name).join("src"));
-        count += uses.values().map(BTreeSet::len).sum::<usize>();
-        let circles = in_circles(uses);
-        assert!(
-            circles.is_empty(),
-            "{name}: these modules use each other in a circle: {circles:?}"
-        );
+        for folder in folders(&root().join(name).join("src")) {
+            let uses = folder.uses();
+            count += uses.values().map(BTreeSet::len).sum::<usize>();
+            let circles = in_circles(uses);
+            assert!(
+                circles.is_empty(),
+                "{name}, {}: these modules use each other in a circle: {circles:?}",
+                folder.path
+            );
+        }
     }
     assert!(count > 200, "only {count} uses of another module were read");
 }
@@ -63,38 +74,82 @@ fn in_circles(mut uses: Uses) -> Vec<String> {
     }
 }
 
-/// Reads a crate. A module and those within it count as one; tests do not count.
-fn uses(source: &Path) -> Uses {
-    let lib = read(&source.join("lib.rs"));
-    let modules: BTreeSet<&str> = lib.lines().filter_map(module).collect();
-    // `crate::Name` uses the module that the crate's root has the name from.
-    let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
-    for export in lib.split(';').filter_map(|item| item.split_once("use ")) {
-        if let Some((home, names)) = export.1.split_once("::")
-            && let Some(home) = modules.get(home)
-        {
-            homes.extend(words(names).map(|name| (name, *home)));
-        }
-    }
-    let mut uses = Uses::new();
-    for module in &modules {
-        let mut text = read(&source.join(module).with_extension("rs"));
-        for path in files(&source.join(module)) {
-            text += &read(&path);
-        }
-        let used = named(&text).into_iter();
-        let others = used
-            .filter_map(|name| homes.get(name))
-            .filter(|other| *other != module);
-        uses.insert(
-            module.to_string(),
-            others.map(ToString::to_string).collect(),
-        );
-    }
-    uses
+/// A folder of modules: a crate, or a module that has others in it.
+struct Folder {
+    /// How a name in it is written: `crate::`, or `crate::measures::`.
+    path: String,
+    /// The file that declares its modules, without comments and tests.
+    face: String,
+    /// Where the modules are.
+    place: PathBuf,
 }
 
-/// The name that a line of lib.rs declares a module by.
+/// The folders of a crate, the crate itself first.
+fn folders(source: &Path) -> Vec<Folder> {
+    let mut all = vec![Folder {
+        path: "crate::".to_owned(),
+        face: read(&source.join("lib.rs")),
+        place: source.to_owned(),
+    }];
+    let mut next = 0;
+    while let Some(folder) = all.get(next) {
+        let within = folder.modules().into_iter().filter_map(|module| {
+            let place = folder.place.join(module);
+            let face = read(&place.join("mod.rs")) + &read(&place.with_extension("rs"));
+            let path = format!("{}{module}::", folder.path);
+            place.is_dir().then_some(Folder { path, face, place })
+        });
+        let within: Vec<_> = within.collect();
+        all.extend(within);
+        next += 1;
+    }
+    all
+}
+
+impl Folder {
+    fn modules(&self) -> BTreeSet<&str> {
+        self.face.lines().filter_map(module).collect()
+    }
+
+    /// What its modules use of each other. A module and those within it count as one;
+    /// tests do not count.
+    fn uses(&self) -> Uses {
+        let modules = self.modules();
+        // `crate::Name` uses the module that the folder's face has the name from.
+        let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
+        for export in self
+            .face
+            .split(';')
+            .filter_map(|item| item.split_once("use "))
+        {
+            if let Some((home, names)) = export.1.split_once("::")
+                && let Some(home) = modules.get(home)
+            {
+                homes.extend(words(names).map(|name| (name, *home)));
+            }
+        }
+        let mut uses = Uses::new();
+        for module in &modules {
+            let place = self.place.join(module);
+            let own = read(&place.with_extension("rs")) + &read(&place.join("mod.rs"));
+            let mut text = own.replace("super::", &self.path);
+            for path in files(&place) {
+                text += &read(&path);
+            }
+            let used = named(&text, &self.path).into_iter();
+            let others = used
+                .filter_map(|name| homes.get(name))
+                .filter(|other| *other != module);
+            uses.insert(
+                module.to_string(),
+                others.map(ToString::to_string).collect(),
+            );
+        }
+        uses
+    }
+}
+
+/// The name that a line of a folder's face declares a module by.
 fn module(line: &str) -> Option<&str> {
     let line = line
         .trim_start_matches("pub(crate) ")
@@ -102,9 +157,9 @@ fn module(line: &str) -> Option<&str> {
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
-/// What follows each `crate::` in a text: a name, or those in braces.
-fn named(text: &str) -> BTreeSet<&str> {
-    let after = text.split("crate::").skip(1);
+/// What follows each `crate::`, or another path, in a text: a name, or those in braces.
+fn named<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
+    let after = text.split(path).skip(1);
     after
         .flat_map(|rest| match rest.strip_prefix('{') {
             Some(list) => words(list.split('}').next().unwrap_or_default()).collect(),
@@ -136,7 +191,7 @@ fn read(path: &Path) -> String {
 }
 
 /// The Rust files of a module's folder and of the folders in it, but for its tests.
-fn files(folder: &Path) -> Vec<std::path::PathBuf> {
+fn files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };

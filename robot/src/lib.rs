@@ -7,89 +7,44 @@
 //! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).
 //!
+//! The way through the folders: the text and its mistakes (`file/`), what each measurement
+//! may be (`measures/`), what a gait is (`gaits/`), what becomes of both on the chip
+//! (`tables/`), and whether every sample of it may be walked (`checks/`): that is a `Robot`, and its
+//! gaits have tables for people to read (`reports/`). Where a gait leads
+//! on the floor is computed by `lizard-contact`, whose types are also exported here.
+//!
 //! Inside, a file without its gaits becomes `Measures`. These and the gaits' `Tables`
 //! become the integers, [`lizard_core::section::Content`]. A [`Robot`] holds all of them,
 //! and a [`CoreRobot`] is what the core reads of them. docs/firmware.md lists the types
 //! of other crates that also are a robot.
 
-mod accuracy;
-mod audit;
-mod cells;
-mod checked_gait;
-mod coil;
-mod core_robot;
-mod define;
-mod drive;
-mod error;
-mod feet;
+mod checks;
 mod file;
-mod friction;
-mod gait;
-mod ground;
-mod harmonic;
-mod hips;
-mod legs;
-mod linear;
-mod measure;
-mod numbers;
-mod parts;
-mod path;
-mod path_leg;
-mod place;
-mod plate;
-mod prediction;
-mod reader;
-mod report;
+mod gaits;
+mod measures;
+mod reports;
 mod robot;
-mod scale;
-mod sensitivity;
-pub mod servo;
-mod spring;
-mod sprung;
-mod stance;
-mod strut;
-mod supply;
-mod syntax;
-mod table;
-mod tabled_gait;
+mod tables;
 #[cfg(test)]
 mod testing;
-mod travel;
 mod units;
-mod walker;
-mod waveform;
-mod yields;
 
-pub use accuracy::TableError;
-pub use audit::{Audit, Least, Peak};
-pub use cells::CellMaps;
-pub use checked_gait::{CheckedGait, Walked};
-pub use coil::Coil;
-pub use core_robot::{CoreRobot, flash};
-pub use drive::{Drive, Kind};
-pub use error::{Error, Hint, Problem};
-pub use feet::{Body, Feet, GRAVITY};
-pub use file::LONGEST;
-pub use gait::Stride;
-pub use ground::{DEFAULT_FRICTION, Ground};
-pub use harmonic::Harmonic;
-pub use legs::{LegPlace, LegPlan};
-pub use parts::{Horn, Parts, Screw, ServoBody};
-pub use path::Path;
-pub use path_leg::PathLeg;
-pub use place::Place;
-pub use plate::Plate;
-pub use report::{Report, Row, UNDECIDED};
+pub use checks::{Audit, CheckedGait, Least, Peak, Walked};
+pub use file::{Error, Hint, LONGEST, Problem, mistake};
+pub use gaits::{Harmonic, Path, PathLeg, Stride, Waveform};
+pub use lizard_contact::{
+    Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Kind, Place, Prediction, SLOT, Slip,
+    Spring, Stance, Strut, Travel, Walker,
+};
+pub use measures::servo;
+pub use measures::{
+    Coil, Horn, LegPlace, LegPlan, Pace, Parts, Plate, Rail, Screw, Servo, ServoBody, Supplies,
+    healthy_rail_mv,
+};
+pub use reports::{
+    LEAVES, LONG, MOUNTS, PLAYS, RATIOS, Report, Row, Sensitive, Sensitivity, Sprung, TWISTS,
+    UNDECIDED,
+};
 pub use robot::Robot;
-pub use sensitivity::{LEAVES, LONG, MOUNTS, PLAYS, RATIOS, Sensitive, Sensitivity, TWISTS};
-pub use servo::{Pace, Servo};
-pub use spring::Spring;
-pub use sprung::Sprung;
-pub use stance::Stance;
-pub use strut::{SLOT, Strut};
-pub use supply::{Rail, Supplies, healthy_rail_mv};
-pub use syntax::mistake;
-pub use travel::{Prediction, Travel};
+pub use tables::{CellMaps, CoreRobot, TableError, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
-pub use walker::{Slip, Walker};
-pub use waveform::Waveform;

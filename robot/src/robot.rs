@@ -3,34 +3,18 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
 use lizard_core::gait::{Gait, MOST_WAVES};
 use lizard_core::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
-use crate::audit;
-use crate::cells::CellMaps;
-use crate::checked_gait::CheckedGait;
-use crate::coil::Coil;
-use crate::core_robot::{CoreRobot, flash};
-use crate::define;
-use crate::drive::Drive;
-use crate::error::{Checked, Error, Fault, Problem};
-use crate::file;
-use crate::ground::Ground;
-use crate::legs::LegPlan;
-use crate::measure::Measures;
-use crate::numbers;
-use crate::parts::Parts;
-use crate::plate::Plate;
-use crate::reader::{self, Section};
-use crate::servo::{self, FORWARD, Pace, Servo};
-use crate::strut::Strut;
-use crate::supply::Supplies;
-use crate::syntax;
-use crate::table::{Tables, Unfit};
-use crate::tabled_gait::TabledGait;
-use crate::travel::{Prediction, Travel};
+use crate::checks::{CheckedGait, audit};
+use crate::file::{self, Checked, Error, Fault, Problem, Section};
+use crate::gaits::define;
+use crate::measures::servo::{self, FORWARD};
+use crate::measures::{self, Coil, LegPlan, Measures, Pace, Parts, Plate, Servo, Supplies};
+use crate::tables::{CellMaps, CoreRobot, TabledGait, Tables, Unfit, flash, numbers};
 
 /// A robot whose every value and gait has been checked.
 #[derive(Debug, Clone)]
@@ -99,7 +83,7 @@ impl Robot {
                 .span()
                 .map(|span| text[..span.start].matches('\n').count() + 1),
             key: String::new(),
-            problem: Problem::Syntax(syntax::mistake(
+            problem: Problem::Syntax(file::mistake(
                 text,
                 fault.span().map_or(text.len(), |span| span.start),
                 fault.message(),
@@ -108,7 +92,7 @@ impl Robot {
         let table = document.get_ref();
         read(table).map_err(|Fault { key, problem }| Error {
             file,
-            line: reader::line(text, table, &key),
+            line: file::line(text, table, &key),
             key,
             problem,
         })
@@ -246,12 +230,12 @@ impl Robot {
 
     /// The same with a spring from the shop mounted in it.
     pub fn strut_of(&self, coil: &Coil) -> Strut {
-        Strut::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
+        measures::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
     }
 
     /// The length of a spring inside its hooks as it hangs in a strut, mm.
     pub fn hung(&self) -> f64 {
-        Strut::hung(self.legs(), self.parts())
+        measures::hung(self.legs(), self.parts())
     }
 
     /// Its legs seen from above, servo order.

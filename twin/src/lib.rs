@@ -3,7 +3,7 @@
 //!
 //! A frame's four pulses go to the servos ([`ServoModel`]: how fast they turn, and the
 //! error that they leave), the servos turn the linkage, springs pull the legs along, and
-//! the contact model of `lizard_robot` computes how the body moves over the floor.
+//! the contact model (`lizard_contact`) computes how the body moves over the floor.
 //! [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads,
 //! stores and prints nothing, so a program, a test and a web page can use it.
 //!

@@ -1,7 +1,7 @@
 //! Where every joint is: what a picture of the robot needs.
 
+use lizard_contact::FORWARD;
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_robot::servo::FORWARD;
 use lizard_robot::{LegPlace, Robot};
 
 /// The joints of a robot, mm, chassis frame.

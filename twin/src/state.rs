@@ -1,7 +1,7 @@
 //! Everything that is known of the robot after a frame.
 
+use lizard_contact::Place;
 use lizard_kinematics::{Check, Margins};
-use lizard_robot::Place;
 
 /// The robot after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! The totals of a sequence of frames.
 
+use lizard_contact::{Place, Travel};
 use lizard_kinematics::Check;
-use lizard_robot::{Place, Travel};
 
 use crate::FRAME;
 use crate::state::State;

@@ -1,8 +1,8 @@
 //! Pulses in, the robot out, frame by frame.
 
+use lizard_contact::{FORWARD, Ground, Place, Walker};
 use lizard_kinematics::wrap;
-use lizard_robot::servo::FORWARD;
-use lizard_robot::{CheckedGait, Ground, Place, Robot, Walker};
+use lizard_robot::{CheckedGait, Robot};
 
 use crate::FRAME;
 use crate::servo::ServoModel;

@@ -1,0 +1,142 @@
+//! Where the feet are, and what stands on them.
+
+use crate::friction::Point;
+
+/// Which legs are in front, servo order: 1 in front, -1 behind.
+pub const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
+/// Which legs are on the left, servo order: 1 on the left, -1 on the right.
+pub const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
+/// Which way each leg turns, counter-clockwise positive, when its foot goes forward: a
+/// leg on the left clockwise.
+pub const FORWARD: [f64; 4] = [-LEFT[0], -LEFT[1], -LEFT[2], -LEFT[3]];
+
+/// Standard gravity, m/s^2.
+pub const GRAVITY: f64 = 9.80665;
+
+/// Where the feet are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Feet {
+    /// Hips ahead of and behind the chassis centre, mm.
+    pub hip_forward: f64,
+    /// Hips of the front and of the hind legs to either side, mm.
+    pub hip_side: [f64; 2],
+    /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
+    /// back.
+    pub mount: f64,
+    /// Length of a leg's crank: from the hip to the foot, mm.
+    pub reach: f64,
+}
+
+impl Feet {
+    /// The hips in servo order: (forward, left) from the chassis centre, mm.
+    #[must_use]
+    pub fn hips(&self) -> [Point; 4] {
+        std::array::from_fn(|i| {
+            let [front, hind] = self.hip_side;
+            let side = if FRONT[i] > 0.0 { front } else { hind };
+            [FRONT[i] * self.hip_forward, LEFT[i] * side]
+        })
+    }
+
+    /// Where the feet are for sweeps in deg, servo order: (forward, left) from
+    /// the chassis centre, mm.
+    #[must_use]
+    pub fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
+        let hips = self.hips();
+        std::array::from_fn(|i| {
+            let (sin, cos) = self.swept(i, sweeps[i]);
+            [
+                hips[i][0] + self.reach * sin,
+                hips[i][1] + LEFT[i] * self.reach * cos,
+            ]
+        })
+    }
+
+    /// How far the feet go for each radian of sweep, mm.
+    pub(crate) fn along(&self, sweeps: [f64; 4]) -> [Point; 4] {
+        std::array::from_fn(|i| {
+            let (sin, cos) = self.swept(i, sweeps[i]);
+            [self.reach * cos, -LEFT[i] * self.reach * sin]
+        })
+    }
+
+    fn swept(&self, leg: usize, sweep: f64) -> (f64, f64) {
+        (sweep + FRONT[leg] * self.mount).to_radians().sin_cos()
+    }
+}
+
+/// What stands on the feet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// All of the robot, g.
+    pub mass: f64,
+    /// Its mass centre: forward, left from the chassis centre, mm.
+    pub centre: Point,
+}
+
+impl Body {
+    /// What robot.toml means where it says nothing: what the parts of the paper's robot
+    /// weigh.
+    pub const DEFAULT: Self = Self {
+        mass: 396.4,
+        centre: [0.0; 2],
+    };
+
+    /// What a foot carries on average, N.
+    #[must_use]
+    pub fn mean_load(&self) -> f64 {
+        self.mass / 1000.0 * GRAVITY / 4.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn feet_stand_where_the_parallelograms_put_them() {
+        let feet = Feet {
+            hip_forward: 55.0,
+            hip_side: [35.0; 2],
+            mount: 0.0,
+            reach: 45.0,
+        };
+        assert_eq!(
+            feet.at([0.0; 4]),
+            [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
+        );
+        let ahead = feet.at([90.0; 4]);
+        let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
+        for (foot, wanted) in ahead.into_iter().zip(expected) {
+            assert!(
+                (foot[0] - wanted[0]).hypot(foot[1] - wanted[1]) < 1e-12,
+                "{foot:?}"
+            );
+        }
+        let splayed = Feet {
+            mount: 90.0,
+            ..feet
+        }
+        .at([0.0; 4]);
+        assert!((splayed[0][0] - 100.0).abs() < 1e-12 && (splayed[2][0] + 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_foot_goes_along_its_circle() {
+        let feet = Feet {
+            hip_forward: 55.0,
+            hip_side: [35.0; 2],
+            mount: 12.0,
+            reach: 45.0,
+        };
+        let sweeps = [10.0, -5.0, 20.0, -15.0];
+        let step = 1e-5;
+        let (before, after) = (feet.at(sweeps), feet.at(sweeps.map(|s| s + step)));
+        for (i, along) in feet.along(sweeps).into_iter().enumerate() {
+            for part in 0..2 {
+                let slope = (after[i][part] - before[i][part]) / step.to_radians();
+                assert!((along[part] - slope).abs() < 1e-3, "{along:?}");
+            }
+        }
+    }
+}

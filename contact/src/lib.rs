@@ -1,0 +1,61 @@
+//! The contact model: where a body goes whose feet are never lifted.
+//!
+//! Four pads stand on the floor and every one of them drags. When the legs swing, not all
+//! pads can hold, and friction decides which of them slide. So the body goes where the
+//! least power is lost to friction, which is a small convex problem: the formula is in
+//! `ground.rs`, its solution in `friction.rs`. How the feet share the weight
+//! (`stance.rs`) and how far a leg lags behind its servo on a spring or a slotted strut
+//! (`drive.rs`) are part of the same problem.
+//!
+//! [`Ground`] is one robot on one floor. [`Ground::predict`] says where a series of sweeps
+//! leads, as far as that can be known; a [`Walker`] follows one step by step.
+//! `lizard-robot` predicts the way of each gait of a robot.toml with it, and `lizard-twin`
+//! walks behind the pulses of a board. The crate reads no file and knows no gait.
+//!
+//! ```
+//! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
+//!
+//! let ground = Ground {
+//!     feet: Feet { hip_forward: 55.0, hip_side: [35.0; 2], mount: 0.0, reach: 45.0 },
+//!     body: Body::DEFAULT,
+//!     stance: Stance::LEVEL,
+//!     friction: DEFAULT_FRICTION,
+//!     ratio: 1.0,
+//!     drive: Drive::RIGID,
+//! };
+//! // All four feet swing back from 20 degrees ahead to 20 degrees behind: they hold, and
+//! // the body goes ahead by their chord.
+//! let way = ground.predict([[20.0; 4], [-20.0; 4]]);
+//! let chord = 2.0 * 45.0 * 20f64.to_radians().sin();
+//! assert!(way.forward.is_some_and(|forward| (forward - chord).abs() < 1e-3));
+//! ```
+//!
+//! # Units
+//! mm, N, deg of a leg's sweep (foot forward positive), N mm of torque. Points are
+//! (forward, left), from the chassis centre or on the floor. Every array is in servo
+//! order: the legs LF, RF, RH, LH.
+
+mod drive;
+mod feet;
+mod friction;
+mod ground;
+mod linear;
+mod place;
+mod prediction;
+mod spring;
+mod stance;
+mod strut;
+mod travel;
+mod walker;
+mod yields;
+
+pub use drive::{Drive, Kind};
+pub use feet::{Body, FORWARD, FRONT, Feet, GRAVITY, LEFT};
+pub use friction::Point;
+pub use ground::{DEFAULT_FRICTION, Ground};
+pub use place::Place;
+pub use spring::Spring;
+pub use stance::Stance;
+pub use strut::{SLOT, Strut};
+pub use travel::{Prediction, Travel};
+pub use walker::{Slip, Walker};

@@ -1,0 +1,217 @@
+//! How four feet share the weight, and the load that statics leaves open.
+//!
+//! The loads of a stiff body on three feet follow from statics. On four feet they do not:
+//! one diagonal may carry more and the other less, and all forces still balance. The
+//! lengths of the feet and their stiffness decide. If a foot is `twist` mm too long, it
+//! and the foot across from it carry more by a quarter of `twist` times the stiffness,
+//! and the other two carry less by as much. Three feet that hold while one returns are no
+//! longer a majority if two of them hardly touch the floor.
+//!
+//! So a foot is modelled as a spring that only pushes: a foot that would have to pull is
+//! in the air.
+
+use crate::feet::Body;
+use crate::friction::Point;
+use crate::linear::solve;
+
+/// How the feet stand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stance {
+    /// What lifts a foot by a mm, N: its leaf and its pad.
+    pub stiffness: f64,
+    /// By how much the front left foot is too long for the other three, mm; negative
+    /// where it is too short. Too long by as much at the hind right foot does the same,
+    /// at another foot the opposite.
+    pub twist: f64,
+    /// What levelling leaves of such a length on either side, mm. No prediction knows
+    /// it but those that try random robots.
+    pub level: f64,
+}
+
+/// A load (over the mean) that counts as none.
+const NONE: f64 = 1e-9;
+
+impl Stance {
+    /// What robot.toml means where it says nothing.
+    pub const DEFAULT: Self = Self {
+        stiffness: 0.5,
+        twist: 0.0,
+        level: 0.5,
+    };
+
+    /// Feet that are all of the right length.
+    pub const LEVEL: Self = Self {
+        twist: 0.0,
+        ..Self::DEFAULT
+    };
+
+    /// What the front left foot carries more on a robot whose feet stand in a rectangle,
+    /// N: as much as the one across, and as much as the other two lack.
+    #[must_use]
+    pub fn diagonal(&self) -> f64 {
+        self.stiffness * self.twist / 4.0
+    }
+
+    /// What each foot carries over the mean, if the feet (forward, left in mm, servo order)
+    /// stand there; 0 where one is in the air.
+    ///
+    /// Feet that give under a chassis that does not: the chassis sinks and tilts, so the
+    /// load is a foot's own length plus a part that is linear in its place, and three
+    /// equations of balance say how.
+    #[must_use]
+    pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
+        let own = [
+            self.stiffness * self.twist / body.mean_load(),
+            0.0,
+            0.0,
+            0.0,
+        ];
+        // All four stand, or all but one: of these five exactly one lets no foot pull,
+        // and none be in the floor.
+        let all_but = |lifted: Option<usize>| {
+            let stands = std::array::from_fn(|i| lifted != Some(i));
+            (stands, pressures(feet, own, body.centre, stands))
+        };
+        let some = [None, Some(0), Some(1), Some(2), Some(3)].map(all_but);
+        let holds = |(stands, pressures): &&([bool; 4], [f64; 4])| {
+            let mut each = stands.iter().zip(pressures);
+            each.all(|(stands, pressure)| match stands {
+                true => *pressure >= -NONE,
+                false => *pressure <= NONE,
+            })
+        };
+        // A robot that falls over stands on none of them; that is no walking.
+        let (stands, pressures) = some.iter().find(holds).unwrap_or(&some[0]);
+        std::array::from_fn(|i| {
+            if stands[i] {
+                pressures[i].max(0.0)
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+/// How hard each foot is pressed where only some of them stand, over the mean load:
+/// below 0 it is above the floor.
+fn pressures(feet: [Point; 4], own: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
+    let mut matrix = [[0.0; 3]; 3];
+    let mut whole = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
+    for i in (0..4).filter(|&i| stands[i]) {
+        let row = [1.0, feet[i][0], feet[i][1]];
+        for j in 0..3 {
+            whole[j] -= own[i] * row[j];
+            for k in 0..3 {
+                matrix[j][k] += row[j] * row[k];
+            }
+        }
+    }
+    let [sinks, nods, rolls] = solve(matrix, whole);
+    std::array::from_fn(|i| own[i] + sinks + nods * feet[i][0] + rolls * feet[i][1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
+    const SWUNG: [Point; 4] = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
+
+    fn body(centre: Point) -> Body {
+        Body {
+            centre,
+            ..Body::DEFAULT
+        }
+    }
+
+    fn twisted(twist: f64) -> Stance {
+        Stance {
+            stiffness: 2.0,
+            twist,
+            ..Stance::DEFAULT
+        }
+    }
+
+    /// The same by letting the body sink until its springs carry it: heave, nod and roll
+    /// follow their forces.
+    fn settled(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
+        let (mut sinks, mut nods, mut rolls) = (0.0, 0.0, 0.0);
+        let stiffness = stance.stiffness / body.mean_load();
+        let loads = |sinks: f64, nods: f64, rolls: f64| -> [f64; 4] {
+            std::array::from_fn(|i| {
+                let long = if i == 0 { stance.twist } else { 0.0 };
+                let pressed = long + sinks + nods * feet[i][0] + rolls * feet[i][1];
+                (stiffness * pressed).max(0.0)
+            })
+        };
+        for _ in 0..200_000 {
+            let now = loads(sinks, nods, rolls);
+            let sum = |arm: &dyn Fn(usize) -> f64| -> f64 { (0..4).map(|i| now[i] * arm(i)).sum() };
+            sinks += 0.05 * (4.0 - sum(&|_| 1.0));
+            nods += 1e-5 * (4.0 * body.centre[0] - sum(&|i| feet[i][0]));
+            rolls += 1e-5 * (4.0 * body.centre[1] - sum(&|i| feet[i][1]));
+        }
+        loads(sinks, nods, rolls)
+    }
+
+    #[test]
+    fn what_the_feet_carry_balances_the_body_and_is_where_it_settles() {
+        for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
+            for twist in [0.0, 0.3, -0.6, 1.0, 3.0] {
+                let loads = twisted(twist).loads(&body(centre), SWUNG);
+                let sum = |arm: fn(Point) -> f64| -> f64 {
+                    let each = loads.iter().zip(SWUNG);
+                    each.map(|(load, at)| load * arm(at)).sum()
+                };
+                assert!((sum(|_| 1.0) - 4.0).abs() < 1e-9);
+                assert!((sum(|at| at[0]) - 4.0 * centre[0]).abs() < 1e-6);
+                assert!((sum(|at| at[1]) - 4.0 * centre[1]).abs() < 1e-6);
+                let settled = settled(&twisted(twist), &body(centre), SWUNG);
+                for (load, other) in loads.into_iter().zip(settled) {
+                    assert!((load - other).abs() < 1e-3, "{twist} {loads:?} {settled:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn feet_in_a_rectangle_share_by_lever() {
+        // A quarter of the way ahead: the front feet carry half as much again.
+        let loads = Stance::LEVEL.loads(&body([27.5, 0.0]), AT);
+        for (load, wanted) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
+            assert!((load - wanted).abs() < 1e-9, "{loads:?}");
+        }
+        for load in Stance::LEVEL.loads(&Body::DEFAULT, AT) {
+            assert!((load - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_foot_that_is_too_long_presses_itself_and_the_one_across() {
+        // 2 N/mm and 0.6 mm: a quarter of 1.2 N.
+        let stance = twisted(0.6);
+        assert!((stance.diagonal() - 0.3).abs() < 1e-12);
+        let share = 0.3 / Body::DEFAULT.mean_load();
+        let loads = stance.loads(&Body::DEFAULT, AT);
+        for (load, sign) in loads.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
+            assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
+        }
+        // One that is much too long carries half the robot, and so does the one across.
+        let loads = twisted(10.0).loads(&Body::DEFAULT, AT);
+        for (load, wanted) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
+            assert!((load - wanted).abs() < 1e-6, "{loads:?}");
+        }
+    }
+
+    #[test]
+    fn a_foot_never_pulls() {
+        // Beyond the line through two feet the third leaves the floor.
+        let loads = Stance::LEVEL.loads(&body([30.0, 50.0]), AT);
+        assert_eq!(loads[2], 0.0);
+        assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
+        assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
+        // A robot that falls over has feet that carry, and no others.
+        let fallen = Stance::LEVEL.loads(&body([200.0, 0.0]), AT);
+        assert!(fallen.iter().all(|load| *load >= 0.0), "{fallen:?}");
+    }
+}

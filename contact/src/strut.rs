@@ -1,0 +1,92 @@
+//! A strut with a slot and a tension spring in it, from a servo's link to its leg.
+//!
+//! Shaft, leg's pivot and two equal, parallel arms make a parallelogram whose fourth side
+//! is the strut. The leg's screw runs in a slot of the strut, and a spring pulls the
+//! screw against the slot's end. So the strut can grow longer but not shorter: the leg
+//! can lag behind its servo in one direction only, which is forward at the front legs and
+//! back at the hind legs of the paper's robot. The torque of the spring on the leg is its
+//! pull times a lever. The lever is the arm's component square to the strut, and it
+//! changes with the pose.
+
+use lizard_kinematics::wrap;
+
+use crate::feet::FORWARD;
+use crate::yields::{Side, Stretch};
+
+/// How far the leg's screw can run in its slot, mm.
+pub const SLOT: f64 = 5.0;
+
+/// A slotted strut and its spring; all four are equal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strut {
+    /// What the spring pulls while the screw is at its end of the slot, N.
+    pub force: f64,
+    /// What it pulls more for each mm that the screw runs, N/mm.
+    pub rate: f64,
+    /// How far the screw runs until the slot ends, mm.
+    pub slot: f64,
+    /// From screw to screw while the leg does not lag, mm.
+    pub length: f64,
+    /// Length of both arms, mm.
+    pub radius: f64,
+    /// From the strut's direction to the servo's arm at neutral, deg, for each leg in
+    /// servo order.
+    pub angles: [f64; 4],
+}
+
+impl Strut {
+    /// How a leg can stretch it while its servo is at this sweep (deg, foot forward
+    /// positive).
+    fn stretch(&self, leg: usize, sweep: f64) -> Stretch {
+        let arm = self.angles[leg] + FORWARD[leg] * sweep;
+        let (sin, cos) = arm.to_radians().sin_cos();
+        // From the leg's pivot to the servo's end of the strut.
+        let far = [self.radius * cos - self.length, self.radius * sin];
+        let between = wrap(arm - far[1].atan2(far[0]).to_degrees());
+        Stretch {
+            far: far[0].hypot(far[1]),
+            near: self.radius,
+            // A lag turns the leg's arm against the way forward.
+            angle: -FORWARD[leg] * between.to_radians(),
+        }
+    }
+
+    /// The lever of its pull at the leg's pivot, mm, while the leg does not lag.
+    #[must_use]
+    pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
+        self.stretch(leg, sweep).lever(0.0).abs()
+    }
+
+    /// What the leg withstands before it lags at all, N mm.
+    #[must_use]
+    pub fn preload(&self, leg: usize, sweep: f64) -> f64 {
+        self.force * self.lever(leg, sweep)
+    }
+
+    /// How far the leg can lag until the slot ends (deg), and the torque there, N mm.
+    #[must_use]
+    pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
+        let stretch = self.stretch(leg, sweep);
+        let way = stretch.way(self.slot);
+        let force = self.force + self.rate * self.slot;
+        let torque = force * stretch.lever(way.copysign(stretch.angle)).abs();
+        (way.to_degrees(), torque)
+    }
+
+    /// Whether a leg yields when its foot is held on its way forward; else on its way
+    /// back.
+    #[must_use]
+    pub fn yields_forward(&self, leg: usize, sweep: f64) -> bool {
+        self.stretch(leg, sweep).lever(0.0) > 0.0
+    }
+
+    /// What a lag against the sweep's direction and along it costs, in `force` N.
+    pub(crate) fn sides(&self, leg: usize, sweep: f64, force: f64) -> [Side; 2] {
+        let stretch = self.stretch(leg, sweep);
+        let side = Side::strut(stretch, self.force / force, self.rate / force, self.slot);
+        match stretch.lever(0.0) > 0.0 {
+            true => [Side::Stop, side],
+            false => [side, Side::Stop],
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! A gait in floating point: the truth that tables, pulses and predictions are
+//! compared with.
+
+use crate::gaits::waveform::Waveform;
+use crate::measures::servo::{FORWARD, OPPOSITE};
+
+/// What one leg does over a cycle: `amplitude * waveform(phase - start)`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stride {
+    /// The shape.
+    pub waveform: Waveform,
+    /// Phase at which the waveform begins, 0 to 1.
+    pub start: f64,
+    /// Sweep at the waveform's 1, deg; negative where the leg runs against the
+    /// others.
+    pub amplitude: f64,
+}
+
+impl Stride {
+    /// A leg that holds its neutral angle.
+    pub const STILL: Self = Self {
+        waveform: Waveform::Still,
+        start: 0.0,
+        amplitude: 0.0,
+    };
+
+    /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
+    /// positive.
+    pub fn sweep(&self, phase: f64) -> f64 {
+        self.amplitude * self.waveform.at(phase - self.start)
+    }
+}
+
+/// A gait of robot.toml with its references resolved.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Gait {
+    /// Its name, also its console command with a blank for the dash.
+    pub name: String,
+    /// Time of one cycle at full speed, s.
+    pub period: f64,
+    /// True where the phase runs backwards, from 1 to 0.
+    pub reversed: bool,
+    /// The legs in servo order: LF, RF, RH, LH.
+    pub strides: [Stride; 4],
+    /// The neutral servo angles, deg, chassis frame.
+    pub neutral: [f64; 4],
+}
+
+impl Gait {
+    /// The phase at a time after a start at phase 0, s at full speed.
+    pub fn phase(&self, seconds: f64) -> f64 {
+        let cycles = seconds / self.period;
+        (if self.reversed { -cycles } else { cycles }).rem_euclid(1.0)
+    }
+
+    /// The legs' sweeps from neutral at a phase, deg, foot forward positive,
+    /// servo order.
+    pub fn sweeps(&self, phase: f64) -> [f64; 4] {
+        self.strides.each_ref().map(|stride| stride.sweep(phase))
+    }
+
+    /// The servo angles at a phase, deg, chassis frame, servo order.
+    pub fn angles(&self, phase: f64) -> [f64; 4] {
+        let sweeps = self.sweeps(phase);
+        std::array::from_fn(|i| self.neutral[i] + FORWARD[i] * sweeps[i])
+    }
+
+    /// The same gait with left and right exchanged.
+    pub fn mirrored(mut self) -> Self {
+        self.strides = OPPOSITE.map(|i| self.strides[i].clone());
+        self
+    }
+
+    /// Each leg's sweep times its gain.
+    pub fn scaled(mut self, gains: [f64; 4]) -> Self {
+        for (stride, gain) in self.strides.iter_mut().zip(gains) {
+            stride.amplitude *= gain;
+        }
+        self
+    }
+}

@@ -1,0 +1,71 @@
+//! How the two cranks of an end must turn to lead its point along a path: the
+//! inverse of the five-bar.
+
+use lizard_kinematics::{End, Lizard, wrap};
+
+use crate::file::Problem;
+use crate::gaits::path::Path;
+use crate::measures::servo::FORWARD;
+
+/// One of the two servos that move a point along its path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathLeg {
+    lizard: Lizard,
+    end: End,
+    path: Path,
+    /// Servo, 0 to 3.
+    servo: usize,
+    /// Its neutral angle, deg.
+    neutral: f64,
+}
+
+/// Points per cycle at which a path is checked to be within reach.
+const CHECKED: usize = 4096;
+
+impl PathLeg {
+    /// The two servos of an end, with their indices, once every point of the
+    /// path was found within reach. `neutral`: all four neutral angles, deg.
+    pub(crate) fn pair(
+        lizard: Lizard,
+        neutral: [f64; 4],
+        end: End,
+        path: &Path,
+    ) -> Result<[(usize, Self); 2], Problem> {
+        for i in 0..CHECKED {
+            let phase = i as f64 / CHECKED as f64;
+            let point = path.at(phase);
+            if lizard.point_angles(end, point).is_err() {
+                return Err(Problem::OutOfReach {
+                    which: end.name(),
+                    x: point.x,
+                    y: point.y,
+                    phase,
+                });
+            }
+        }
+        Ok(end.servos().map(|servo| {
+            let leg = Self {
+                lizard,
+                end,
+                path: path.clone(),
+                servo,
+                neutral: neutral[servo],
+            };
+            (servo, leg)
+        }))
+    }
+
+    /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
+    /// positive.
+    pub fn sweep(&self, phase: f64) -> f64 {
+        // Out of reach cannot happen: `pair` saw no such point, and the check
+        // of every sample keeps the path's type-1 margins, which are zero at
+        // the edge of reach, far from zero.
+        let angles = self
+            .lizard
+            .point_angles(self.end, self.path.at(phase))
+            .expect("a path within reach");
+        let angle = angles[self.servo % 2];
+        FORWARD[self.servo] * wrap(angle - self.neutral)
+    }
+}

@@ -1,0 +1,183 @@
+//! One leg's sweep over one cycle. Feet are never lifted: a pad drags, and the
+//! robot walks because three feet hold while one returns. So a waveform is a slow
+//! stance, in which the foot goes back, and a fast swing forward; where the swing
+//! is long enough, the two meet without a kink in speed.
+//!
+//! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
+
+use crate::gaits::path_leg::PathLeg;
+
+/// Shares of the cycle that a held gait gives to each of its five moves.
+const MOVE: f64 = 0.2;
+
+/// A waveform.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Waveform {
+    /// Never moves.
+    Still,
+    /// Linear stance over `duty` of the cycle, then a cubic Hermite swing that
+    /// meets the stance with equal speed at both ends; its peak is 1.
+    Wave {
+        /// The duty factor: the stance's share of the cycle, 0 to 1.
+        duty: f64,
+    },
+    /// A smoothstep back in the first fifth, the stance common to all legs, then a
+    /// smoothstep forward, the swing, in fifth number `turn + 1`; it holds otherwise.
+    Held {
+        /// 0 to 3: which of the four swings is this leg's.
+        turn: usize,
+    },
+    /// A leg whose servo follows a path of the head or tail point. Its value is
+    /// the sweep itself in degrees, so its amplitude is 1.
+    Path(Box<PathLeg>),
+}
+
+impl Waveform {
+    /// The value at any `phase`, taken modulo 1.
+    pub fn at(&self, phase: f64) -> f64 {
+        let u = phase.rem_euclid(1.0);
+        match self {
+            Self::Still => 0.0,
+            Self::Wave { duty } => wave(u, *duty),
+            Self::Held { turn } => held(u, *turn),
+            Self::Path(leg) => leg.sweep(u),
+        }
+    }
+}
+
+/// Stance 1 - 2u/beta, then with t = (u - beta)/(1 - beta) and the end slope
+/// m = -2 (1 - beta)/beta the Hermite cubic from -1 to 1, all divided by the
+/// cubic's peak: to keep its speed, the foot swings a little on before it turns
+/// (by 1.4 % at beta = 0.75), and the amplitude counts that.
+fn wave(u: f64, duty: f64) -> f64 {
+    let m = -2.0 * (1.0 - duty) / duty;
+    let shape = if u < duty {
+        1.0 - 2.0 * u / duty
+    } else {
+        hermite((u - duty) / (1.0 - duty), m)
+    };
+    // The cubic is odd about t = 1/2, so its first turning point is its peak.
+    let (a, b) = (6.0 * m - 12.0, 12.0 - 6.0 * m);
+    let turning = (-b + (b * b - 4.0 * a * m).sqrt()) / (2.0 * a);
+    shape / -hermite(turning, m)
+}
+
+/// From -1 at t = 0 to 1 at t = 1, with slope m at both.
+fn hermite(t: f64, m: f64) -> f64 {
+    2.0 * smoothstep(t) - 1.0 + m * t * (1.0 - t) * (1.0 - 2.0 * t)
+}
+
+fn held(u: f64, turn: usize) -> f64 {
+    let start = MOVE * (turn + 1) as f64;
+    1.0 - 2.0 * smoothstep(u / MOVE) + 2.0 * smoothstep((u - start) / MOVE)
+}
+
+/// t^2 (3 - 2t), 0 before and 1 after.
+fn smoothstep(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// How a waveform is found in another's table: `at(u) = sign * base.at(u - shift)`.
+///
+/// The held waveforms of the first and the last swing are each other's
+/// negative, shifted, and so are the two in between; two tables do for four.
+pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
+    match waveform {
+        Waveform::Held { turn } if *turn >= 2 => (
+            Waveform::Held { turn: 3 - turn },
+            MOVE * (turn + 1) as f64,
+            -1.0,
+        ),
+        other => (other.clone(), 0.0, 1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<Waveform> {
+        let mut all: Vec<_> = (0..4).map(|turn| Waveform::Held { turn }).collect();
+        all.extend([0.5, 0.75, 0.875].map(|duty| Waveform::Wave { duty }));
+        all
+    }
+
+    #[test]
+    fn every_waveform_reaches_1_and_minus_1_and_is_continuous_over_the_wrap() {
+        for w in all() {
+            let samples: Vec<f64> = (0..=10_000).map(|i| w.at(i as f64 / 1e4)).collect();
+            assert!(
+                samples
+                    .windows(2)
+                    .all(|pair| (pair[0] - pair[1]).abs() < 3e-3),
+                "{w:?} jumps"
+            );
+            let largest = samples.iter().fold(f64::MIN, |a, b| a.max(*b));
+            let least = samples.iter().fold(f64::MAX, |a, b| a.min(*b));
+            assert!(
+                (largest - 1.0).abs() < 1e-5 && (least + 1.0).abs() < 1e-5,
+                "{w:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_wave_has_equal_speed_on_both_sides_of_each_corner() {
+        let e = 1e-6;
+        for duty in [0.5, 0.75, 0.875] {
+            let w = Waveform::Wave { duty };
+            let stance = (w.at(duty) - w.at(0.0)) / duty;
+            for corner in [0.0, duty] {
+                let before = (w.at(corner) - w.at(corner - e)) / e;
+                let after = (w.at(corner + e) - w.at(corner)) / e;
+                assert!(
+                    (before - stance).abs() < 1e-3 && (after - stance).abs() < 1e-3,
+                    "duty {duty}, corner {corner}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_wave_begins_its_stance_just_short_of_its_peak() {
+        // For duty 3/4 a search finds the turn at t = .0435645, -1.0143010 there.
+        assert!((Waveform::Wave { duty: 0.75 }.at(0.0) - 1.0 / 1.014_301_03).abs() < 1e-7);
+    }
+
+    #[test]
+    fn a_held_leg_returns_in_its_own_fifth_alone() {
+        for turn in 0..4 {
+            let w = Waveform::Held { turn };
+            let start = 0.2 * (turn + 1) as f64;
+            for i in 0..=1000 {
+                let u = i as f64 / 1e3 * 0.999_999;
+                let expected = if u < 0.2 {
+                    continue;
+                } else if u <= start {
+                    -1.0
+                } else if u >= start + 0.2 {
+                    1.0
+                } else {
+                    continue;
+                };
+                assert!((w.at(u) - expected).abs() < 1e-12, "turn {turn}, phase {u}");
+            }
+            assert!(w.at(0.1).abs() < 1e-12 && w.at(start + 0.1).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_canonical_waveform_reproduces_the_original() {
+        for w in all() {
+            let (base, shift, sign) = canonical(&w);
+            for i in 0..1000 {
+                let u = i as f64 / 1e3;
+                assert!(
+                    (w.at(u) - sign * base.at(u - shift)).abs() < 1e-12,
+                    "{w:?} at {u}"
+                );
+            }
+        }
+    }
+}

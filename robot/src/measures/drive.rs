@@ -1,0 +1,63 @@
+//! What drives a leg from its servo's link: `[leg.drive]` in robot.toml.
+
+use lizard_contact::{Drive, Kind, Spring, Strut};
+
+use crate::file::{Checked, Hint, Problem, Section};
+use crate::measures::legs::LegPlan;
+use crate::measures::parts::Parts;
+use crate::measures::strut;
+
+const TABLE: &str = "drive";
+const KEYS: [&str; 6] = ["kind", "play", "force", "rate", "stiffness", "preload"];
+/// The kinds' words, and the keys that each of them has besides `kind` and `play`.
+const KINDS: [(&str, &[&str]); 3] = [
+    (Kind::WORDS[0], &[]),
+    (Kind::WORDS[1], &["force", "rate"]),
+    (Kind::WORDS[2], &["stiffness", "preload"]),
+];
+
+/// Reads `[leg.drive]` of the table `[leg]`; left out, the legs are rigid.
+pub(crate) fn read(
+    leg: &Section,
+    legs: &[LegPlan; 4],
+    neutral: [f64; 4],
+    parts: &Parts,
+) -> Checked<Drive> {
+    if !leg.has(TABLE) {
+        return Ok(Drive::RIGID);
+    }
+    let section = leg.section(TABLE, &KEYS)?;
+    let word = match section.has("kind") {
+        true => section.text("kind")?,
+        false => KINDS[0].0,
+    };
+    let Some((_, own)) = KINDS.into_iter().find(|(known, _)| *known == word) else {
+        let problem = Problem::Word {
+            word: word.to_string(),
+            hint: Hint::new(word, &KINDS.map(|(known, _)| known)),
+        };
+        return Err(problem.at(section.path("kind")));
+    };
+    let mut others = KINDS.into_iter().flat_map(|(_, keys)| keys);
+    if let Some(other) = others.find(|key| !own.contains(key) && section.has(key)) {
+        let problem = Problem::Conflict(format!("kind = \"{word}\""));
+        return Err(problem.at(section.path(other)));
+    }
+    let kind = match word {
+        "strut" => {
+            let coil = strut::of_coil(legs, neutral, parts, &parts.spring);
+            Kind::Strut(Strut {
+                force: section.number_or("force", coil.force, 0.01, 100.0, "N")?,
+                rate: section.number_or("rate", coil.rate, 0.0, 100.0, "N/mm")?,
+                ..coil
+            })
+        }
+        "spring" => Kind::Spring(Spring {
+            rate: section.number("stiffness", 0.01, 10_000.0, "N mm/deg")?,
+            preload: section.number_or("preload", 0.0, 0.0, 10_000.0, "N mm")?,
+        }),
+        _ => Kind::Rigid,
+    };
+    let play = section.number_or("play", 0.0, 0.0, 20.0, "deg")?;
+    Ok(Drive { kind, play })
+}

@@ -1,0 +1,55 @@
+//! What the contact model knows of a robot: `[ground]`, `[body]` and `[feet]` in
+//! robot.toml.
+
+use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
+
+use crate::file::{Checked, Problem, Section};
+use crate::measures::servo::LEGS;
+
+/// Reads `[ground]`, `[body]` and `[feet]` of a robot whose feet and legs are known.
+pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> {
+    const RATIO: &str = "friction_back_over_forward";
+    let section = root.section("ground", &[RATIO, "friction"])?;
+    Ok(Ground {
+        feet,
+        body: body(root, &feet)?,
+        stance: stance(root)?,
+        friction: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, "(a coefficient)")?,
+        ratio: section.number(RATIO, 0.1, 10.0, "(a ratio)")?,
+        drive,
+    })
+}
+
+/// What stands on the feet. A mass centre that leaves a foot in the air at neutral is
+/// refused.
+fn body(root: &Section, feet: &Feet) -> Checked<Body> {
+    if !root.has("body") {
+        return Ok(Body::DEFAULT);
+    }
+    let section = root.section("body", &["mass", "centre"])?;
+    let mass = section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?;
+    let centre = match section.has("centre") {
+        true => section.pair("centre", -500.0, 500.0, "mm")?,
+        false => Body::DEFAULT.centre,
+    };
+    let body = Body { mass, centre };
+    let loads = Stance::LEVEL.loads(&body, feet.at([0.0; 4]));
+    match loads.iter().position(|load| *load <= 0.0) {
+        Some(foot) => Err(Problem::InTheAir(LEGS[foot]).at(section.path("centre"))),
+        None => Ok(body),
+    }
+}
+
+/// Reads `[feet]`, all of which may be left out.
+fn stance(root: &Section) -> Checked<Stance> {
+    let all = Stance::DEFAULT;
+    if !root.has("feet") {
+        return Ok(all);
+    }
+    let section = root.section("feet", &["stiffness", "twist", "level"])?;
+    Ok(Stance {
+        stiffness: section.number_or("stiffness", all.stiffness, 0.01, 1000.0, "N/mm")?,
+        twist: section.number_or("twist", all.twist, -20.0, 20.0, "mm")?,
+        level: section.number_or("level", all.level, 0.0, 20.0, "mm")?,
+    })
+}

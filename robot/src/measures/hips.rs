@@ -1,0 +1,147 @@
+//! Where the hips are: the centres of the circles on which the feet move.
+//!
+//! A foot is fixed to its coupler, which moves without turning. So its circle is that of
+//! the crank's joint, shifted by the foot's place on the coupler: the hip has the same
+//! offset from the driven pivot as the foot from that joint. robot.toml gives at most two
+//! of pivot, foot and hip for each direction; the third follows.
+
+use lizard_contact::Feet;
+use lizard_kinematics::{End, Lizard, Vector};
+
+use crate::file::{Checked, Problem, Section};
+use crate::measures::legs::outward;
+use crate::measures::parts::Parts;
+
+/// The foot's place on the coupler where nothing says anything, mm, as
+/// [`Parts::foot`]: with the pivots of the paper's robot it makes hips of 55 and 35 mm.
+const FOOT: [f64; 2] = [-3.5, 2.5];
+/// What a hip may be: ahead and to the side, mm.
+const AHEAD: (f64, f64) = (1.0, 500.0);
+const SIDE: (f64, f64) = (0.0, 500.0);
+/// Lengths that differ by less are the same, mm.
+const SAME: f64 = 0.005;
+
+const AHEAD_KEY: &str = "hip_forward";
+const SIDE_KEY: &str = "hip_side";
+
+/// The hips as `[leg]` gives them, mm; what is left out follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hips {
+    ahead: Option<f64>,
+    side: Option<f64>,
+}
+
+impl Hips {
+    /// Reads them from `[leg]`.
+    pub fn read(leg: &Section) -> Checked<Self> {
+        let mm = |name, (min, max)| match leg.has(name) {
+            true => leg.number(name, min, max, "mm").map(Some),
+            false => Ok(None),
+        };
+        Ok(Self {
+            ahead: mm(AHEAD_KEY, AHEAD)?,
+            side: mm(SIDE_KEY, SIDE)?,
+        })
+    }
+
+    /// The feet of legs that are pivoted so.
+    pub fn feet(&self, lizard: &Lizard, parts: &Parts, mount: f64) -> Checked<Feet> {
+        // Left and right are equal; head and tail may have different widths.
+        let shafts = lizard.shafts();
+        let [head, tail] = End::ALL.map(|end| {
+            let [_, right] = end.servos();
+            let foot = parts.foot.unwrap_or(FOOT);
+            let hip = shafts[right] + outward(right, parts.pivot) + outward(right, foot);
+            end.mirror(hip)
+        });
+        let placed = |given: Option<f64>, follows: f64, key: &str, (min, max)| {
+            let problem = match given {
+                Some(value) if parts.foot.is_none() || (value - follows).abs() < SAME => {
+                    return Ok(value);
+                }
+                Some(value) => Problem::OtherHip { value, follows },
+                None if (min..=max).contains(&follows) => return Ok(follows),
+                None => Problem::FarHip {
+                    value: follows,
+                    min,
+                    max,
+                },
+            };
+            Err(problem.at(format!("leg.{key}")))
+        };
+        let side = |end: Vector| placed(self.side, end.x, SIDE_KEY, SIDE);
+        Ok(Feet {
+            hip_forward: placed(self.ahead, head.y, AHEAD_KEY, AHEAD)?,
+            hip_side: [side(head)?, side(tail)?],
+            mount,
+            reach: lizard.leg.crank,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Robot;
+    use crate::testing::with;
+
+    const LEG: &str = "[leg] ";
+
+    /// The paper's robot with other hips, and other parts.
+    fn robot(hips: &str, parts: &str) -> Result<Robot, String> {
+        let leg = format!("[parts]\n{parts}\n[leg]\n{hips}\n#");
+        with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
+    }
+
+    fn hips(hips: &str, parts: &str) -> (f64, [f64; 2]) {
+        let feet = robot(hips, parts).expect("a robot").ground().feet;
+        (feet.hip_forward, feet.hip_side)
+    }
+
+    #[test]
+    fn hips_follow_from_the_pivots_and_the_foot() {
+        // Exactly: nothing that the papers robot does may depend on a last digit.
+        assert_eq!(hips("", ""), (55.0, [35.0; 2]));
+        assert_eq!(hips("", "pivot = [30.0, 8.0]"), (57.0, [36.5; 2]));
+        assert_eq!(hips("", "foot = [1.5, -0.5]"), (58.0, [40.0; 2]));
+        let wide = with("paper", &[("l0 = 20.0", "l0 = 24.0")]).expect("a robot");
+        assert_eq!(wide.ground().feet.hip_side, [37.0, 35.0]);
+        assert_eq!(wide.ground().feet.hips()[3], [-55.0, 35.0]);
+    }
+
+    #[test]
+    fn the_foot_follows_from_hips_that_are_given() {
+        assert_eq!(hips("hip_side = 36.0", ""), (55.0, [36.0; 2]));
+        let foot = |robot: &Robot| {
+            let leg = robot.legs()[1];
+            leg.along * leg.foot.x + leg.along.left() * leg.foot.y
+        };
+        let built = robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("a robot");
+        let off = foot(&built) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
+        assert!(off.length() < 1e-9, "{off:?}");
+        let same = robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("a robot");
+        assert_eq!(foot(&same), foot(&robot("", "").expect("a robot")));
+    }
+
+    #[test]
+    fn hips_that_the_pivots_and_the_foot_put_elsewhere_are_refused() {
+        let (right, wrong) = ("foot = [-3.5, 2.5]", "foot = [-3.5, 3.5]");
+        let both = "hip_forward = 55.0\nhip_side = 35.0";
+        assert_eq!(hips(both, right), (55.0, [35.0; 2]));
+        let refused = |hips, parts| robot(hips, parts).expect_err("refused");
+        assert!(
+            refused(both, wrong).ends_with(
+                ": leg.hip_forward is 55 mm, but parts.pivot and parts.foot put it at 54.00 mm; leave one of them out"
+            ),
+            "{}",
+            refused(both, wrong)
+        );
+        let inside = refused("", "pivot = [-20.0, 10.0]");
+        assert!(
+            inside.ends_with(
+                ": leg.hip_side is left out and follows from links, parts.pivot and parts.foot, which put it at -13.50 mm; it must be within 0 to 500 mm"
+            ),
+            "{inside}"
+        );
+    }
+}

@@ -1,0 +1,208 @@
+//! The legs seen from above: where they are pivoted, what carries the foot, and the
+//! strut by which the servo pulls the leg along.
+//!
+//! The paper's figures do not say where the legs' pivots are. Only the circle of the foot
+//! matters for walking. A parallelogram carries its coupler without turning it, so the
+//! two pivots may be moved together to where there is room, and the foot is moved on the
+//! coupler by the same distance the other way. The driven pivot keeps away from the
+//! servo, whose link would sweep over it. The strut between them is the coupler of a
+//! second parallelogram: shaft, pivot and two equal anchor arms.
+//!
+//! A hip is the centre of a foot's circle. At neutral the foot is straight beside it,
+//! swept by `mount`.
+
+use lizard_contact::{FRONT, Feet, LEFT, Point};
+use lizard_kinematics::{Lizard, Vector};
+
+use crate::measures::parts::Parts;
+use crate::measures::servo::HAND;
+
+/// What no pose moves of a leg, seen from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegPlan {
+    /// The servo's shaft, mm, chassis frame.
+    pub shaft: Vector,
+    /// The driven crank's pivot, mm, chassis frame.
+    pub driven: Vector,
+    /// The follower's pivot.
+    pub idle: Vector,
+    /// From the first to the second, length one; so the coupler points at any pose.
+    pub along: Vector,
+    /// From the servo's angle to the direction of the leg's crank, deg.
+    pub set: f64,
+    /// The crank's joint with the coupler, in the crank's frame, mm: x points as the
+    /// servo's crank does while the leg does not lag.
+    pub joint: Vector,
+    /// The foot in the coupler's frame, mm: from the crank's joint along the coupler,
+    /// and across it counter-clockwise.
+    pub foot: Vector,
+    /// From the shaft to the driven pivot, length one.
+    pub strut: Vector,
+    /// As long is the strut from anchor to anchor while the leg does not lag, mm.
+    pub strut_length: f64,
+    /// The anchor on the servo's link, and on the leg, in their frames, mm.
+    pub anchor: Vector,
+}
+
+/// A leg at a pose; points in mm, chassis frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LegPlace {
+    /// The driven crank's pivot and the follower's.
+    pub pivots: [Vector; 2],
+    /// Their joints with the coupler, which carries the foot.
+    pub joints: [Vector; 2],
+    /// The foot.
+    pub foot: Vector,
+    /// The strut's anchors: on the servo's link, and on the leg's crank.
+    pub strut: [Vector; 2],
+}
+
+impl LegPlan {
+    /// The leg of a servo (0 to 3) whose neutral angle (deg, chassis frame) this is.
+    pub(crate) fn new(
+        servo: usize,
+        neutral: f64,
+        lizard: &Lizard,
+        parts: &Parts,
+        feet: &Feet,
+    ) -> Self {
+        let point = |[forward, left]: Point| Vector::new(-left, forward);
+        let hip = point(feet.hips()[servo]);
+        let reach = point(feet.at([0.0; 4])[servo]) - hip;
+        let shaft = lizard.shafts()[servo];
+        let driven = shaft + driven(servo, parts);
+        let set = reach.angle() - neutral;
+        // The ground link makes the servo's angle with the crank. Of the two ends that
+        // it may have, the one away from the servo.
+        let link = Vector::direction(set) * lizard.leg.ground;
+        let [idle, other] = [driven + link, driven - link];
+        let idle = match (idle - shaft).square() > (other - shaft).square() {
+            true => idle,
+            false => other,
+        };
+        let along = (idle - driven) * (1.0 / (idle - driven).length());
+        let foot = hip - driven;
+        let strut = driven - shaft;
+        let [radius, angle] = parts.anchor;
+        Self {
+            shaft,
+            driven,
+            idle,
+            along,
+            set,
+            joint: Vector::direction(set) * lizard.leg.crank,
+            foot: Vector::new(foot.dot(along), along.cross(foot)),
+            strut: strut * (1.0 / strut.length()),
+            strut_length: strut.length(),
+            anchor: Vector::direction(-HAND[servo] * angle) * radius,
+        }
+    }
+
+    /// The leg while its servo is at one angle and its crank follows it at another, both
+    /// in deg, chassis frame. They differ by the lag.
+    #[must_use]
+    pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
+        let turned = |angle: f64, v: Vector| {
+            let x = Vector::direction(angle);
+            x * v.x + x.left() * v.y
+        };
+        let pivots = [self.driven, self.idle];
+        let joints = pivots.map(|pivot| pivot + turned(leg, self.joint));
+        LegPlace {
+            pivots,
+            joints,
+            foot: joints[0] + self.along * self.foot.x + self.along.left() * self.foot.y,
+            strut: [
+                self.shaft + turned(servo, self.anchor),
+                self.driven + turned(leg, self.anchor),
+            ],
+        }
+    }
+}
+
+/// From a servo's shaft to the driven pivot of its leg, mm, chassis frame.
+fn driven(servo: usize, parts: &Parts) -> Vector {
+    outward(servo, parts.pivot)
+}
+
+/// A vector outward and towards the middle, as at a servo, in the chassis frame.
+pub(crate) fn outward(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
+    Vector::new(-LEFT[servo] * outward, -FRONT[servo] * inward)
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_kinematics::{Vector, wrap};
+
+    use crate::measures::servo::FORWARD;
+    use crate::testing::{all, robot};
+
+    #[test]
+    fn a_crank_is_as_long_as_it_is_and_at_its_servos_angle_to_the_ground_link() {
+        for (name, robot) in all() {
+            let bars = robot.lizard().leg;
+            for (servo, of) in robot.servos().iter().enumerate() {
+                for angle in [of.neutral - 30.0, of.neutral, of.neutral + 12.5] {
+                    let leg = robot.legs()[servo].at(angle, angle);
+                    let [ground, coupler] =
+                        [leg.pivots, leg.joints].map(|[driven, idle]| idle - driven);
+                    let crank = leg.joints[0] - leg.pivots[0];
+                    // Which of its two directions a ground link has is not told.
+                    let between = wrap(2.0 * (crank.angle() - ground.angle() - angle));
+                    assert!(between.abs() < 1e-9, "{name} {servo} {between}");
+                    assert!((crank.length() - bars.crank).abs() < 1e-9, "{name} {servo}");
+                    assert!((ground.length() - bars.ground).abs() < 1e-9);
+                    assert!((coupler - ground).length() < 1e-9, "it is not turned");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_foot_is_where_the_contact_model_has_it() {
+        for (name, robot) in all() {
+            for sweep in [-25.0, 0.0, 17.0] {
+                let feet = robot.ground().feet.at([sweep; 4]);
+                for (servo, leg) in robot.legs().iter().enumerate() {
+                    let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
+                    let [forward, left] = feet[servo];
+                    let off = leg.at(angle, angle).foot - Vector::new(-left, forward);
+                    assert!(off.length() < 1e-9, "{name} {servo} {off:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_papers_legs_are_pivoted_beside_their_servos() {
+        let near = |a: Vector, x: f64, y: f64| (a - Vector::new(x, y)).length() < 1e-9;
+        let right = robot("paper").legs()[1];
+        assert!(near(right.driven, 10.0 + 28.5, 67.5 - 10.0), "{right:?}");
+        // 50 mm at 41.41 deg inward of straight to the side: l3 over l1 and l0.
+        let (across, back) = (37.5, 50.0 * 0.4375f64.sqrt());
+        assert!((right.idle - right.driven - Vector::new(across, -back)).length() < 1e-4);
+        let left = robot("paper").legs()[0];
+        assert!(
+            near(left.driven, -right.driven.x, right.driven.y),
+            "{left:?}"
+        );
+    }
+
+    #[test]
+    fn a_strut_keeps_its_length_while_its_leg_does_not_lag() {
+        for (name, robot) in all() {
+            for (servo, leg) in robot.legs().iter().enumerate() {
+                let long = |angle: f64, lag: f64| {
+                    let [from, to] = leg.at(angle, angle - lag).strut;
+                    (to - from).length()
+                };
+                let neutral = robot.servos()[servo].neutral;
+                for angle in [neutral - 30.0, neutral, neutral + 30.0] {
+                    let off = long(angle, 0.0) - leg.strut_length;
+                    assert!(off.abs() < 1e-9, "{name} {servo} {off}");
+                }
+                assert!((long(neutral, 5.0) - leg.strut_length).abs() > 0.5);
+            }
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What a pose must keep clear of, and how fast a servo may turn: `[limits]` in
+//! robot.toml.
+
+use lizard_kinematics::Limits;
+
+use crate::file::{Checked, Section};
+use crate::measures::scale::LONGEST_BAR;
+use crate::measures::servo::Pace;
+
+/// Slower than this and a move outlasts the firmware's count of its frames.
+const SLOWEST: f64 = 10.0;
+
+/// Reads the table.
+pub(crate) fn read(root: &Section) -> Checked<(Limits, Pace)> {
+    let section = root.section(
+        "limits",
+        &[
+            "type2",
+            "type1",
+            "leg",
+            "stroke_min",
+            "stroke_max",
+            "slew",
+            "gait_slew",
+        ],
+    )?;
+    let limits = Limits {
+        // Below .1 the core's tables of the couplers end.
+        type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
+        type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
+        leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
+        stroke_min: section.number("stroke_min", -LONGEST_BAR, LONGEST_BAR, "mm")?,
+        stroke_max: section.number("stroke_max", -LONGEST_BAR, LONGEST_BAR, "mm")?,
+    };
+    section.less(
+        "stroke_min",
+        limits.stroke_min,
+        "stroke_max",
+        limits.stroke_max,
+    )?;
+    let speed = |name| section.number(name, SLOWEST, 1000.0, "deg/s");
+    Ok((
+        limits,
+        Pace {
+            slew: speed("slew")?,
+            gait_slew: speed("gait_slew")?,
+        },
+    ))
+}

@@ -1,0 +1,236 @@
+//! The robot's measurements in robot.toml, and what each of them may be.
+//!
+//! A robot that is written down wrongly breaks itself: bars that do not close, a servo
+//! that is driven against its stop, a chassis that falls over. So every number has its
+//! range, the bars must fit the core's integers, and the neutral pose must be safe. What
+//! has passed is [`Measures`]: linkage, servos, legs, parts, supplies and the ground of the
+//! contact model, which all that follows reads.
+
+mod coil;
+mod drive;
+mod ground;
+mod hips;
+mod legs;
+mod limits;
+mod parts;
+mod plate;
+pub(crate) mod scale;
+pub mod servo;
+mod strut;
+mod supply;
+#[cfg(test)]
+mod tests;
+
+pub use coil::Coil;
+pub use legs::{LegPlace, LegPlan};
+pub use parts::{Horn, Parts, Screw, ServoBody};
+pub use plate::Plate;
+pub use servo::{Pace, Servo};
+pub(crate) use strut::{hung, of_coil};
+pub use supply::{Rail, Supplies, healthy_rail_mv};
+
+use lizard_contact::Ground;
+use lizard_core::five_bar::SHORTEST_COUPLER;
+use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
+
+use crate::file::{Checked, Problem, Section};
+use hips::Hips;
+use scale::LONGEST_BAR;
+
+/// Lengths of a robot that hobby servos move, mm.
+const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
+
+/// Where what drives the legs was said before it had a table of its own.
+const SPRING: &str = "[leg.drive] with kind = \"spring\", stiffness and preload, or with kind = \"strut\" and the force and rate of its spring";
+
+const LINKS: [&str; 20] = [
+    "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",
+    "l15", "l16", "l17", "l18", "l19",
+];
+
+/// All of robot.toml but the gaits.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Measures {
+    pub lizard: Lizard,
+    /// A1, A2, A3, A4.
+    pub servos: [Servo; 4],
+    pub limits: Limits,
+    pub pace: Pace,
+    pub ground: Ground,
+    pub supplies: Supplies,
+    pub parts: Parts,
+    /// In servo order.
+    pub legs: [LegPlan; 4],
+}
+
+impl Measures {
+    /// Reads and checks the measurements; the neutral pose of what it returns is
+    /// safe.
+    pub fn read(root: &Section) -> Checked<Self> {
+        let links = links(root)?;
+        let (leg, hips, mount) = leg(root)?;
+        let servos = servo::read(root)?;
+        let (limits, pace) = limits::read(root)?;
+        let parts = Parts::read(root)?;
+        let lizard = Lizard { links, leg };
+        let feet = hips.feet(&lizard, &parts, mount)?;
+        let neutral = servos.map(|servo| servo.neutral);
+        let legs = std::array::from_fn(|servo| {
+            LegPlan::new(servo, neutral[servo], &lizard, &parts, &feet)
+        });
+        let drive = drive::read(&root.open("leg")?, &legs, neutral, &parts)?;
+        let measures = Self {
+            servos,
+            limits,
+            pace,
+            ground: ground::read(root, feet, drive)?,
+            supplies: Supplies::read(root, &servos)?,
+            legs,
+            lizard,
+            parts,
+        };
+        measures.fits()?;
+        measures.stands()?;
+        Ok(measures)
+    }
+
+    /// The servos' neutral angles, deg, chassis frame, servo order.
+    pub fn neutral(&self) -> [f64; 4] {
+        self.servos.map(|servo| servo.neutral)
+    }
+
+    /// What the firmware's 16-bit integers ask of the lengths: couplers that are not
+    /// short compared with the rest of their loop, and a stroke that leaves the slider a
+    /// length.
+    fn fits(&self) -> Checked<()> {
+        for (end, names) in [
+            (End::Head, ["links.l2", "links.l3"]),
+            (End::Tail, ["links.l7", "links.l8"]),
+        ] {
+            let bars = self.lizard.end(end);
+            let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
+            let least = f64::from(SHORTEST_COUPLER) / per_mm;
+            // As the sentence shows it: what it asks for must do.
+            let shown = (10.0 * least).ceil() / 10.0;
+            for (key, value) in names
+                .into_iter()
+                .zip([bars.coupler_left, bars.coupler_right])
+            {
+                if value < least {
+                    let least = shown;
+                    return Err(Problem::ShortCoupler { value, least }.at(key));
+                }
+            }
+        }
+        let nominal = Side::ALL.map(|side| self.lizard.side(side).nominal);
+        let shortest = nominal[0].min(nominal[1]);
+        for (key, value) in [
+            ("limits.stroke_min", self.limits.stroke_min),
+            ("limits.stroke_max", self.limits.stroke_max),
+        ] {
+            let (min, max) = (-shortest, LONGEST_BAR);
+            if !(min..=max).contains(&value) {
+                return Err(Problem::Range {
+                    value,
+                    min,
+                    max,
+                    unit: "mm, so that the slider keeps a length",
+                }
+                .at(key));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a robot that could not even stand.
+    fn stands(&self) -> Checked<()> {
+        let fault = |text: String| Err(Problem::Neutral(text).at("servo"));
+        match self.lizard.solve(&self.neutral().into()) {
+            Err(infeasible) => fault(infeasible.to_string()),
+            Ok(solution) => match self.limits.violations(&solution).next() {
+                Some(violation) => fault(violation.to_string()),
+                None => Ok(()),
+            },
+        }
+    }
+}
+
+/// The links of the body.
+fn links(root: &Section) -> Checked<Links> {
+    let section = root.section("links", &LINKS)?;
+    let mut lengths = [0.0; 20];
+    for (length, name) in lengths.iter_mut().zip(LINKS) {
+        *length = section.number(name, LENGTHS.0, LENGTHS.1, "mm")?;
+    }
+    let l = Links::from(lengths);
+    equal(
+        "links.l15",
+        l.l15,
+        "links.l10",
+        l.l10,
+        "the chassis is a rectangle, so its two sides are equally long",
+    )?;
+    Ok(l)
+}
+
+/// The legs: their links, their hips, and their sweep at neutral in deg.
+fn leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
+    let keys = [
+        "ground",
+        "crank",
+        "coupler",
+        "follower",
+        "hip_forward",
+        "hip_side",
+        "mount",
+        "drive",
+    ];
+    let section = root.open("leg")?;
+    section.moved(&["spring", "preload"], SPRING)?;
+    let section = section.only(&keys)?;
+    let bar = |name| section.number(name, LENGTHS.0, LENGTHS.1, "mm");
+    let leg = Leg {
+        ground: bar("ground")?,
+        crank: bar("crank")?,
+        coupler: bar("coupler")?,
+        follower: bar("follower")?,
+    };
+    let parallelogram = "a leg is a parallelogram, so its opposite links are equally long";
+    equal(
+        "leg.coupler",
+        leg.coupler,
+        "leg.ground",
+        leg.ground,
+        parallelogram,
+    )?;
+    equal(
+        "leg.follower",
+        leg.follower,
+        "leg.crank",
+        leg.crank,
+        parallelogram,
+    )?;
+    let hips = Hips::read(&section)?;
+    let mount = section.number("mount", -90.0, 90.0, "deg")?;
+    Ok((leg, hips, mount))
+}
+
+fn equal(
+    key: &str,
+    value: f64,
+    other: &'static str,
+    other_value: f64,
+    why: &'static str,
+) -> Checked<()> {
+    if value == other_value {
+        Ok(())
+    } else {
+        Err(Problem::Unequal {
+            value,
+            other,
+            other_value,
+            why,
+        }
+        .at(key))
+    }
+}

@@ -1,0 +1,199 @@
+//! The four servos, in the order of every array of this project: A1, A2, A3, A4.
+
+pub use lizard_contact::FORWARD;
+use lizard_kinematics::{Side, wrap};
+
+use crate::file::{Checked, Problem, Section};
+use crate::units::STEPS_PER_DEGREE;
+
+/// The servos' names.
+pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
+
+/// The leg that each servo carries: left or right, front (F) or hind (H).
+pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
+
+/// 1 where the slider's arm of a servo's link stands counter-clockwise from its crank,
+/// else -1.
+pub const HAND: [f64; 4] = {
+    let (left, right) = (Side::Left.sign(), Side::Right.sign());
+    [left, right, -right, -left]
+};
+
+/// Widths that a hobby servo tolerates, us; within a 4 ms slot.
+const WIDTHS: (f64, f64) = (500.0, 2500.0);
+/// 22 us per degree is the most that the firmware's i16 gain holds.
+const GAINS: (f64, f64) = (1.0, 22.0);
+
+/// The servo on the other side: left and right exchanged.
+pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
+
+/// One servo as robot.toml gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Servo {
+    /// Arduino number of its pin.
+    pub pin: u8,
+    /// Chassis-frame angle where its horn is fitted, deg.
+    pub neutral: f64,
+    /// Pulse width at the neutral angle, us.
+    pub neutral_us: f64,
+    /// us per degree, positive where a longer pulse turns it counter-clockwise.
+    pub us_per_degree: f64,
+    /// Shortest pulse it may get, us.
+    pub min_us: f64,
+    /// Longest pulse it may get, us.
+    pub max_us: f64,
+}
+
+impl Servo {
+    /// Its travel, as sweeps from neutral in deg: smallest and largest. Never
+    /// beyond half a turn, whatever the pulses would allow.
+    pub fn travel(&self) -> (f64, f64) {
+        let a = (self.min_us - self.neutral_us) / self.us_per_degree;
+        let b = (self.max_us - self.neutral_us) / self.us_per_degree;
+        (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
+    }
+
+    /// Whether it can turn to a chassis-frame angle, deg.
+    pub fn reaches(&self, angle: f64) -> bool {
+        let (least, most) = self.travel();
+        (least - ROUNDING..=most + ROUNDING).contains(&wrap(angle - self.neutral))
+    }
+
+    /// The sweep from neutral that a pulse width (us) asks for, deg,
+    /// counter-clockwise positive.
+    pub fn sweep(&self, pulse: f64) -> f64 {
+        (pulse - self.neutral_us) / self.us_per_degree
+    }
+
+    /// The pulse width for a chassis-frame angle, us.
+    pub fn pulse(&self, angle: f64) -> f64 {
+        self.neutral_us + self.us_per_degree * wrap(angle - self.neutral)
+    }
+}
+
+/// Angles that miss the end of a travel by less, deg, miss it by rounding.
+const ROUNDING: f64 = 1e-9;
+/// The largest sweep that the core holds, deg.
+const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
+
+/// How fast servos may turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// In a point-to-point move, deg/s.
+    pub slew: f64,
+    /// In a gait, deg/s.
+    pub gait_slew: f64,
+}
+
+/// The Arduino number of a pin by its name on the board: D2 to D12, A0 to A5
+/// (14 to 19).
+pub(crate) fn pin(name: &str) -> Option<u8> {
+    let (letter, number) = name.split_at_checked(1)?;
+    // "+5" and "05" parse, but are no names.
+    let number: u8 = number
+        .parse()
+        .ok()
+        .filter(|n: &u8| n.to_string() == number)?;
+    match letter {
+        "D" if (2..=12).contains(&number) => Some(number),
+        "A" if number <= 5 => Some(14 + number),
+        _ => None,
+    }
+}
+
+/// Reads `[servo.A1]` to `[servo.A4]`.
+pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
+    let section = root.section("servo", &NAMES)?;
+    let mut servos = Vec::with_capacity(4);
+    for name in NAMES {
+        let one = section.section(
+            name,
+            &[
+                "pin",
+                "neutral",
+                "neutral_us",
+                "us_per_degree",
+                "min_us",
+                "max_us",
+            ],
+        )?;
+        let servo = servo(&one)?;
+        if let Some(other) = servos
+            .iter()
+            .position(|earlier: &Servo| earlier.pin == servo.pin)
+        {
+            let problem = Problem::PinTwice {
+                pin: one.text("pin")?.to_string(),
+                other: NAMES[other],
+            };
+            return Err(problem.at(one.path("pin")));
+        }
+        servos.push(servo);
+    }
+    Ok([servos[0], servos[1], servos[2], servos[3]])
+}
+
+fn servo(section: &Section) -> Checked<Servo> {
+    let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
+    let text = section.text("pin")?;
+    let pin = pin(text).ok_or_else(|| Problem::Pin(text.to_string()).at(section.path("pin")))?;
+    let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
+    if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
+        return Err(Problem::Gain(us_per_degree).at(section.path("us_per_degree")));
+    }
+    let servo = Servo {
+        pin,
+        neutral: section.number("neutral", 0.0, 360.0, "deg")?,
+        neutral_us: width("neutral_us")?,
+        us_per_degree,
+        min_us: width("min_us")?,
+        max_us: width("max_us")?,
+    };
+    section.less("min_us", servo.min_us, "neutral_us", servo.neutral_us)?;
+    section.less("neutral_us", servo.neutral_us, "max_us", servo.max_us)?;
+    Ok(servo)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SERVO: Servo = Servo {
+        pin: 9,
+        neutral: 47.0,
+        neutral_us: 1535.0,
+        us_per_degree: -11.0,
+        min_us: 560.0,
+        max_us: 2420.0,
+    };
+
+    #[test]
+    fn a_reversed_servo_goes_clockwise_with_its_longest_pulse() {
+        let (min, max) = SERVO.travel();
+        assert_eq!((min, max), (-885.0 / 11.0, 975.0 / 11.0));
+        assert_eq!(SERVO.pulse(57.0), 1425.0);
+        assert_eq!(SERVO.sweep(1425.0), 10.0);
+        assert_eq!(SERVO.pulse(47.0 - 350.0), 1425.0, "the short way round");
+    }
+
+    #[test]
+    fn no_travel_is_beyond_half_a_turn() {
+        let wide = Servo {
+            us_per_degree: 1.0,
+            ..SERVO
+        };
+        let (min, max) = wide.travel();
+        assert!(-180.0 < min && min < -179.9 && 179.9 < max && max < 180.0);
+    }
+
+    #[test]
+    fn a_sliders_arm_stands_on_the_hand_that_the_kinematics_gives_it() {
+        use lizard_kinematics::Vector;
+        let crank = Vector::new(1.0, 0.0);
+        for side in Side::ALL {
+            let [front, rear] = side.servos();
+            assert_eq!(side.front_arm(crank), Vector::new(0.0, HAND[front]));
+            assert_eq!(side.rear_arm(crank), Vector::new(0.0, HAND[rear]));
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! The slotted strut as its parts make it: how long it is, and how hard a spring from the
+//! shop pulls in it.
+
+use lizard_contact::{SLOT, Strut};
+
+use crate::measures::coil::Coil;
+use crate::measures::legs::LegPlan;
+use crate::measures::parts::Parts;
+use crate::measures::servo::HAND;
+
+/// The length of a spring inside its hooks as it hangs in a strut, mm: both hooks lie
+/// around the far sides of their screws.
+pub(crate) fn hung(legs: &[LegPlan; 4], parts: &Parts) -> f64 {
+    legs[0].strut_length + parts.screw.diameter
+}
+
+/// The strut of a robot with this spring in it; its servos' neutral angles are in deg,
+/// chassis frame.
+pub(crate) fn of_coil(legs: &[LegPlan; 4], neutral: [f64; 4], parts: &Parts, coil: &Coil) -> Strut {
+    let [radius, angle] = parts.anchor;
+    let arm = |leg: usize| neutral[leg] - HAND[leg] * angle - legs[leg].strut.angle();
+    Strut {
+        force: coil.force(hung(legs, parts)),
+        rate: coil.rate(),
+        slot: SLOT,
+        length: legs[0].strut_length,
+        radius,
+        angles: std::array::from_fn(arm),
+    }
+}

@@ -1,0 +1,251 @@
+//! The supplies in robot.toml: what is measured, and when the robot reacts.
+
+use lizard_core::supply::{Supplies as CoreSupplies, Thresholds};
+
+use crate::file::{Checked, Problem, Section};
+use crate::measures::servo::{NAMES, Servo, pin};
+
+/// The reference of an ATmega328P, V: data sheet, section 29.8.
+const REFERENCE: f64 = 1.1;
+const REFERENCES: (f64, f64) = (1.0, 1.2);
+
+/// What the board's supply may be asked to have, V: the brown-out detector ends it
+/// at 2.7, and the chip tolerates 5.5.
+const BOARD: (f64, f64) = (2.7, 5.5);
+
+/// Low, too low to move, too low to hold. With a reference that nobody has measured a
+/// healthy board may show 4.3 V.
+const DEFAULTS: [f64; 3] = [4.2, 4.0, 3.7];
+
+/// The analogue pins, by their Arduino numbers.
+const ANALOGUE: std::ops::RangeInclusive<u8> = 14..=19;
+
+/// What is measured of the supplies, and the voltages (V, falling) below which gaits
+/// slow down, the robot stops, and its pulses end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Supplies {
+    /// The chip's own reference.
+    pub reference: f64,
+    /// Of the board's supply.
+    pub board: [f64; 3],
+    /// The servos' rail, where it is measured.
+    pub rail: Option<Rail>,
+}
+
+/// A rail that a divider leads to an analogue pin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rail {
+    /// Arduino number of the pin, 14 to 19.
+    pub pin: u8,
+    /// The rail's voltage over the pin's.
+    pub ratio: f64,
+    /// As those of the board.
+    pub thresholds: [f64; 3],
+}
+
+impl Default for Supplies {
+    fn default() -> Self {
+        Self {
+            reference: REFERENCE,
+            board: DEFAULTS,
+            rail: None,
+        }
+    }
+}
+
+impl Supplies {
+    /// Reads the table, all of which may be left out.
+    pub(crate) fn read(root: &Section, servos: &[Servo; 4]) -> Checked<Self> {
+        if !root.has("supply") {
+            return Ok(Self::default());
+        }
+        let section = root.section("supply", &["reference", "slow", "stop", "rest", "rail"])?;
+        let (least, most) = REFERENCES;
+        Ok(Self {
+            reference: section.number_or("reference", REFERENCE, least, most, "V")?,
+            board: thresholds(&section, BOARD, DEFAULTS)?,
+            rail: rail(&section, servos)?,
+        })
+    }
+
+    /// As the core has them.
+    pub(crate) fn numbers(&self) -> CoreSupplies {
+        CoreSupplies {
+            reference: millivolts(self.reference),
+            board: numbers(self.board),
+            rail_reference: self
+                .rail
+                .map_or(0, |rail| millivolts(self.reference * rail.ratio)),
+            rail: self.rail.map_or(NO_RAIL, |rail| numbers(rail.thresholds)),
+        }
+    }
+}
+
+/// Where none is measured.
+const NO_RAIL: Thresholds = Thresholds {
+    slow: 0,
+    stop: 0,
+    rest: 0,
+};
+
+/// The voltage that a servos' rail in good order leaves at its divided pin, mV: for
+/// simulations, since a rail of 0 V ends the pulses. It is 5 V, or well above what the
+/// robot reacts to. None where no rail is measured.
+pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
+    const RESERVE: f64 = 500.0;
+    const BOARD: f64 = 5_000.0;
+    let ratio = f64::from(supplies.rail_reference) / f64::from(supplies.reference);
+    let mv = f64::from(supplies.rail.slow) + RESERVE;
+    (supplies.rail_reference != 0).then(|| (mv.max(BOARD) / ratio).min(BOARD - 1.0).floor())
+}
+
+fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
+    if !supply.has("rail") {
+        return Ok(None);
+    }
+    let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
+    let text = section.text("pin")?;
+    let key = || section.path("pin");
+    let pin = pin(text)
+        .filter(|pin| ANALOGUE.contains(pin))
+        .ok_or_else(|| Problem::NotAnalogue(text.to_string()).at(key()))?;
+    if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
+        let problem = Problem::PinTwice {
+            pin: text.to_string(),
+            other: NAMES[servo],
+        };
+        return Err(problem.at(key()));
+    }
+    // A battery of two lithium cells, 8.4 V, through a divider of two or more.
+    let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
+    Ok(Some(Rail {
+        pin,
+        ratio,
+        thresholds: thresholds(&section, (1.0, 5.0 * ratio), DEFAULTS)?,
+    }))
+}
+
+/// Three voltages, each below the one before.
+fn thresholds(
+    section: &Section,
+    (least, most): (f64, f64),
+    defaults: [f64; 3],
+) -> Checked<[f64; 3]> {
+    let voltage = |name, default| section.number_or(name, default, least, most, "V");
+    let [slow, stop, rest] = defaults;
+    let [slow, stop, rest] = [
+        voltage("slow", slow)?,
+        voltage("stop", stop)?,
+        voltage("rest", rest)?,
+    ];
+    section.less("rest", rest, "stop", stop)?;
+    section.less("stop", stop, "slow", slow)?;
+    Ok([slow, stop, rest])
+}
+
+fn numbers([slow, stop, rest]: [f64; 3]) -> Thresholds {
+    Thresholds {
+        slow: millivolts(slow),
+        stop: millivolts(stop),
+        rest: millivolts(rest),
+    }
+}
+
+fn millivolts(volts: f64) -> u16 {
+    (1000.0 * volts).round() as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_core::supply::{Supplies, Thresholds};
+
+    use crate::testing::with;
+
+    const BEFORE: &str = "[ground]";
+
+    fn supplied(table: &str) -> Result<crate::Robot, crate::Error> {
+        with("paper", &[(BEFORE, &format!("{table}\n{BEFORE}"))])
+    }
+
+    fn refused(table: &str) -> String {
+        supplied(table).expect_err(table).to_string()
+    }
+
+    #[test]
+    fn without_a_table_the_board_is_measured_by_a_reference_of_1100_mv() {
+        let robot = with("paper", &[]).expect("the paper's");
+        let expected = Supplies {
+            reference: 1100,
+            board: Thresholds {
+                slow: 4200,
+                stop: 4000,
+                rest: 3700,
+            },
+            rail_reference: 0,
+            ..robot.firmware().supplies()
+        };
+        assert_eq!(robot.firmware().supplies(), expected);
+    }
+
+    #[test]
+    fn a_rail_has_the_divider_in_its_reference() {
+        let robot = supplied(
+            "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n",
+        )
+        .expect("a rail");
+        let supplies = robot.firmware().supplies();
+        assert_eq!((supplies.reference, supplies.board.slow), (1080, 4500));
+        let rail = Thresholds {
+            slow: 6600,
+            stop: 6200,
+            rest: 6000,
+        };
+        assert_eq!((supplies.rail_reference, supplies.rail), (2700, rail));
+        assert_eq!(robot.firmware().rail_pin(), Some(17));
+    }
+
+    #[test]
+    fn what_cannot_be_measured_is_refused_with_its_key() {
+        for (table, sentence) in [
+            (
+                "[supply]\nreference = 1.3\n",
+                "supply.reference is 1.3; it must be within 1 to 1.2 V",
+            ),
+            (
+                "[supply]\nslow = 5.6\n",
+                "supply.slow is 5.6; it must be within 2.7 to 5.5 V",
+            ),
+            ("[supply]\nstop = 4.3\n", "supply.stop"),
+            ("[supply]\nrest = 4.1\n", "supply.rest"),
+            ("[supply]\nlow = 4.1\n", "supply.low is not a known key"),
+            (
+                "[supply.rail]\npin = \"D7\"\nratio = 2.0\n",
+                "supply.rail.pin is \"D7\"; it must be one of A0 to A5",
+            ),
+            (
+                "[supply.rail]\npin = \"A1\"\n",
+                "supply.rail.ratio is missing",
+            ),
+            (
+                "[supply.rail]\npin = \"A1\"\nratio = 0.5\n",
+                "supply.rail.ratio is 0.5",
+            ),
+            (
+                "[supply.rail]\npin = \"A1\"\nratio = 1.0\nslow = 5.2\n",
+                "supply.rail.slow is 5.2; it must be within 1 to 5 V",
+            ),
+        ] {
+            let refused = refused(table);
+            assert!(refused.contains(sentence), "{refused}");
+        }
+        let taken = with(
+            "paper",
+            &[
+                ("pin = \"D9\"", "pin = \"A2\""),
+                (BEFORE, "[supply.rail]\npin = \"A2\"\nratio = 2.0\n[ground]"),
+            ],
+        );
+        let taken = taken.expect_err("a pin of a servo").to_string();
+        assert!(taken.contains("which servo.A1 has already"), "{taken}");
+    }
+}

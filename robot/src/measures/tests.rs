@@ -1,0 +1,99 @@
+//! The measurements that a robot must have.
+
+use crate::testing::with;
+
+fn refused(changes: &[(&str, &str)]) -> String {
+    with("unequal", changes).expect_err("refused").to_string()
+}
+
+#[test]
+fn each_coupler_must_be_long_enough_for_its_own_loop() {
+    // The head's bars and the tail's longer couplers are counted in 1/256 mm.
+    for (from, to) in [
+        ("l2 = 55.0", "l2 = 15.9"),
+        ("l3 = 48.0", "l3 = 15.9"),
+        ("l7 = 55.0", "l7 = 15.9"),
+        ("l8 = 48.0", "l8 = 15.9"),
+    ] {
+        let refused = refused(&[(from, to)]);
+        let key = from.split(' ').next().expect("a key");
+        assert!(
+            refused.contains(&format!("links.{key} is 15.9 mm, which is short"))
+                && refused.contains("at least 16.1 mm"),
+            "{refused}"
+        );
+    }
+    // A base twice as long halves the steps, for its own end alone.
+    let long = refused(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
+    assert!(
+        long.contains("links.l7 is 31 mm") && long.contains("at least 32.1 mm"),
+        "{long}"
+    );
+}
+
+#[test]
+fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
+    for name in ["A1", "A2", "A3", "A4"] {
+        let text = crate::testing::text("unequal");
+        let begin = text.find(&format!("[servo.{name}]")).expect(name);
+        let line = |key: &str| {
+            let from = begin + text[begin..].find(key).expect(key);
+            let to = from + text[from..].find('\n').expect("a line's end");
+            from..to
+        };
+        let us = |key: &str| -> f64 {
+            let line = &text[line(key)];
+            let value = line.split(" = ").nth(1).expect("a value");
+            value.parse().expect("a number")
+        };
+        for (neutral, refused) in [
+            (us("min_us") - 0.1, "min_us"),
+            (us("min_us"), "min_us"),
+            (us("max_us"), "neutral_us"),
+            (us("max_us") + 0.1, "neutral_us"),
+        ] {
+            let mut changed = text.clone();
+            changed.replace_range(line("neutral_us"), &format!("neutral_us = {neutral}"));
+            let error = crate::Robot::parse(&changed)
+                .expect_err("outside")
+                .to_string();
+            assert!(
+                error.contains(&format!("servo.{name}.{refused}")),
+                "{error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_stroke_leaves_the_shorter_slider_a_length() {
+    for slider in [["l12 = 53.0", "l13 = 51.0"], ["l17 = 54.0", "l18 = 57.0"]] {
+        let changes = [
+            (slider[0], &*slider[0].replace(" 5", " 4")),
+            ("stroke_min = -19.0", "stroke_min = -102.0"),
+        ];
+        let refused = refused(&changes);
+        assert!(
+            refused.contains("limits.stroke_min is -102; it must be within"),
+            "{refused}"
+        );
+    }
+}
+
+#[test]
+fn each_leg_must_stand_on_the_side_where_it_was_assembled() {
+    for (from, to, leg) in [
+        ("neutral = 135.0", "neutral = 200.0", "leg_lf"),
+        ("neutral = 47.0", "neutral = 350.0", "leg_rf"),
+        ("neutral = 316.0", "neutral = 10.0", "leg_rh"),
+        ("neutral = 228.0", "neutral = 170.0", "leg_lh"),
+    ] {
+        let refused = refused(&[(from, to)]);
+        assert!(
+            refused.contains(&format!(
+                "servo: the neutral pose is not safe: margin {leg} -"
+            )),
+            "{refused}"
+        );
+    }
+}

@@ -1,0 +1,46 @@
+//! What springs and play cost a gait: how far its legs lag, and its distance as a share
+//! of that with rigid legs.
+
+use lizard_contact::{Ground, Prediction};
+
+use crate::checks::CheckedGait;
+
+/// A gait on legs that lag, compared with the same gait on rigid ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sprung {
+    /// Where a cycle leads, as [`CheckedGait::predict`] has it.
+    pub way: Prediction,
+    /// How far a leg is behind its servo at most, deg.
+    pub lag: f64,
+    /// Its way in a cycle over that of rigid legs: ahead, or the turn of a gait that
+    /// turns in place, or the smaller of both. None where rigid legs get nowhere or
+    /// their way depends on ties.
+    pub share: Option<f64>,
+}
+
+/// Less than this in a cycle is no way: mm ahead, deg of turn.
+const NOWHERE: (f64, f64) = (1.0, 0.5);
+
+impl Sprung {
+    /// What this ground's drive does to a gait; none if its legs do not lag.
+    #[must_use]
+    pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
+        if !ground.drive.lags() {
+            return None;
+        }
+        let walked = gait.walked(ground);
+        let way = gait.predict(&ground.rigid());
+        let part = |sprung: f64, rigid: Option<f64>, least: f64| {
+            rigid
+                .filter(|rigid| rigid.abs() > least)
+                .map(|rigid| sprung / rigid)
+        };
+        let ahead = part(walked.travel.forward, way.forward, NOWHERE.0);
+        let turn = part(walked.travel.turn, way.turn, NOWHERE.1);
+        Some(Self {
+            way: way.known_of(walked.travel),
+            lag: walked.lag,
+            share: [ahead, turn].into_iter().flatten().reduce(f64::min),
+        })
+    }
+}

@@ -1,0 +1,116 @@
+//! What is known of a side in a cell: the length of its slider.
+//!
+//! While the crank angles go from the cell's centre to any other pose of it, the tips of
+//! the arms move by at most arm times angle, and the slider's length by as much. With the
+//! error bound of the integers added, the length must still be within the integers'
+//! stroke.
+
+use lizard_core::bounds;
+use lizard_core::section::Content;
+use lizard_kinematics::{Lizard, Side, Slider};
+
+use super::cell::{Cell, Condition, HAIR, Verdict};
+use crate::measures::scale;
+
+/// The stroke of a side.
+pub(super) struct Rule {
+    side: Side,
+    slider: Slider,
+    /// What the integers may be off by, mm.
+    off: f64,
+    /// The shortest and the longest that the slider may be, mm.
+    min: f64,
+    max: f64,
+}
+
+impl Rule {
+    pub fn new(lizard: &Lizard, numbers: &Content, side: Side) -> Self {
+        let integers = &numbers.sides[side as usize];
+        let slider = lizard.side(side);
+        let mm = |steps: u16| f64::from(steps) / scale::steps_per_mm(integers.scale);
+        Self {
+            side,
+            slider,
+            off: bounds::slider(&slider, integers),
+            min: mm(integers.min),
+            max: mm(integers.max),
+        }
+    }
+
+    /// The slider's length at the centre of a cell, mm.
+    fn length(&self, cell: &Cell) -> f64 {
+        let [front, rear] = cell.0.map(|span| span.direction());
+        let (rear, front) = (self.side.rear_arm(rear), self.side.front_arm(front));
+        self.slider.shape(rear, front).d
+    }
+}
+
+impl Condition for Rule {
+    fn servos(&self) -> [usize; 2] {
+        self.side.servos()
+    }
+
+    fn judge(&self, cell: &Cell) -> Verdict {
+        let [front, rear] = cell.0;
+        let length = self.length(cell);
+        let room = (length - self.min).min(self.max - length);
+        if room < 0.0 {
+            return Verdict::Broken;
+        }
+        let moved = self.slider.front * front.half() + self.slider.rear * rear.half();
+        if room - moved - self.off >= HAIR {
+            Verdict::Kept
+        } else {
+            Verdict::Open
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tables::cells::cell::Span;
+    use crate::testing::robot;
+
+    #[test]
+    fn a_single_pose_is_proved_if_its_slider_is_clear_of_either_end_by_what_the_integers_may_be_off_by()
+     {
+        let robot = robot("unequal");
+        let numbers = robot.content();
+        for side in Side::ALL {
+            let mut rule = Rule::new(robot.lizard(), numbers, side);
+            let spans = side.servos().map(|servo| {
+                let angle = f64::from(numbers.neutral[servo].0);
+                Span {
+                    low: angle,
+                    high: angle,
+                }
+            });
+            let cell = Cell(spans);
+            assert_eq!(rule.judge(&cell), Verdict::Kept);
+            let length = rule.length(&cell);
+            for (clear, verdict) in [
+                (1.01, Verdict::Kept),
+                (0.99, Verdict::Open),
+                (0.01, Verdict::Open),
+                (-0.01, Verdict::Broken),
+            ] {
+                let (min, max) = (rule.min, rule.max);
+                rule.min = length - clear * rule.off;
+                assert_eq!(
+                    rule.judge(&cell),
+                    verdict,
+                    "{side} {clear} from the shortest"
+                );
+                rule.min = min;
+                rule.max = length + clear * rule.off;
+                assert_eq!(
+                    rule.judge(&cell),
+                    verdict,
+                    "{side} {clear} from the longest"
+                );
+                rule.max = max;
+            }
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! The maps against the integer guard, which knows nothing of them.
+
+use lizard_core::gait::GaitId;
+use lizard_core::guard::Clearance;
+use lizard_core::limits::Limits;
+use lizard_core::units::Sweep;
+use lizard_kinematics::{Links, Lizard};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+use super::*;
+use crate::measures::Measures;
+use crate::tables::core_robot::{CoreRobot, flash};
+use crate::tables::numbers;
+use crate::tables::table::Tables;
+use crate::testing::{all, robot};
+use crate::{Robot, Servo};
+
+/// What a robot's file says of it.
+fn measures(robot: &Robot) -> Measures {
+    Measures {
+        lizard: *robot.lizard(),
+        servos: *robot.servos(),
+        limits: *robot.limits(),
+        pace: *robot.pace(),
+        ground: *robot.ground(),
+        supplies: *robot.supplies(),
+        parts: *robot.parts(),
+        legs: *robot.legs(),
+    }
+}
+
+/// Links and limits of random robots without symmetry.
+fn random() -> impl Strategy<Value = Measures> {
+    let paper = robot("paper");
+    let end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
+    let side = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
+    let limits = (0.12..0.4, 0.0..0.35, 0.0..0.35, -40.0..-5.0, 5.0..60.0);
+    let servo = || (-15.0..15.0f64, 6.0..22.0f64, any::<bool>());
+    let servos = [servo(), servo(), servo(), servo()];
+    let all = (end(), end(), 90.0..200.0, side(), side(), limits, servos);
+    all.prop_map(move |(head, tail, base, left, right, limits, servos)| {
+        let mut links = [0.0; 20];
+        for (place, (l0, l1, l2, l3, l4)) in [head, tail].into_iter().enumerate() {
+            links[5 * place..][..5].copy_from_slice(&[l0, l1, l2, l3, l4]);
+        }
+        for (place, (l11, l12, l13, l14)) in [left, right].into_iter().enumerate() {
+            links[10 + 5 * place..][..5].copy_from_slice(&[base, l11, l12, l13, l14]);
+        }
+        let (type2, type1, leg, stroke_min, stroke_max) = limits;
+        let neutral = [130.0, 50.0, 310.0, 230.0];
+        Measures {
+            lizard: Lizard {
+                links: Links::from(links),
+                ..*paper.lizard()
+            },
+            limits: lizard_kinematics::Limits {
+                type2,
+                type1,
+                leg,
+                stroke_min,
+                stroke_max,
+            },
+            servos: std::array::from_fn(|n| {
+                let (aside, gain, reversed) = servos[n];
+                Servo {
+                    neutral: neutral[n] + aside,
+                    us_per_degree: if reversed { -gain } else { gain },
+                    ..paper.servos()[n]
+                }
+            }),
+            ..measures(&paper)
+        }
+    })
+}
+
+/// A map, and what it vouches for.
+struct Part<'a> {
+    map: &'a Map,
+    /// Row and column, places in servo order.
+    servos: [usize; 2],
+    /// Places in [`Clearance::margins`].
+    margins: &'static [usize],
+    /// Place in [`Clearance::sliders_sq`].
+    slider: Option<usize>,
+}
+
+/// A robot in integers, and its maps.
+struct Subject {
+    name: String,
+    robot: CoreRobot,
+    maps: CellMaps,
+}
+
+impl Subject {
+    fn of(name: &str, robot: &Robot) -> Self {
+        Self {
+            name: name.to_string(),
+            robot: *robot.firmware(),
+            maps: robot.cell_maps(),
+        }
+    }
+
+    /// One without gaits.
+    fn still(name: &str, measures: &Measures) -> Self {
+        let content = numbers::content(name, measures, &Tables::new(&[]).expect("no gait"));
+        Self {
+            name: name.to_string(),
+            maps: CellMaps::new(&measures.lizard, &content),
+            robot: CoreRobot::unchecked(flash(&content.section())).expect("whole"),
+        }
+    }
+
+    fn parts(&self) -> [Part<'_>; 4] {
+        let part = |map, servos, margins, slider| Part {
+            map,
+            servos,
+            margins,
+            slider,
+        };
+        let CellMaps {
+            head,
+            tail,
+            left,
+            right,
+        } = &self.maps;
+        [
+            part(head, [0, 1], &[0, 2, 3, 6, 7], None),
+            part(tail, [2, 3], &[1, 4, 5, 8, 9], None),
+            part(left, [0, 3], &[], Some(0)),
+            part(right, [1, 2], &[], Some(1)),
+        ]
+    }
+
+    /// The number of cells, if the guard accepts some pairs of every one: of its
+    /// margins and sliders those that depend on the pair. Else the first that it refuses.
+    fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
+        let Limits { type2, type1, leg } = self.robot.limits();
+        let least = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
+        let sides = [0, 1].map(|side| self.robot.side(lizard_core::part::Side::ALL[side]));
+        let mut cells = 0;
+        for part in self.parts() {
+            let Part {
+                map,
+                servos: [row_servo, column_servo],
+                margins,
+                slider,
+            } = part;
+            assert!(map.rows.len() <= MOST_ROWS);
+            for (row, [first, last]) in (i32::from(map.first)..).zip(&map.rows) {
+                for column in i32::from(*first)..=i32::from(*last) {
+                    cells += 1;
+                    let near = (0..256i32, 0..128i32);
+                    let [one, two] = [0; 2].map(|_| {
+                        let tree = near.new_tree(runner).expect("a pair");
+                        tree.current()
+                    });
+                    let corners = [(0, 0), (0, 127), (255, 0), (255, 127)];
+                    for (down, along) in corners.into_iter().chain([(128, 64), one, two]) {
+                        let mut pose = Pose::NEUTRAL;
+                        pose.0[row_servo] = Sweep((row * 256 + down) as i16);
+                        pose.0[column_servo] = Sweep((column * 128 + along) as i16);
+                        assert!(map.cells().hold(pose.0[row_servo], pose.0[column_servo]));
+                        let clearance = Clearance::of(&self.robot, &pose);
+                        let kept = margins
+                            .iter()
+                            .all(|margin| clearance.margins[*margin] >= least[*margin])
+                            && slider
+                                .is_none_or(|side| sides[side].allows(clearance.sliders_sq[side]));
+                        if !kept {
+                            return Err(format!("{} at {pose:?}: {clearance:?}", self.name));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(cells)
+    }
+}
+
+#[test]
+fn the_guard_accepts_the_corners_the_centre_and_any_pair_of_every_cell() {
+    let mut runner = TestRunner::deterministic();
+    for (name, robot) in all() {
+        let cells = Subject::of(name, &robot).check(&mut runner);
+        let cells = cells.unwrap_or_else(|refused| panic!("{refused}"));
+        assert!(cells > 2000, "{name}: {cells}");
+    }
+}
+
+#[test]
+fn the_guard_accepts_every_cell_of_random_robots() {
+    let mut runner = TestRunner::deterministic();
+    let (random, mut cells) = (random(), 0);
+    for number in 0..100 {
+        let measures = random.new_tree(&mut runner).expect("a robot").current();
+        let subject = Subject::still(&format!("robot {number}"), &measures);
+        let more = subject.check(&mut runner);
+        cells += more.unwrap_or_else(|refused| panic!("{refused}"));
+    }
+    assert!(cells > 100 * 1000, "{cells} cells of 100 robots");
+}
+
+#[test]
+fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
+    let mut runner = TestRunner::deterministic();
+    for (name, robot) in all() {
+        let Subject { robot, maps, .. } = Subject::of(name, &robot);
+        let travels = robot
+            .calibration()
+            .map(|servo| (servo.min.0..=servo.max.0).prop_map(Sweep));
+        let mut held = 0;
+        for _ in 0..200_000 {
+            let pose = travels.new_tree(&mut runner).expect("a pose").current();
+            let pose = Pose(pose);
+            if maps.hold(&pose) {
+                held += 1;
+                assert_eq!(
+                    Clearance::of(&robot, &pose).hazard(&robot),
+                    None,
+                    "{name} {pose:?}"
+                );
+            }
+        }
+        assert!(held > 200, "{name}: {held} of 200 000 poses");
+    }
+}
+
+/// The comparison compares: each limit alone, a little stricter than in the maps, is
+/// broken in some cell.
+#[test]
+fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
+    let robot = robot("unequal");
+    let stricter: [fn(&mut lizard_kinematics::Limits); 5] = [
+        |limits| limits.type2 += 0.3,
+        |limits| limits.type1 += 0.05,
+        |limits| limits.leg += 0.03,
+        |limits| limits.stroke_min += 1.0,
+        |limits| limits.stroke_max -= 1.0,
+    ];
+    for (place, stricter) in stricter.into_iter().enumerate() {
+        let mut changed = measures(&robot);
+        stricter(&mut changed.limits);
+        let own = Subject::still("of its own", &changed);
+        let maps = robot.cell_maps();
+        assert_ne!(own.maps, maps, "limit {place}");
+        let mixed = Subject { maps, ..own };
+        let checked = mixed.check(&mut TestRunner::deterministic());
+        assert!(checked.is_err(), "limit {place}");
+    }
+}
+
+#[test]
+fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
+    for (name, robot) in all() {
+        for Part { map, .. } in Subject::of(name, &robot).parts() {
+            assert!(map.rows.len() <= MOST_ROWS, "{name}");
+            let [first, .., last] = map.rows.as_slice() else {
+                panic!("{name}: a map of {} rows", map.rows.len());
+            };
+            assert!(first[0] <= first[1] && last[0] <= last[1], "{name}");
+            // Neutral is in all of them.
+            assert!(map.cells().hold(Sweep(0), Sweep(0)), "{name}");
+        }
+    }
+}
+
+/// Which share of its phases a gait is within the cells.
+fn share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
+    let gait = robot.gait(gait);
+    let held = (0..1u32 << 16)
+        .filter(|phase| maps.hold(&gait.pose(robot.waves(), phase << 8)))
+        .count();
+    held as f64 / 65536.0
+}
+
+#[test]
+fn every_gait_of_every_robot_is_within_the_cells_at_every_phase() {
+    for (name, robot) in all() {
+        let maps = robot.cell_maps();
+        for (gait, id) in robot.gaits().iter().zip(GaitId::all(robot.gaits().len())) {
+            let share = share(robot.firmware(), &maps, id);
+            assert_eq!(share, 1.0, "{name} {}", gait.name());
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! The robot's numbers as the firmware has them: integers, in the types of the
+//! core.
+//!
+//! Sixteen bits hold any robot's lengths if their step follows the robot's size, so each
+//! mechanism has its own scale. A number that is not an integer is rounded to the safe
+//! side: limits of margins up, strokes and travels inwards, the slew limit down.
+
+use lizard_avr::Flash;
+use lizard_core::adjustment::Reach;
+use lizard_core::calibration::Calibration;
+use lizard_core::couplers::Couplers;
+use lizard_core::gait::SAMPLES;
+use lizard_core::limits::Limits;
+use lizard_core::point_to_point::Slew;
+use lizard_core::section::{Content, Loop, Map};
+use lizard_core::slider::Slider;
+use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
+use lizard_kinematics as kinematics;
+
+use crate::measures::servo::Servo;
+use crate::measures::{Measures, scale};
+use crate::tables::table::Tables;
+use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER_DEGREE};
+
+/// What rounding may add to a number that robot.toml gives exactly.
+const SLACK: f64 = 1e-6;
+
+/// The numbers of a robot, without its maps of certified cells.
+pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Content {
+    let Measures {
+        lizard,
+        servos,
+        limits,
+        pace,
+        supplies,
+        ..
+    } = measures;
+    let pins = servos.map(|servo| servo.pin);
+    let neutral =
+        servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
+    let calibrations = servos.map(|servo| calibration(&servo));
+    let reach = reach(tables, &calibrations);
+    Content {
+        name: name.to_string(),
+        servo_hash: servo_hash(&pins, &neutral, &calibrations),
+        pins,
+        rail: supplies.rail.map(|rail| rail.pin),
+        neutral,
+        calibration: calibrations,
+        reach,
+        limits: Limits {
+            type2: sine(limits.type2),
+            type1: sine(limits.type1),
+            leg: sine(limits.leg),
+        },
+        slew: Slew::new(floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16),
+        supplies: supplies.numbers(),
+        ends: kinematics::End::ALL.map(|end| five_bar(&lizard.end(end))),
+        sides: kinematics::Side::ALL.map(|of| side(&lizard.side(of), limits)),
+        gaits: tables.gaits.clone(),
+        names: tables.names.clone(),
+        waves: tables.waves.clone(),
+        maps: std::array::from_fn(|_| Map::default()),
+    }
+}
+
+/// The hash of the servos alone, by which a saved calibration is known to be theirs.
+/// Gaits, bars and limits may change without it.
+fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
+    crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
+}
+
+fn five_bar(bars: &kinematics::FiveBar) -> Loop {
+    let scale = scale::of_loop(bars);
+    let length = |mm: f64| steps(mm, scale) as i16;
+    // The crank tips part the furthest where both cranks point outwards.
+    let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right].map(length);
+    let furthest = (base as u32 + left as u32 + right as u32) / 2 + 2;
+    let [a, b] = [bars.coupler_left, bars.coupler_right].map(length);
+    Loop {
+        scale,
+        base,
+        cranks: [left, right],
+        couplers: [a, b],
+        near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
+    }
+}
+
+fn calibration(servo: &Servo) -> Calibration {
+    let (min, max) = servo.travel();
+    let gain = servo.us_per_degree * CYCLES_PER_US / STEPS_PER_DEGREE * ONE_Q14;
+    Calibration {
+        neutral: Width((servo.neutral_us * CYCLES_PER_US).round() as u16),
+        gain: gain.round() as i16,
+        min: Sweep(ceil(min * STEPS_PER_DEGREE) as i16),
+        max: Sweep(floor(max * STEPS_PER_DEGREE) as i16),
+    }
+}
+
+/// The farthest that any gait turns each servo, neutral included. Between two
+/// samples a gait is on the straight line, so no phase goes beyond its samples. A gait that
+/// uses all of a travel, which is rounded inwards, may be rounded to a step beyond it.
+fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
+    let mut reach = [Reach::default(); 4];
+    for gait in &tables.gaits {
+        for (reach, channel) in reach.iter_mut().zip(&gait.channels) {
+            let wave = Flash::from(&tables.waves[usize::from(channel.wave)]);
+            for sample in 0..SAMPLES as u16 {
+                // The phase at which the channel reads this very sample.
+                let phase = (sample << 9).wrapping_sub(channel.offset);
+                let sweep = channel.sweep(wave, phase);
+                reach.min = reach.min.min(sweep);
+                reach.max = reach.max.max(sweep);
+            }
+        }
+    }
+    for (reach, travel) in reach.iter_mut().zip(travel) {
+        reach.min = reach.min.max(travel.min);
+        reach.max = reach.max.min(travel.max);
+    }
+    reach
+}
+
+/// A side, its stroke rounded inwards.
+fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
+    let scale = scale::of_side(slider, limits.stroke_max);
+    let length = |mm: f64| steps(mm, scale);
+    let per_mm = scale::steps_per_mm(scale);
+    Slider {
+        scale,
+        offset: length(slider.offset) as i16,
+        base: length(slider.base) as u16,
+        front: length(slider.front) as i16,
+        rear: length(slider.rear) as i16,
+        nominal: length(slider.nominal) as u16,
+        min: ceil((slider.nominal + limits.stroke_min) * per_mm) as u16,
+        max: floor((slider.nominal + limits.stroke_max) * per_mm) as u16,
+    }
+}
+
+fn steps(mm: f64, scale: Scale) -> i32 {
+    (mm * scale::steps_per_mm(scale)).round() as i32
+}
+
+/// A smallest margin, rounded up.
+fn sine(margin: f64) -> Sine {
+    Sine(ceil(margin * ONE_Q15) as i16)
+}
+
+fn ceil(value: f64) -> i64 {
+    (value - SLACK).ceil() as i64
+}
+
+fn floor(value: f64) -> i64 {
+    (value + SLACK).floor() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{all, robot, with};
+    use lizard_core::gait::GaitId;
+    use lizard_core::part::{End, Side};
+    use lizard_core::section::{Header, Numbers};
+
+    /// 256 steps to a millimetre: the scale of every mechanism of the unequal robot.
+    const PER_MM: f64 = 256.0;
+
+    #[test]
+    fn every_link_goes_where_it_belongs() {
+        let robot = robot("unequal");
+        let l = robot.lizard().links;
+        let content = robot.content();
+        let loops = [
+            [l.l0, l.l1, l.l4, l.l2, l.l3],
+            [l.l5, l.l6, l.l9, l.l7, l.l8],
+        ];
+        for (bars, mm) in content.ends.iter().zip(loops) {
+            let ([left, right], [a, b]) = (bars.cranks, bars.couplers);
+            let steps = [bars.base, left, right, a, b];
+            assert_eq!(steps.map(f64::from), mm.map(|mm| mm * PER_MM));
+            assert_eq!(bars.scale.bits, 8);
+        }
+        let aside = (l.l5 - l.l0) / 2.0;
+        let sides = [
+            [aside, l.l10, l.l14, l.l11, l.l12 + l.l13],
+            [-aside, l.l15, l.l19, l.l16, l.l17 + l.l18],
+        ];
+        for (side, mm) in content.sides.iter().zip(sides) {
+            let steps = [
+                f64::from(side.offset),
+                f64::from(side.base),
+                f64::from(side.front),
+                f64::from(side.rear),
+                f64::from(side.nominal),
+            ];
+            assert_eq!(steps, mm.map(|mm| mm * PER_MM));
+            assert_eq!(side.scale.bits, 8);
+        }
+        assert_eq!(content.pins, [6, 14, 19, 12]);
+    }
+
+    #[test]
+    fn least_margins_are_rounded_up_each_its_own() {
+        let limits = robot("unequal").firmware().limits();
+        assert_eq!(
+            [limits.type2, limits.type1, limits.leg],
+            [10_486, 8_848, 12_452].map(Sine)
+        );
+        // An exact one stays.
+        let exact = with("unequal", &[("type2 = 0.32 ", "type2 = 0.25 ")]).expect("0.25");
+        assert_eq!(exact.firmware().limits().type2, Sine(8192));
+    }
+
+    #[test]
+    fn strokes_are_rounded_inwards() {
+        let changes = [
+            ("stroke_min = -19.0", "stroke_min = -19.001"),
+            ("stroke_max = 41.0", "stroke_max = 41.001"),
+        ];
+        let inward = with("unequal", &changes).expect("a stroke");
+        for side in [Side::Left, Side::Right] {
+            let slider = inward.firmware().side(side);
+            let nominal = slider.nominal;
+            assert_eq!(slider.min, nominal - 19 * 256, "{side:?}");
+            assert_eq!(slider.max, nominal + 41 * 256, "{side:?}");
+        }
+    }
+
+    #[test]
+    fn a_travel_ends_at_the_last_step_within_the_servos_pulses() {
+        for (name, robot) in all() {
+            let calibrations = robot.firmware().calibration();
+            for (servo, calibration) in robot.servos().iter().zip(calibrations) {
+                let pulse = |sweep: i32| {
+                    servo.neutral_us + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0
+                };
+                let within = |sweep: i32| {
+                    (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse(sweep))
+                };
+                let (min, max) = (i32::from(calibration.min.0), i32::from(calibration.max.0));
+                assert!(within(min) && !within(min - 1), "{name} {servo:?} {min}");
+                assert!(within(max) && !within(max + 1), "{name} {servo:?} {max}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_travel_of_whole_steps_keeps_its_last_one() {
+        // Neither 9.2 nor 10.4 us is a fraction of two's powers; the quotient may come
+        // out a little short.
+        for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
+            for k in 1..=13 {
+                let way = f64::abs(us_per_degree) * 5.625 * f64::from(k);
+                let servo = Servo {
+                    pin: 9,
+                    neutral: 135.0,
+                    neutral_us: 1500.0,
+                    us_per_degree,
+                    min_us: 1500.0 - way,
+                    max_us: 1500.0 + way,
+                };
+                let calibration = calibration(&servo);
+                let steps = 1024 * k as i16;
+                assert_eq!([calibration.min.0, calibration.max.0], [-steps, steps]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_loop_is_near_stretched_if_its_tips_can_part_beyond_three_quarters_of_its_reach() {
+        // Squared; so where base and cranks exceed .866 of both couplers.
+        for (bars, near) in [
+            ([20.0, 30.0, 30.0], false),
+            ([26.0, 30.0, 30.0], false),
+            ([28.0, 30.0, 30.0], true),
+            ([20.0, 38.0, 30.0], true),
+            ([20.0, 30.0, 38.0], true),
+        ] {
+            let [base, crank_left, crank_right] = bars;
+            let bars = kinematics::FiveBar {
+                base,
+                crank_left,
+                coupler_left: 50.0,
+                coupler_right: 50.0,
+                crank_right,
+            };
+            assert_eq!(five_bar(&bars).near_stretched, near, "{bars:?}");
+        }
+    }
+
+    #[test]
+    fn every_servo_has_its_own_gain_and_neutral() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            for (i, servo) in robot.servos().iter().enumerate() {
+                let calibration = firmware.calibration()[i];
+                for sweep in
+                    (i32::from(calibration.min.0)..i32::from(calibration.max.0)).step_by(97)
+                {
+                    let cycles = 16.0
+                        * (servo.neutral_us
+                            + servo.us_per_degree * f64::from(sweep) * 360.0 / 65536.0);
+                    let width = calibration.width(Sweep(sweep as i16));
+                    // A half of a cycle each: the neutral, the gain over the travel, the
+                    // product.
+                    let off = (f64::from(width.0) - cycles).abs();
+                    assert!(off <= 1.5, "{name} A{}: {off} cycles at {sweep}", i + 1);
+                }
+                let neutral = f64::from(firmware.neutral()[i].0) * 360.0 / 65536.0;
+                assert!((neutral - servo.neutral).abs() <= 0.5 * 360.0 / 65536.0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_reach_holds_every_phase_of_every_gait_and_is_reached() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            let mut widest = [(0, 0); 4];
+            for gait in GaitId::all(firmware.gait_count()) {
+                let gait = firmware.gait(gait);
+                for phase in (0..1 << 24).step_by(1 << 8) {
+                    let pose = gait.pose(firmware.waves(), phase);
+                    for (widest, sweep) in widest.iter_mut().zip(pose.0) {
+                        *widest = (widest.0.min(sweep.0), widest.1.max(sweep.0));
+                    }
+                }
+            }
+            let reach = lizard_core::part::Servo::ALL.map(|servo| {
+                let reach = firmware.reach(servo);
+                (reach.min.0, reach.max.0)
+            });
+            assert_eq!(reach, widest, "{name}");
+        }
+    }
+
+    #[test]
+    fn the_slew_limit_is_rounded_down() {
+        // 260 deg/s are 946.6 steps in a frame.
+        assert_eq!(robot("unequal").firmware().slew(), Slew::new(946));
+        assert_eq!(robot("paper").firmware().slew(), Slew::new(1092));
+    }
+
+    #[test]
+    fn the_slowest_robot_is_one_that_the_core_can_move() {
+        let slow = with("paper", &[("\nslew = 300.0", "\nslew = 10.0")]).expect("slow");
+        assert!(slow.firmware().slew().per_frame >= Slew::SLOWEST);
+    }
+
+    /// The numbers of a section.
+    fn numbers_of(robot: &crate::Robot) -> Numbers {
+        let section = robot.section();
+        Flash::from(section.as_slice()).read(size_of::<Header>())
+    }
+
+    #[test]
+    fn only_unequal_couplers_and_wide_cranks_have_further_tables() {
+        for (name, robot) in all() {
+            // Where a curve begins; both ends have the same couplers, and share their curves.
+            let [head, tail] = numbers_of(&robot).curves;
+            let [rise, stretched, folded, skew] = head;
+            assert_ne!(rise, 0, "{name}");
+            for curve in [folded, skew] {
+                assert_eq!(curve != 0, name == "unequal", "{name}");
+            }
+            assert_eq!([rise, folded, skew], [tail[0], tail[2], tail[3]], "{name}");
+            // Its tail alone has cranks that part so far.
+            assert_eq!(
+                [stretched != 0, tail[1] != 0],
+                [false, name == "unequal"],
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_larger_robot_has_a_coarser_step_where_its_lengths_need_one() {
+        let (paper, large) = (robot("paper"), robot("large"));
+        for end in [End::Head, End::Tail] {
+            assert_eq!(paper.firmware().end(end).bars().scale().bits, 8);
+            assert_eq!(large.firmware().end(end).bars().scale().bits, 8);
+        }
+        for side in [Side::Left, Side::Right] {
+            let (small, long) = (paper.firmware().side(side), large.firmware().side(side));
+            assert_eq!(long.scale.bits, 7);
+            assert_eq!(4 * u32::from(long.nominal), 3 * u32::from(small.nominal));
+        }
+    }
+}

@@ -1,0 +1,334 @@
+//! The gaits as the firmware stores them: waveforms of 128 samples that several servos
+//! share, each servo with an offset and a gain.
+//!
+//! What a table means, and how it is read between its samples, is the core's:
+//! [`lizard_core::gait`].
+
+use lizard_core::gait::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
+use lizard_core::units::CYCLE;
+
+use crate::gaits::{Gait, Stride, Waveform, canonical};
+use crate::measures::servo::FORWARD;
+use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
+
+/// Two waveforms that differ by less than this (deg) share a table: a third of
+/// an angle step.
+const SAME: f64 = 0.002;
+
+/// Everything the firmware needs to walk.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Tables {
+    /// Waveforms, angle steps at gain 1.
+    pub waves: Vec<Wave>,
+    /// Gaits in the order of the file.
+    pub gaits: Vec<TableGait>,
+    /// Their names one after the other, words with a blank in between.
+    pub names: Vec<u8>,
+}
+
+/// Why a gait has no table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unfit {
+    /// The sweep of a servo (by its index) is half a turn or more.
+    HalfTurn(usize),
+    /// The gaits so far share as many waveforms as there may be.
+    Waves,
+}
+
+impl Tables {
+    /// Builds the tables, or names the first gait (by index) that the fixed point
+    /// does not hold.
+    pub fn new(gaits: &[Gait]) -> Result<Self, (usize, Unfit)> {
+        let mut bank = Bank::default();
+        let mut parts = Vec::new();
+        for (g, gait) in gaits.iter().enumerate() {
+            for (s, stride) in gait.strides.iter().enumerate() {
+                let part = bank.find(stride, FORWARD[s]);
+                parts.push(part.ok_or((g, Unfit::HalfTurn(s)))?);
+            }
+            if bank.samples.len() > MOST_WAVES {
+                return Err((g, Unfit::Waves));
+            }
+        }
+        let largest = bank.largest(&parts);
+        if bank.samples.is_empty() {
+            // A robot that only stands still reads one table, of zeros.
+            bank.samples.push([0.0; SAMPLES]);
+        }
+        let waves =
+            bank.samples
+                .iter()
+                .zip(largest.iter().chain([&1.0]))
+                .map(|(samples, largest)| {
+                    samples.map(|value| (value * largest * STEPS_PER_DEGREE).round() as i16)
+                });
+        let channel = |part: &Part| {
+            let gain = part.amplitude / largest.get(part.wave).copied().unwrap_or(1.0);
+            Channel {
+                wave: part.wave as u16,
+                // A shift of a whole cycle is none: the cast to u16 wraps.
+                offset: (part.ahead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
+                gain: (gain * ONE_Q14).round() as i16,
+            }
+        };
+        let mut names = Vec::new();
+        let mut table = Vec::new();
+        for (gait, parts) in gaits.iter().zip(parts.chunks(4)) {
+            table.push(TableGait {
+                name_start: names.len() as u16,
+                name_length: gait.name.len() as u16,
+                increment: increment(gait),
+                channels: [&parts[0], &parts[1], &parts[2], &parts[3]].map(channel),
+            });
+            names.extend(gait.name.replace('-', " ").bytes());
+        }
+        Ok(Self {
+            waves: waves.collect(),
+            gaits: table,
+            names,
+        })
+    }
+}
+
+/// Advance of the phase in one frame, 1/2^24 cycle.
+fn increment(gait: &Gait) -> i32 {
+    let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
+    if gait.reversed { -step } else { step }
+}
+
+/// A stride as amplitude times a waveform of the bank.
+struct Part {
+    wave: usize,
+    /// Cycles by which it reads ahead.
+    ahead: f64,
+    /// deg, counter-clockwise positive.
+    amplitude: f64,
+}
+
+/// The waveforms so far, each scaled to a largest value of 1.
+#[derive(Default)]
+struct Bank {
+    samples: Vec<[f64; SAMPLES]>,
+}
+
+impl Bank {
+    /// Finds or adds the waveform of a stride; `forward` is the sense in which
+    /// the servo moves its foot forward. None if it sweeps half a turn.
+    fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
+        let (waveform, shift, sign) = canonical(&stride.waveform);
+        let samples: [f64; SAMPLES] =
+            std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
+        let peak = samples
+            .iter()
+            .fold(0.0f64, |peak, value| peak.max(value.abs()));
+        let amplitude = stride.amplitude * peak * sign * forward;
+        if amplitude == 0.0 || waveform == Waveform::Still {
+            return Some(Part {
+                wave: 0,
+                ahead: 0.0,
+                amplitude: 0.0,
+            });
+        }
+        if amplitude.abs() >= 180.0 {
+            return None;
+        }
+        let ahead = -stride.start - shift;
+        let samples = samples.map(|value| value / peak);
+        let found = self.samples.iter().enumerate().find_map(|(wave, known)| {
+            let rotation = same(known, &samples, SAME / amplitude.abs())?;
+            Some(Part {
+                wave,
+                ahead: ahead + rotation as f64 / SAMPLES as f64,
+                amplitude,
+            })
+        });
+        Some(found.unwrap_or_else(|| {
+            self.samples.push(samples);
+            Part {
+                wave: self.samples.len() - 1,
+                ahead,
+                amplitude,
+            }
+        }))
+    }
+
+    /// The largest amplitude that each waveform needs, deg. Tables are
+    /// stored at that size, so that no gain exceeds 1.
+    fn largest(&self, parts: &[Part]) -> Vec<f64> {
+        let of = |wave| {
+            parts
+                .iter()
+                .filter(|p| p.wave == wave)
+                .fold(0.0f64, |most, p| most.max(p.amplitude.abs()))
+        };
+        (0..self.samples.len()).map(of).collect()
+    }
+}
+
+/// The rotation by which `known` gives `samples` within `tolerance`.
+fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<usize> {
+    (0..SAMPLES).find(|rotation| {
+        (0..SAMPLES).all(|i| (samples[i] - known[(i + rotation) % SAMPLES]).abs() <= tolerance)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+
+    use crate::Robot;
+    use crate::testing::{all, body, robot, with};
+
+    fn waves(robot: &Robot) -> usize {
+        robot.firmware().waves().len()
+    }
+
+    #[test]
+    fn a_reversed_gait_is_its_table_with_the_phase_turned_round() {
+        let robot = robot("own-gaits");
+        let gait = |name: &str| {
+            let place = robot.gait(name).expect(name).index();
+            robot.firmware().gait(id(&robot, place))
+        };
+        for (forth, back) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
+            let (forth, back) = (gait(forth), gait(back));
+            assert_eq!(forth.channels, back.channels);
+            assert!(forth.increment > 0);
+            assert_eq!(forth.increment, -back.increment);
+        }
+        let (on, once) = (gait("stroll-on"), gait("stroll"));
+        assert_eq!(on.channels, once.channels);
+        // 2.4 s are half as many frames again as 1.6 s: 120 of 2^24 cycles.
+        assert_eq!(on.increment, 139_810);
+    }
+
+    #[test]
+    fn increments_add_up_to_the_period() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let increment = robot.firmware().gait(id(&robot, gait.index())).increment;
+                let frames = 50.0 * gait.period();
+                let off = f64::from(increment.abs()) * frames - f64::from(1 << 24);
+                assert!(off.abs() <= 0.5 * frames, "{name} {}", gait.name());
+                assert_eq!(increment < 0, gait.is_reversed());
+            }
+        }
+    }
+
+    fn id(robot: &Robot, place: usize) -> lizard_core::gait::GaitId {
+        lizard_core::gait::GaitId::all(robot.gaits().len())
+            .nth(place)
+            .expect("a gait")
+    }
+
+    #[test]
+    fn names_are_words_one_after_the_other() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let firmware = robot.firmware();
+                let spoken: Vec<u8> = firmware.name(id(&robot, gait.index())).collect();
+                assert_eq!(
+                    String::from_utf8(spoken).expect("ASCII"),
+                    gait.name().replace('-', " "),
+                    "{name}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_leg_that_starts_later_reads_its_table_later() {
+        let robot = robot("paper");
+        let walk = robot.gait("walk").expect("walk");
+        for phase in 0..=u16::MAX {
+            let [a1, a2, a3, a4] = walk.table_sweeps(phase);
+            // LH starts at 0, LF a quarter later, RH half a cycle, RF three quarters.
+            let hind_left = |later: u16| walk.table_sweeps(phase.wrapping_sub(later))[3];
+            assert_eq!([a1, a4], [hind_left(0x4000), hind_left(0)]);
+            assert_eq!([-a3, -a2], [hind_left(0x8000), hind_left(0xc000)]);
+        }
+    }
+
+    #[test]
+    fn mirrored_gaits_mirror_each_other_to_the_last_step() {
+        for (name, a, b) in [
+            ("paper", "left", "right"),
+            ("paper", "arc-left", "arc-right"),
+            ("unequal", "left", "right"),
+            ("own-gaits", "veer-left", "veer-right"),
+            ("own-gaits", "nod", "nod-to-the-left"),
+        ] {
+            let robot = robot(name);
+            let (a, b) = (robot.gait(a).expect(a), robot.gait(b).expect(b));
+            for phase in 0..=u16::MAX {
+                let [a1, a2, a3, a4] = a.table_sweeps(phase);
+                let mirrored = [-a2, -a1, -a4, -a3];
+                let there = b.table_sweeps(phase);
+                // Halves are rounded up on either side of zero.
+                assert!(
+                    mirrored.iter().zip(there).all(|(m, t)| m.abs_diff(t) <= 1),
+                    "{name} {} at {phase}",
+                    a.name()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_differs_only_in_amplitude_start_and_gain_shares_a_waveform() {
+        // Two waves, two held shapes for four turns, one path for two servos that
+        // mirror each other.
+        assert_eq!(waves(&robot("paper")), 5);
+        let other = with("paper", &[("amplitude = 15.0", "amplitude = 14.0")]).expect("a trot");
+        assert_eq!(waves(&other), 5);
+        let duty = with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("a trot");
+        assert_eq!(waves(&duty), 5);
+        let more = with(
+            "paper",
+            &[(
+                "[gait.trot]",
+                "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]",
+            )],
+        );
+        assert_eq!(waves(&more.expect("a step")), 6);
+    }
+
+    #[test]
+    fn a_waveform_is_kept_at_its_largest_so_no_gain_exceeds_1() {
+        for (name, robot) in all() {
+            let firmware = robot.firmware();
+            let mut largest = vec![0; waves(&robot)];
+            for gait in robot.gaits() {
+                for channel in firmware.gait(id(&robot, gait.index())).channels {
+                    let of = &mut largest[usize::from(channel.wave)];
+                    *of = channel.gain.unsigned_abs().max(*of);
+                }
+            }
+            assert!(
+                largest.iter().all(|gain| *gain == 16384),
+                "{name} {largest:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_robot_that_only_stands_has_a_table_of_zeros() {
+        let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+        let robot = Robot::parse(&format!("{}{stand}", body("unequal"))).expect("it stands");
+        assert_eq!(waves(&robot), 1);
+        let stand = &robot.gaits()[0];
+        assert!(!stand.moves());
+        assert_eq!(stand.table_sweeps(12_345), [0; 4]);
+    }
+
+    #[test]
+    fn a_leg_may_not_sweep_half_a_turn() {
+        let gait = "[gait.whirl]\nperiod = 9.0\nwaveform = \"wave\"\nduty = 0.5\namplitude = 90.0\nstart = { LF = 0, RF = 0, RH = 0, LH = 0 }\ngain = { RH = -2.5 }\n[gait.walk]";
+        let refused = with("unequal", &[("[gait.walk]", gait)])
+            .expect_err("half a turn")
+            .to_string();
+        assert!(
+            refused.ends_with("gait.whirl: servo A3 would sweep half a turn or more"),
+            "{refused}"
+        );
+    }
+}
