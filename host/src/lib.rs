@@ -39,8 +39,6 @@ mod suggestion;
 pub mod tune;
 #[cfg(feature = "simulator")]
 pub mod twin;
-#[cfg(feature = "simulator")]
-mod variation;
 mod whole_file;
 
 pub use failure::Failure;

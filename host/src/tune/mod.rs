@@ -1,32 +1,22 @@
 //! `lizard tune`: searches gaits that walk faster with servos that turn no faster.
 
-mod goal;
-mod judge;
-mod plan;
 mod report;
-mod search;
 
 use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot};
+use lizard_tune::{Built, Comparison, Kind, NoTuning, Scored, Tuning, trials};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::json;
 use crate::spread::{Spread, Spreads};
 use crate::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
-use goal::Goal;
-use judge::{Built, Judge, STAND};
-use plan::{Kind, Plan, Space};
-use report::Report;
 
-/// Random robots that a gait is judged by while it is searched.
-const JUDGES: usize = 16;
-/// Those that the report is of come from seeds that the search has not seen.
-const FRESH: u64 = 1 << 40;
-/// Servos slower than this do not walk, deg/s.
-const SLOWEST: f64 = 10.0;
+/// What every robot.toml's gaits begin with.
+const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
 /// Search a gait that walks faster with the same servo rate
 ///
@@ -103,28 +93,31 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if args.json {
         json::line(&mut out, &report)?;
     } else {
-        report.print(&mut out)?;
+        report::print(&report, &mut out)?;
     }
     Ok(out.flush()?)
 }
 
-/// The report; none where a part was computed alone.
-fn tune(robot: &Robot, args: &Args) -> Result<Option<Report>, Failure> {
+/// The comparison; none where a part was computed alone.
+fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
     let gait = surpassed(robot, &args.gait)?;
-    let goal = Goal::of(gait, robot.ground())?;
-    let rate = rate(robot, gait, args.rate)?;
     free(robot, &args.name)?;
-    let Some(found) = found(robot, args, goal, rate)? else {
-        return Ok(None);
-    };
-    let judge = Judge::new(
+    let tuning = Tuning::new(
         robot,
-        goal,
-        args.robots as usize,
-        args.seed.wrapping_add(FRESH),
-    );
-    let report = Report::of(robot, &judge, goal, rate, gait, &found);
-    Ok(Some(report))
+        robot.ground(),
+        gait,
+        args.rate,
+        &args.name,
+        args.seed,
+    )
+    .map_err(|no| {
+        Failure::Input(match no {
+            NoTuning::Goal(_) => no.to_string(),
+            NoTuning::Rate { .. } => format!("--rate {no}"),
+        })
+    })?;
+    let found = found(&tuning, args)?;
+    Ok(found.map(|found| tuning.compare(&found, args.robots as usize)))
 }
 
 fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
@@ -137,20 +130,6 @@ fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failur
             did_you_mean(name, gaits)
         ))
     })
-}
-
-/// How fast servos may turn: as asked, or as fast as in the gait.
-fn rate(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, Failure> {
-    let Some(rate) = asked else {
-        return Ok(gait.audit().peak.speed);
-    };
-    let most = robot.pace().gait_slew;
-    if (SLOWEST..=most).contains(&rate) {
-        return Ok(rate);
-    }
-    Err(Failure::Input(format!(
-        "--rate {rate}: from {SLOWEST} to {most} deg/s, which is limits.gait_slew in robot.toml"
-    )))
 }
 
 /// Refuses a name that robot.toml has already or would not take.
@@ -167,57 +146,47 @@ fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// The best gait of all kinds whose way does not depend on ties; none where a part was
-/// computed alone. Kinds are searched apart from each other, and so are the pieces.
-fn found(robot: &Robot, args: &Args, goal: Goal, rate: f64) -> Result<Option<Built>, Failure> {
+/// The best gait of all kinds; none where a part was computed alone. Kinds are searched apart
+/// from each other, and so are the pieces; the trials of a round on all cores.
+fn found(tuning: &Tuning, args: &Args) -> Result<Option<Built>, Failure> {
     let rounds = args.rounds as usize;
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} gaits, {eta}")
         .expect("the template is well formed");
     let kinds = args.spread.own(Kind::ALL.len());
-    let bar = ProgressBar::new((kinds * search::trials(rounds)) as u64).with_style(style);
-    let judge = Judge::new(robot, goal, JUDGES, args.seed);
-    let widest = Built::widest(robot, goal, rate);
-    let space = Space { goal, widest };
-    let build = |kind: Kind, parameters: &[f64]| {
-        Built::of(robot, &Plan::of(kind, space, parameters), &args.name, rate)
-    };
+    let bar = ProgressBar::new((kinds * trials(rounds)) as u64).with_style(style);
     let one = |place: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = Kind::ALL[place];
-        let judged = |parameters: &[f64]| {
-            bar.inc(1);
-            Some((judge.score(build(kind, parameters)?.gait())?, ()))
-        };
-        let seed = args.seed.wrapping_add(place as u64);
-        let members = search::search(&kind.begin(), rounds, seed, judged);
-        let scores = members
-            .into_iter()
-            .filter_map(|member| Some((member.found?.0, member.parameters)));
-        scores.collect()
+        let mut search = tuning.search(kind);
+        for _ in 0..=rounds {
+            let judged = search.trials().par_iter().map(|parameters| {
+                bar.inc(1);
+                tuning.score(kind, parameters)
+            });
+            let scores: Vec<_> = judged.collect();
+            search.judged(scores);
+        }
+        search.found()
     };
     let pieces = args.spread.all(args, &args.robot, Kind::ALL.len(), one)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);
     };
-    let mut best: Vec<(Kind, f64, Vec<f64>)> = Vec::new();
-    for (kind, piece) in Kind::ALL.into_iter().zip(pieces) {
-        best.extend(
-            piece
-                .into_iter()
-                .map(|(score, parameters)| (kind, score, parameters)),
-        );
-    }
-    best.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let decided = |built: &Built| built.gait().predict(robot.ground()).is_decided();
-    best.into_iter()
-        .filter_map(|(kind, _, parameters)| build(kind, &parameters))
-        .find(decided)
-        .map(Some)
-        .ok_or_else(|| {
-            Failure::Impossible(format!(
-                "no gait was found that robot.toml's limits allow at {rate:.0} deg/s; more --rounds may find one"
-            ))
+    let kinds = Kind::ALL.into_iter().zip(pieces);
+    let scored = kinds.flat_map(|(kind, piece)| {
+        piece.into_iter().map(move |(score, parameters)| Scored {
+            kind,
+            score,
+            parameters,
         })
+    });
+    let found = tuning.best(scored.collect());
+    found.map(Some).ok_or_else(|| {
+        let rate = tuning.rate();
+        Failure::Impossible(format!(
+            "no gait was found that robot.toml's limits allow at {rate:.0} deg/s; more --rounds may find one"
+        ))
+    })
 }
 
 #[cfg(test)]
@@ -234,7 +203,7 @@ mod tests {
 
     const PAPER: &str = include_str!("../../../robots/paper.toml");
 
-    fn tuned(words: &str) -> Result<Report, String> {
+    fn tuned(words: &str) -> Result<Comparison, String> {
         let robot = Robot::parse(PAPER).expect("right");
         let line = Line::try_parse_from(std::iter::once("tune").chain(words.split_whitespace()));
         let args = line.map_err(|error| error.to_string())?.args;
@@ -252,7 +221,7 @@ mod tests {
         assert!(report.faster >= 195, "{report:?}");
         // What is printed may be appended to a robot.toml, and walks as it says.
         let mut printed = Vec::new();
-        report.print(&mut printed).expect("written");
+        report::print(&report, &mut printed).expect("written");
         let printed = String::from_utf8(printed).expect("text");
         let robot = Robot::parse(&format!("{PAPER}\n{printed}")).expect("it builds");
         let gait = robot.gait("tuned").expect("the gait");

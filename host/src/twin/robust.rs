@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot, Travel};
+use lizard_tune::{PLAYED, SPREAD, Variation, quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
 
@@ -11,7 +12,6 @@ use super::replay::Replay;
 use super::report::known;
 use crate::Failure;
 use crate::json;
-use crate::variation::{PLAYED, SPREAD, Variation, quantiles};
 
 /// What a gait's ways come to.
 #[derive(Debug, Serialize)]

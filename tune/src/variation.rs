@@ -103,7 +103,6 @@ impl Variation {
     }
 
     /// No variation: the ground as it is.
-    #[cfg(any(test, feature = "paper"))]
     #[must_use]
     pub fn none(ground: &Ground) -> Self {
         Self {

@@ -2,8 +2,7 @@
 
 use lizard_robot::servo::LEGS;
 use lizard_robot::{CheckedGait, Ground, Travel};
-
-use crate::Failure;
+use thiserror::Error;
 
 /// Less than this in a cycle is no way: mm, deg.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
@@ -14,6 +13,23 @@ fn is_left(servo: usize) -> bool {
 
 fn is_front(servo: usize) -> bool {
     LEGS[servo].ends_with('F')
+}
+
+/// Why a gait of this name has no goal.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum NoGoal {
+    /// Its way depends on which of two feet holds.
+    #[error("where the gait `{0}` leads is undecided: two feet pull against two; tune another one")]
+    Undecided(String),
+    /// It stands, or comes back to where it began.
+    #[error("the gait `{0}` goes nowhere")]
+    Nowhere(String),
+    /// It walks along a curve.
+    #[error(
+        "the gait `{0}` goes ahead and turns; tune a straight gait or a turn on the spot, and make \
+         the bow of it by `like` and `gain`"
+    )]
+    Bow(String),
 }
 
 /// The way that a gait makes, and its sign: ahead and to the left positive.
@@ -30,23 +46,18 @@ impl Goal {
     ///
     /// # Errors
     /// One that stands, goes nowhere for sure, or goes in a bow.
-    pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, Failure> {
-        let name = gait.name();
+    pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
+        let name = || gait.name().to_owned();
         let way = gait.predict(&ground.rigid());
         let (Some(forward), Some(turn)) = (way.forward, way.turn) else {
-            return Err(Failure::Input(format!(
-                "where the gait `{name}` leads is undecided: two feet pull against two; tune another one"
-            )));
+            return Err(NoGoal::Undecided(name()));
         };
         let goes = |value: f64, least: f64| value.abs() >= least;
         match (goes(forward, NOWHERE.0), goes(turn, NOWHERE.1)) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
-            (false, false) => Err(Failure::Input(format!("the gait `{name}` goes nowhere"))),
-            (true, true) => Err(Failure::Input(format!(
-                "the gait `{name}` goes ahead and turns; tune a straight gait or a turn on the spot, and make \
-                 the bow of it by `like` and `gain`"
-            ))),
+            (false, false) => Err(NoGoal::Nowhere(name())),
+            (true, true) => Err(NoGoal::Bow(name())),
         }
     }
 
@@ -106,10 +117,10 @@ mod tests {
 
     #[test]
     fn a_goal_is_what_the_gait_does() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        let robot = Robot::parse(include_str!("../../robots/paper.toml")).expect("right");
         let goal = |name: &str| {
             let gait = robot.gait(name).expect(name);
-            Goal::of(gait, robot.ground()).map_err(|failure| failure.to_string())
+            Goal::of(gait, robot.ground()).map_err(|no| no.to_string())
         };
         assert_eq!(goal("walk"), Ok(Goal::Ahead(1.0)));
         assert_eq!(goal("back"), Ok(Goal::Ahead(-1.0)));

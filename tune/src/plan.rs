@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 use lizard_robot::servo::LEGS;
 
-use super::goal::Goal;
+use crate::goal::Goal;
 
 /// The kinds of gait that are searched, and their parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,11 +2,11 @@
 //! the pace at which its fastest servo turns as fast as it may, and walked on random
 //! robots.
 
-use lizard_robot::{CheckedGait, Robot, Travel};
+use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
 
-use super::goal::Goal;
-use super::plan::{Kind, LONGEST, Plan, Space};
+use crate::goal::Goal;
+use crate::plan::{Kind, LONGEST, Plan, Space};
 use crate::variation::{Variation, quantiles};
 
 /// The largest amplitude of a robot's legs is between these, deg.
@@ -18,7 +18,7 @@ const SLOW: f64 = 3.0;
 /// Rounds in which the period is fitted to the rate.
 const FITS: usize = 3;
 /// What every robot.toml begins with.
-pub const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 /// What every one but this share of the robots surpasses.
 const SLOWEST: f64 = 0.05;
 
@@ -28,13 +28,13 @@ pub struct Built {
     /// The robot that has this gait and `stand`.
     robot: Robot,
     /// Its table.
-    pub fragment: String,
+    fragment: String,
 }
 
 impl Built {
     /// The gait of a plan, its period the shortest with servos not faster than `rate`
     /// (deg/s); none where a limit of the robot forbids it.
-    pub fn of(robot: &Robot, plan: &Plan, name: &str, rate: f64) -> Option<Self> {
+    pub(crate) fn of(robot: &Robot, plan: &Plan, name: &str, rate: f64) -> Option<Self> {
         let build = |period: f64| {
             let fragment = plan.fragment(name, period);
             let robot = robot.with_gaits(&format!("{STAND}{fragment}")).ok()?;
@@ -64,7 +64,7 @@ impl Built {
     }
 
     /// The largest amplitude with which a plain walk is within the robot's limits, deg.
-    pub fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
+    pub(crate) fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
         let walks = |widest: f64| {
             let plan = Plan::of(Kind::Wave, Space { goal, widest }, &Kind::Wave.begin()[0]);
             Self::of(robot, &plan, "x", rate).is_some()
@@ -87,6 +87,11 @@ impl Built {
         self.robot.gaits().last().unwrap_or(&self.robot.gaits()[0])
     }
 
+    /// Its table for robot.toml.
+    pub fn fragment(&self) -> &str {
+        &self.fragment
+    }
+
     /// How fast its fastest servo turns, deg/s.
     fn peak(&self) -> f64 {
         self.gait().audit().peak.speed
@@ -100,18 +105,21 @@ fn fitted(period: f64) -> f64 {
 }
 
 /// Random robots that a gait is judged by.
+#[derive(Debug, Clone)]
 pub struct Judge {
     robot: Robot,
+    ground: Ground,
     goal: Goal,
     robots: Vec<Variation>,
 }
 
 impl Judge {
-    /// So many robots around this one, from this seed on.
-    pub fn new(robot: &Robot, goal: Goal, robots: usize, seed: u64) -> Self {
-        let of = |n: u64| Variation::of(robot.ground(), seed.wrapping_add(n));
+    /// So many robots around this one on this ground, from this seed on.
+    pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robots: usize, seed: u64) -> Self {
+        let of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
         Self {
             robot: robot.clone(),
+            ground: *ground,
             goal,
             robots: (0..robots as u64).map(of).collect(),
         }
@@ -129,19 +137,27 @@ impl Judge {
         self.goal.reached(&self.way(gait)) / period
     }
 
+    /// What the gaits are for.
+    pub const fn goal(&self) -> Goal {
+        self.goal
+    }
+
+    /// Where a cycle in fine steps leads the robot itself, with servos that are where their
+    /// pulses say.
+    pub fn cycle(&self, gait: &CheckedGait) -> Travel {
+        gait.walked(&self.ground).travel
+    }
+
     /// Where a cycle leads the robot itself.
     fn way(&self, gait: &CheckedGait) -> Travel {
-        Variation::none(self.robot.ground()).walked(&self.robot, gait, SERVOS)
+        Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
 
     /// The speed that 95 % of the robots exceed; none for a gait that does not lead
     /// straight to its goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // Asked of a cycle in fine steps: frames of 20 ms leave a period a remainder.
-        if !self
-            .goal
-            .is_true_to(&gait.walked(self.robot.ground()).travel)
-        {
+        if !self.goal.is_true_to(&self.cycle(gait)) {
             return None;
         }
         let [slowest] = quantiles(self.speeds(gait, gait.period()), [SLOWEST]);
@@ -154,7 +170,7 @@ mod tests {
     use super::*;
 
     fn paper() -> Robot {
-        Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
+        Robot::parse(include_str!("../../robots/paper.toml")).expect("right")
     }
 
     fn plan(widest: f64, share: f64) -> Plan {
@@ -204,12 +220,13 @@ mod tests {
             ("left", Goal::Turn(1.0), 13.0),
         ] {
             let gait = robot.gait(name).expect(name);
-            let judge = Judge::new(&robot, goal, 20, 0);
+            let judge = Judge::new(&robot, robot.ground(), goal, 20, 0);
             let score = judge.score(gait).expect("it leads there");
             let exact = judge.exact(gait, gait.period());
             assert!(least < score && score < exact, "{name} {score} {exact}");
         }
         let walk = robot.gait("walk").expect("walk");
-        assert_eq!(Judge::new(&robot, Goal::Turn(1.0), 2, 0).score(walk), None);
+        let turn = Judge::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);
+        assert_eq!(turn.score(walk), None);
     }
 }
