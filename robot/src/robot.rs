@@ -1,9 +1,10 @@
 //! A whole robot.toml.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
+use lizard_avr::Region;
 use lizard_core::gait::{Gait, MOST_WAVES};
 use lizard_core::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
@@ -22,7 +23,10 @@ pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
     content: Content,
-    firmware: CoreRobot,
+    /// What the core reads of it: the content without the maps of certified cells.
+    section: Arc<[u8]>,
+    /// The same for as long as the program runs, once somebody has asked for it.
+    firmware: OnceLock<CoreRobot>,
 }
 
 impl PartialEq for Robot {
@@ -129,8 +133,10 @@ impl Robot {
         if length > usize::from(SPACE) {
             return Err(too_large(&content, length).at("gait"));
         }
-        let flash = flash(&content.section());
-        let unchecked = CoreRobot::unchecked(flash).ok_or_else(|| Problem::Impossible.at(""))?;
+        let section: Arc<[u8]> = content.section().into();
+        let flash = Region::new(&section);
+        let impossible = || Problem::Impossible.at("");
+        let unchecked = lizard_core::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
             let gait = TabledGait::new(gait, index, &tables);
             match audit::check(&gait, &measures, &unchecked) {
@@ -138,11 +144,14 @@ impl Robot {
                 Err(problem) => Err(problem.at(key(gait.name()))),
             }
         });
+        let gaits = gaits.collect::<Checked<_>>()?;
+        lizard_core::robot::Robot::open(flash).map_err(|_| impossible())?;
         Ok(Self {
-            gaits: gaits.collect::<Checked<_>>()?,
+            gaits,
             measures,
             content,
-            firmware: CoreRobot::open(flash).map_err(|_| Problem::Impossible.at(""))?,
+            section,
+            firmware: OnceLock::new(),
         })
     }
 
@@ -266,8 +275,17 @@ impl Robot {
 
     /// The robot as the core reads it, on a host: without the maps of certified cells,
     /// which change no decision.
+    pub fn core(&self) -> lizard_core::robot::Robot<'_> {
+        // It was opened when the robot was read.
+        lizard_core::robot::Robot::unchecked(Region::new(&self.section))
+            .unwrap_or(lizard_core::robot::Robot::NONE)
+    }
+
+    /// The same for whoever runs the core, which may take as long as the program: its section
+    /// stays in memory until the program ends. [`Robot::core`] keeps nothing.
     pub fn firmware(&self) -> &CoreRobot {
-        &self.firmware
+        self.firmware
+            .get_or_init(|| CoreRobot::unchecked(flash(&self.section)).unwrap_or(CoreRobot::NONE))
     }
 
     /// The cells in which its guard is proved to accept every pose.

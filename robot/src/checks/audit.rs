@@ -14,7 +14,7 @@ use crate::gaits::Gait;
 use crate::measures::Measures;
 use crate::measures::servo::NAMES;
 use crate::tables::accuracy::{self, ALL_PHASES};
-use crate::tables::{CoreRobot, TabledGait};
+use crate::tables::TabledGait;
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
 /// Evenly spaced phases that are checked besides the tables' own samples.
@@ -70,7 +70,7 @@ pub struct Audit {
 pub(crate) fn check(
     gait: &TabledGait,
     robot: &Measures,
-    firmware: &CoreRobot,
+    firmware: &lizard_core::robot::Robot<'_>,
 ) -> Result<Audit, Problem> {
     let peak = fastest(gait.gait());
     let mut found: Option<Audit> = None;

@@ -61,7 +61,7 @@ impl Report {
             way: robot.predict(gait),
             sprung: Sprung::of(gait, robot.ground()),
         };
-        let firmware = robot.firmware();
+        let firmware = robot.core();
         Self {
             rows: robot.gaits().iter().map(row).collect(),
             hash: firmware.hash(),

@@ -1,8 +1,10 @@
 //! The robot as the core reads it.
 //!
 //! The core reads a section of flash. On a host that section is in memory, and the core's
-//! motion borrows it for as long as it runs. So a section that the core has got is kept
-//! until the program ends. It has 5 KB at most, and equal sections are kept once.
+//! motion borrows it for as long as it runs. So the section of a robot that the core runs
+//! ([`crate::Robot::firmware`]) is kept until the program ends. It has 5 KB at most, and equal
+//! sections are kept once. Of a robot that is only checked and looked at
+//! ([`crate::Robot::core`]) nothing is kept, so a search may try thousands.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};

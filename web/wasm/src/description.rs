@@ -187,9 +187,10 @@ impl Description {
             };
             checks.iter().map(entry).collect::<Vec<_>>()
         };
-        let board = lizard_core::robot::Robot::supplies(robot.firmware()).board;
+        let core = robot.core();
+        let board = core.supplies().board;
         Self {
-            hash: format!("{:08x}", robot.firmware().hash()),
+            hash: format!("{:08x}", core.hash()),
             name: robot.name().to_string(),
             version: version(),
             start: START,
@@ -204,8 +205,8 @@ impl Description {
             ]
             .concat(),
             stroke: (limits.stroke_min, limits.stroke_max),
-            rail: healthy_rail_mv(&robot.firmware().supplies())
-                .zip(robot.firmware().rail_pin())
+            rail: healthy_rail_mv(&core.supplies())
+                .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot),
