@@ -200,6 +200,28 @@ pub extern "C" fn lizard_put_drawn() {
     });
 }
 
+/// [`Page::make_faster`]: the input is the wish as JSON on one line, and then the text of the robot.toml.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_faster() {
+    answer(|page, input| {
+        let (wish, text) = input.split_once('\n')?;
+        page.make_faster(text, &serde_json::from_str(wish).ok()?)
+            .map(either)
+    });
+}
+
+/// [`Faster::step`](crate::Faster::step) of the search that was begun.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_faster_step() {
+    answer(|page, _| Some(page.faster()?.step()));
+}
+
+/// [`Faster::found`](crate::Faster::found) of the search that was begun.
+#[unsafe(no_mangle)]
+pub extern "C" fn lizard_faster_found(robots: u32) {
+    answer(|page, _| page.faster()?.found(robots as usize));
+}
+
 /// [`Page::path`]: the input is the line as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_path() {

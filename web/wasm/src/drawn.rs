@@ -222,15 +222,7 @@ fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lizard_twin::ServoModel;
-
-    const TEXT: &str = include_str!("../../../robots/paper.toml");
-
-    fn paper() -> (Robot, Twin) {
-        let robot = Robot::parse(TEXT).expect("right");
-        let twin = Twin::new(&robot, ServoModel::IDEAL);
-        (robot, twin)
-    }
+    use crate::paper::{TEXT, paper, with_twin};
 
     /// A circle about the neutral point of an end.
     fn circle(robot: &Robot, end: End, radius: f64) -> Drawn {
@@ -251,7 +243,7 @@ mod tests {
 
     #[test]
     fn the_points_of_a_robot_with_it_go_round_the_circle_that_was_drawn() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         for end in End::ALL {
             let drawn = circle(&robot, end, 6.0);
             let known = drawn.trial(TEXT, &twin).expect("a line").expect("it goes");
@@ -280,7 +272,7 @@ mod tests {
 
     #[test]
     fn a_circle_is_one_harmonic_and_its_line_is_the_circle() {
-        let (robot, _) = paper();
+        let robot = paper();
         let drawn = circle(&robot, End::Head, 6.0);
         let table = drawn.table(neutral(&robot, End::Head)).expect("a line");
         assert!(
@@ -295,7 +287,7 @@ mod tests {
 
     #[test]
     fn what_is_refused_comes_with_a_size_and_a_time_that_do_and_are_the_nearest() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         let drawn = circle(&robot, End::Head, 40.0);
         let no = drawn
             .trial(TEXT, &twin)
@@ -334,7 +326,7 @@ mod tests {
 
     #[test]
     fn a_point_is_no_line() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         let mut drawn = circle(&robot, End::Tail, 0.0);
         assert!(drawn.trial(TEXT, &twin).is_none());
         drawn.points.clear();

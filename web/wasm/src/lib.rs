@@ -12,9 +12,12 @@ mod core_run;
 mod description;
 mod drawn;
 mod edit;
+mod faster;
 mod floor;
 mod map;
 mod page;
+#[cfg(test)]
+mod paper;
 mod place;
 mod room;
 mod scene;
@@ -26,6 +29,7 @@ pub use description::{
 };
 pub use drawn::Drawn;
 pub use edit::{NoSuchLength, with_number};
+pub use faster::{Begun, Faster, Found, Progress, Wish};
 pub use floor::Floor;
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page, Refused};

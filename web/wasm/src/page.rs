@@ -12,6 +12,7 @@ use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Outlook, SERVO_MODELS};
 use crate::drawn::Drawn;
 use crate::edit::{NoSuchLength, with_number, with_word, without};
+use crate::faster::{Begun, Faster, Wish};
 use crate::floor::Floor;
 use crate::map::Map;
 use crate::place::Place;
@@ -78,6 +79,7 @@ pub struct Page {
     asked: [f64; 4],
     model: Option<ServoModel>,
     run: Option<CoreRun>,
+    faster: Option<Faster>,
 }
 
 impl Page {
@@ -91,6 +93,7 @@ impl Page {
         let description = Description::of(&robot);
         self.asked = robot.neutral().into();
         self.run = None;
+        self.faster = None;
         self.twin = Some(Twin::new(&robot, self.model.unwrap_or(ServoModel::SG90)));
         Ok(description)
     }
@@ -260,6 +263,21 @@ impl Page {
     /// What the gait would break, and what would not.
     pub fn trial_drawn(&self, text: &str, drawn: &Drawn) -> Option<Result<Trial, NoTrial>> {
         drawn.trial(text, self.twin.as_ref()?)
+    }
+
+    /// Begins to search a gait that walks faster than this one on the page's robot, whose text
+    /// this is; none without a robot.
+    ///
+    /// # Errors
+    /// Why there is nothing to search.
+    pub fn make_faster(&mut self, text: &str, wish: &Wish) -> Option<Result<Begun, Refused>> {
+        let begun = Faster::begin(text, self.twin.as_ref()?.ground(), wish);
+        Some(begun.map(|faster| self.faster.insert(faster).begun()))
+    }
+
+    /// The search that was begun last.
+    pub fn faster(&mut self) -> Option<&mut Faster> {
+        self.faster.as_mut()
     }
 
     /// The line that the point of an end goes along in a gait that was drawn.

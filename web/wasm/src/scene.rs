@@ -160,10 +160,7 @@ mod tests {
     use lizard_twin::ServoModel;
 
     use super::*;
-
-    fn paper() -> Robot {
-        Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
-    }
+    use crate::paper::{TEXT, paper};
 
     fn at(robot: &Robot, angles: [f64; 4]) -> Scene {
         let mut twin = Twin::new(robot, ServoModel::IDEAL);
@@ -201,8 +198,7 @@ mod tests {
     #[test]
     fn a_loop_that_does_not_close_is_said() {
         // Couplers that just reach at neutral.
-        let text = include_str!("../../../robots/paper.toml");
-        let short = ["l2", "l3"].iter().fold(text.to_string(), |text, link| {
+        let short = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
             text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
         });
         let gaits = short.find("[gait.walk]").expect("walk");

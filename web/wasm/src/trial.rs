@@ -334,15 +334,7 @@ pub(crate) fn nearest(from: i64, to: i64, does: impl Fn(i64) -> bool) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lizard_twin::ServoModel;
-
-    const TEXT: &str = include_str!("../../../robots/paper.toml");
-
-    fn paper() -> (Robot, Twin) {
-        let robot = Robot::parse(TEXT).expect("right");
-        let twin = Twin::new(&robot, ServoModel::IDEAL);
-        (robot, twin)
-    }
+    use crate::paper::{TEXT, paper, with_twin};
 
     fn bars(robot: &Robot, name: &str) -> Bars {
         let gait = robot.gaits().iter().find(|gait| gait.name() == name);
@@ -351,7 +343,7 @@ mod tests {
 
     #[test]
     fn a_gait_taken_apart_and_put_together_is_the_same() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
             let gait = robot
                 .gaits()
@@ -375,7 +367,7 @@ mod tests {
     /// `back` is `walk` in reverse, so two programs know where it leads.
     #[test]
     fn a_gait_that_is_turned_round_walks_as_the_core_in_reverse() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         let back = robot.gait("back").expect("there");
         let known = Outlook::of(&twin, back).way.forward().expect("decided");
         let tried = trial(TEXT, &bars(&robot, "back"), &twin).expect("it walks");
@@ -403,7 +395,7 @@ mod tests {
 
     #[test]
     fn what_is_refused_comes_with_values_that_do_and_are_the_nearest() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         let wanted = Bars {
             amplitude: 60.0,
             ..bars(&robot, "walk")
@@ -435,7 +427,7 @@ mod tests {
 
     #[test]
     fn the_table_stands_in_a_robot_toml() {
-        let (robot, _) = paper();
+        let robot = paper();
         let mine = Bars {
             name: "mine".to_string(),
             amplitude: 18.5,
@@ -447,7 +439,7 @@ mod tests {
 
     #[test]
     fn a_gait_takes_the_place_of_the_one_of_its_name() {
-        let (robot, _) = paper();
+        let robot = paper();
         let walk = Bars {
             amplitude: 15.0,
             ..bars(&robot, "walk")
@@ -471,7 +463,7 @@ mod tests {
 
     #[test]
     fn a_name_that_cannot_be_is_refused_without_other_values() {
-        let (robot, twin) = paper();
+        let (robot, twin) = with_twin();
         let no = trial(
             TEXT,
             &Bars {
