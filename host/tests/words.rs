@@ -153,3 +153,10 @@ fn every_command_has_a_manual_page_that_names_its_options() {
     let whole = std::fs::read_to_string(pages.join("lizard.1")).expect("it is there");
     assert!(whole.contains("lizard\\-console(1)"), "{whole}");
 }
+
+#[test]
+fn bench_without_a_build_says_what_it_needs_and_where_it_comes_from() {
+    let words = complaint(&["bench"]);
+    assert!(words.contains("`make firmware`"), "{words}");
+    assert!(words.contains("lizard bench --elf "), "{words}");
+}

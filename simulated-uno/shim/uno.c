@@ -337,6 +337,8 @@ void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
 }
 
 void uno_set_baud(struct uno *uno, double baud) { sender_set_baud(&uno->sender, baud); }
+uint32_t uno_cycles_per_bit(const struct uno *uno) { return usart_cycles_per_bit(uno->avr); }
+uint8_t uno_sampled(uint8_t byte, double ratio) { return usart_sampled(byte, ratio); }
 void uno_stop_at_line(struct uno *uno, bool on) { uno->stop_at_line = on; }
 size_t uno_unsent(const struct uno *uno) { return sender_unsent(&uno->sender); }
 uint64_t uno_sent(const struct uno *uno) { return uno->sender.sent; }

@@ -35,6 +35,8 @@ void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
 void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_low);
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length);
 void uno_set_baud(struct uno *uno, double baud);
+uint32_t uno_cycles_per_bit(const struct uno *uno);
+uint8_t uno_sampled(uint8_t byte, double ratio);
 /* A foreign interrupt of so many cycles, now or when interrupts are on next. */
 void uno_hold(struct uno *uno, uint64_t cycles);
 /* Main executes nothing before cycle `until`; interrupts are served. */

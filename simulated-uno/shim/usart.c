@@ -14,13 +14,26 @@ enum { /* UCSR0B */
 	RXEN = 1 << 4, TXEN = 1 << 3,
 };
 
+#define DATA_BITS 8
 #define FRAME_BITS 10
 #define BAUD_TOLERANCE 0.045 /* a frame's last sample leaves its bit beyond this */
 
-static uint32_t cycles_per_bit(const avr_t *avr)
+uint32_t usart_cycles_per_bit(const avr_t *avr)
 {
 	uint32_t ubrr = avr->data[REG_UBRR0L] | (avr->data[REG_UBRR0H] & 0x0f) << 8;
 	return (ubrr + 1) * (avr->data[REG_UCSR0A] & U2X ? 8 : 16);
+}
+
+uint8_t usart_sampled(uint8_t byte, double ratio)
+{
+	uint32_t line = 1u << (DATA_BITS + 1) | (uint32_t)byte << 1; /* stop bit, data, start bit */
+	uint8_t sampled = 0;
+	for (int bit = 0; bit < DATA_BITS; bit++) {
+		double at = (bit + 1.5) * ratio;
+		if (at >= FRAME_BITS || line >> (int)at & 1)
+			sampled |= 1 << bit;
+	}
+	return sampled;
 }
 
 /* Brings RXC, FE and DOR in step with the receive buffer. */
@@ -63,8 +76,9 @@ static void receive(void *param, struct line_byte byte, double sender_cycles_per
 	const avr_t *avr = usart->avr;
 	if (!(avr->data[REG_UCSR0B] & RXEN))
 		return;
-	double error = cycles_per_bit(avr) / sender_cycles_per_bit - 1.0;
-	bool frame_error = byte.stop_low || fabs(error) > BAUD_TOLERANCE;
+	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
+	bool frame_error = byte.stop_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
+	byte.value = usart_sampled(byte.value, ratio);
 	if (usart->count == 2) {
 		usart->held = byte.value;
 		usart->held_frame_error = frame_error;
@@ -105,7 +119,7 @@ static avr_cycle_count_t sent(avr_t *avr, avr_cycle_count_t when, void *param)
 		usart->transmitting = usart->next;
 		usart->next_full = false;
 		avr_raise_interrupt(avr, &usart->vectors->udrc);
-		return when + FRAME_BITS * cycles_per_bit(avr);
+		return when + FRAME_BITS * usart_cycles_per_bit(avr);
 	}
 	usart->busy = false;
 	avr_raise_interrupt(avr, &usart->vectors->txc);
@@ -121,7 +135,7 @@ static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *para
 	if (!usart->busy) {
 		usart->busy = true;
 		usart->transmitting = value;
-		avr_cycle_timer_register(avr, FRAME_BITS * cycles_per_bit(avr), sent, usart);
+		avr_cycle_timer_register(avr, FRAME_BITS * usart_cycles_per_bit(avr), sent, usart);
 	} else {
 		usart->next = value;
 		usart->next_full = true;

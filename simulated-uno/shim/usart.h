@@ -43,4 +43,11 @@ void usart_reset(struct usart *usart);
 /* Its end of the cable. */
 struct receiver usart_receiver(struct usart *usart);
 
+/* How long a bit is, by the registers of this moment. */
+uint32_t usart_cycles_per_bit(const avr_t *avr);
+/* What a receiver reads in a byte whose sender has another rate: each data bit in its middle,
+ * counted from the edge of the start bit. `ratio`: the receiver's bit by the sender's. The line
+ * is high behind the frame, as between bytes that do not follow each other at once. */
+uint8_t usart_sampled(uint8_t byte, double ratio);
+
 #endif

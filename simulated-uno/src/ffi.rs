@@ -101,6 +101,8 @@ unsafe extern "C" {
     pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, stop_low: bool);
     pub fn uno_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
+    pub fn uno_cycles_per_bit(uno: *const RawUno) -> u32;
+    pub fn uno_sampled(byte: u8, ratio: f64) -> u8;
     pub fn uno_hold(uno: *mut RawUno, cycles: u64);
     pub fn uno_stall_main(uno: *mut RawUno, until: u64);
     pub fn uno_poke(uno: *mut RawUno, address: u16, value: u8);

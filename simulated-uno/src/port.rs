@@ -6,8 +6,10 @@
 //! terminal such as /dev/pts/3, and opening it resets the chip, as the DTR line of a USB
 //! cable does on an UNO.
 //!
-//! Three things differ from a cable. The speed set at the port has no effect: it
-//! is always the chip's 115200 baud. A second opening resets the chip only if
+//! The speed that a program sets at the port is that of the line: at another speed than the
+//! chip's, both read other bytes than were sent. It is 115200 baud until a program sets it.
+//!
+//! Two things differ from a cable. A second opening resets the chip only if
 //! all programs had closed the port. And toggling DTR while it is open does
 //! nothing; the programs that try get `Inappropriate ioctl for device`.
 //!
@@ -31,7 +33,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::pty::Pty;
-use crate::{FREQUENCY, State, Uno};
+use crate::{FREQUENCY, State, Uno, ffi};
 
 /// How often the port is checked: as often as the USB chip of a UNO does.
 const TICK: Duration = Duration::from_millis(1);
@@ -134,6 +136,8 @@ impl Port {
             uno.take_transmitted();
             uno.reset();
         }
+        let baud = self.pty.baud()?;
+        uno.set_baud(baud);
         let room = MOST_UNSENT.saturating_sub(uno.unsent());
         let mut bytes = [0; MOST_UNSENT];
         let read = self.pty.read(&mut bytes[..room])?;
@@ -143,9 +147,11 @@ impl Port {
         }
         uno.forget_received();
         let sent = uno.take_transmitted();
+        let ratio = uno.chip_baud() / baud;
         // Asked again, since this program may have been held up meanwhile.
         if self.open && self.pty.is_open()? {
-            self.unread.extend(sent.iter().map(|sent| sent.byte));
+            self.unread
+                .extend(sent.iter().map(|sent| sampled(sent.byte, ratio)));
             self.unread.truncate(MOST_UNREAD);
             let written = self.pty.write(&self.unread)?;
             self.unread.drain(..written);
@@ -164,6 +170,12 @@ impl Port {
         }
         due.min(most)
     }
+}
+
+/// What a receiver reads in a byte if its bits are `ratio` times as long as the sender's.
+fn sampled(byte: u8, ratio: f64) -> u8 {
+    // SAFETY: the shim computes with two numbers.
+    unsafe { ffi::uno_sampled(byte, ratio) }
 }
 
 fn cycles(time: Duration) -> u64 {

@@ -2,8 +2,8 @@
 //! end in this program.
 //!
 //! It differs from a serial port in three things. It has no DTR line, so this module
-//! watches the file to notice that it is opened. The speed that a program sets has no
-//! effect. And what a program leaves unread would wait for the next program, while the
+//! watches the file to notice that it is opened. The speed that a program sets changes
+//! nothing by itself, but can be asked for. And what a program leaves unread would wait for the next program, while the
 //! driver of a real port forgets it; so it is thrown away here.
 //!
 //! For that, this program opens the port itself for a moment. If another thread starts a
@@ -25,7 +25,7 @@ use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr};
 
-/// The speed that `stty` shows until somebody sets another.
+/// The speed until a program sets another.
 const BAUD: u32 = 115_200;
 /// The longest time from the start of a program to its execution, on a busy machine.
 const MOST_BEFORE_EXECUTION: Duration = Duration::from_secs(10);
@@ -162,6 +162,18 @@ impl Pty {
             Ok(closed || !self.is_open()?)
         })?;
         self.events(|_rest| {})
+    }
+
+    /// The speed that a program has set last, in baud.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub(crate) fn baud(&self) -> io::Result<f64> {
+        // Linux gives the settings of the other end. Speed 0 asks a modem to hang up.
+        Ok(match tcgetattr(&self.ours)?.output_speed() {
+            0 => f64::from(BAUD),
+            baud => f64::from(baud),
+        })
     }
 
     /// Reads what programs have written, 0 bytes if there is nothing.

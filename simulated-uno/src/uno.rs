@@ -251,6 +251,13 @@ impl Uno {
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
+    /// The baud rate that the chip's USART has now, by its registers.
+    #[must_use]
+    pub fn chip_baud(&self) -> f64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
+        FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
+    }
+
     /// Queued bytes that are not through the line yet.
     #[must_use]
     pub fn unsent(&self) -> usize {

@@ -12,6 +12,7 @@ use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use lizard_time_limit::LIMIT;
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use simulated_uno::avr_gcc;
 use simulated_uno::{Background, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
 
@@ -63,12 +64,16 @@ fn open(path: &Path) -> File {
 }
 
 fn read(port: &File, count: usize) -> String {
+    String::from_utf8_lossy(&bytes(port, count)).into_owned()
+}
+
+fn bytes(port: &File, count: usize) -> Vec<u8> {
     let mut port = port.try_clone().expect("another of it");
     let what = format!("{count} bytes from the chip");
     LIMIT.within(&what, move || {
         let mut bytes = vec![0; count];
         port.read_exact(&mut bytes).expect("bytes come");
-        String::from_utf8_lossy(&bytes).into_owned()
+        bytes
     })
 }
 
@@ -94,6 +99,22 @@ fn bytes_pass_both_ways_as_they_are() {
     // What a terminal would swallow or change: CR, LF, interrupt, end of file.
     port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
     assert_eq!(read(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
+    drop(port);
+    stopped(board);
+}
+
+#[test]
+fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
+    let board = served();
+    let mut port = open(board.path());
+    assert_eq!(read(&port, 2), "<r");
+    let mut settings = tcgetattr(&port).expect("its settings");
+    settings.set_speed(57_600).expect("a speed");
+    tcsetattr(&port, OptionalActions::Now, &settings).expect("they are taken");
+    port.write_all(b"0").expect("it takes bytes");
+    // The chip reads 0, as data_sheet/serial.rs has it, and sends 1 twice as fast as is read:
+    // at its bits 3.1, 5.1 and 7.1, which are 0, at its stop bit and in the silence.
+    assert_eq!(bytes(&port, 1), [0b1111_1000]);
     drop(port);
     stopped(board);
 }

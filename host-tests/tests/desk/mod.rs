@@ -1,6 +1,6 @@
 //! A board as it is sold, at a port of this machine, for the programs that write one: a
-//! simulated UNO, with the boot loader of a stock UNO in flash, behind a pseudo terminal and
-//! in real time.
+//! simulated UNO, with the boot loader of a stock UNO or of an old Nano in flash, behind a pseudo
+//! terminal and in real time.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -15,8 +15,13 @@ use crate::shell::Shell;
 pub const BOOT: usize = 0x7e00;
 
 pub fn boot_loader() -> Image {
-    let elf: PathBuf = root().join("target/flash-test/optiboot.elf");
-    Image::read(elf).expect("`make flash-test` compiles the boot loader")
+    loader("optiboot.elf")
+}
+
+/// A file that `make flash-test` has made.
+pub fn loader(name: &str) -> Image {
+    let path: PathBuf = root().join("target/flash-test").join(name);
+    Image::read(path).expect("`make flash-test` makes the boot loaders")
 }
 
 /// A board at a port of this machine, and what its pins have done.
@@ -28,8 +33,12 @@ pub struct Desk {
 
 impl Desk {
     pub fn with_a_new_board() -> Self {
+        Self::with(boot_loader())
+    }
+
+    pub fn with(loader: Image) -> Self {
         Self {
-            uno: Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet),
+            uno: Uno::with_boot_loader(loader, Fidelity::DataSheet),
             port: Port::new().expect("a pseudo terminal"),
             edges: Vec::new(),
         }

@@ -30,7 +30,7 @@ pub struct Args {
     /// The firmware that was built, with the names of its functions:
     /// target/avr-atmega328p/release/lizard.elf
     #[arg(long, value_name = "FILE")]
-    elf: PathBuf,
+    elf: Option<PathBuf>,
     /// Print the table as one JSON object
     #[arg(long)]
     json: bool,
@@ -58,8 +58,15 @@ impl<'a> Judged<'a> {
 /// # Errors
 /// No firmware, a firmware that dies or does not answer, a broken budget.
 pub fn run(args: Args) -> Result<(), Failure> {
+    let Some(elf) = args.elf else {
+        return Err(Failure::Input(
+            "functions are measured by their names, which the firmware inside this program does \
+             not have. Build it from the source with `make firmware`, then: lizard bench --elf \
+             target/avr-atmega328p/release/lizard.elf"
+                .to_owned(),
+        ));
+    };
     let robot = args.robot.load()?;
-    let elf = args.elf;
     firmware::of_robot(Some(&elf), &args.robot, &robot)?;
     let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
     let progress = ProgressBar::new_spinner();

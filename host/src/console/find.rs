@@ -4,7 +4,8 @@ use serialport::{SerialPortInfo, SerialPortType};
 
 /// Vendors whose USB chips are on UNOs and their copies: Arduino under two numbers,
 /// and WCH, the maker of the CH340.
-const VENDORS: [u16; 3] = [0x2341, 0x2a03, 0x1a86];
+const VENDORS: [u16; 3] = [ARDUINO[0], ARDUINO[1], 0x1a86];
+const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
 
 /// A USB serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,6 +67,14 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
         vendor: usb.vid,
         product: usb.product,
     })
+}
+
+impl UsbPort {
+    /// Whether its chip has a number of Arduino's.
+    #[must_use]
+    pub fn is_arduinos(&self) -> bool {
+        ARDUINO.contains(&self.vendor)
+    }
 }
 
 /// The one port with a UNO's USB chip, or else the only port.

@@ -9,7 +9,7 @@ use serialport::{ErrorKind, SerialPort};
 use super::find;
 
 /// The console's speed.
-const BAUD: u32 = 115_200;
+pub const BAUD: u32 = 115_200;
 /// How long a read waits for a byte, and so how often a loop over it turns.
 const READ: Duration = Duration::from_millis(5);
 /// How long another program may take to close the port.

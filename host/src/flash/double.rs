@@ -1,15 +1,17 @@
 //! For tests: a board whose boot loader is played, byte for byte as optiboot.c, version 4.4,
-//! has it, with troubles where a test wants them. Time does not pass in it.
+//! or ATmegaBOOT_168.c has it, with troubles where a test wants them. Time does not pass in it.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 
-use super::stk500::Board;
+use super::stk500::{Board, Kind};
 
 /// The board, its flash, and what is to go wrong.
 pub struct Double {
-    /// All 32 KiB; optiboot itself is a few bytes at its end here.
+    /// All 32 KiB; the boot loader itself is a few bytes at its start here.
     pub flash: Vec<u8>,
+    /// Which loader it is: at another speed it hears nothing.
+    pub kind: Kind,
     /// What the loader tells of the chip.
     pub signature: [u8; 3],
     /// A program that talks on until the reset, and what is heard of it afterwards.
@@ -36,6 +38,8 @@ pub struct Double {
     pub received: usize,
     /// Bytes from the board so far, likewise.
     pub sent: usize,
+    /// What ATmegaBOOT did not understand since the reset.
+    errors: usize,
     listening: bool,
     unheard: usize,
     address: usize,
@@ -46,10 +50,21 @@ pub struct Double {
 impl Double {
     /// A board with a chip whose flash is blank.
     pub fn blank() -> Self {
+        Self::of(Kind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
+    }
+
+    /// An old Nano, likewise.
+    pub fn old_nano() -> Self {
+        Self::of(Kind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
+    }
+
+    fn of(kind: Kind, start: usize, loader: [u8; 4]) -> Self {
         let mut flash = vec![0xff; 0x8000];
-        flash[0x7e00..0x7e04].copy_from_slice(&[0x11, 0x24, 0x84, 0xb7]);
+        flash[start..start + 4].copy_from_slice(&loader);
         Self {
             flash,
+            kind,
+            errors: 0,
             signature: [0x1e, 0x95, 0x0f],
             garbage: Vec::new(),
             deaf: 0,
@@ -98,6 +113,12 @@ impl Double {
             self.command = command;
             return;
         }
+        if command[length - 1] != b' ' && self.kind == Kind::AtmegaBoot {
+            self.errors += 1;
+            // MAX_ERROR_COUNT: the program starts.
+            self.listening = self.errors < 5;
+            return;
+        }
         if command[length - 1] != b' ' {
             // verifySpace(): the watchdog resets the chip, and the program starts.
             self.listening = false;
@@ -117,7 +138,8 @@ impl Double {
             }
             b'd' => self.write_page(&command[4..length - 1]),
             b'Q' => {
-                self.listening = false;
+                // ATmegaBOOT listens on, until nobody says anything for a while.
+                self.listening = self.kind == Kind::AtmegaBoot;
                 self.left = true;
             }
             _ => {}
@@ -143,9 +165,10 @@ impl Double {
 }
 
 impl Board for Double {
-    fn reset(&mut self) -> io::Result<()> {
+    fn reset(&mut self, baud: u32) -> io::Result<()> {
         self.resets += 1;
-        self.listening = !self.mute;
+        self.errors = 0;
+        self.listening = !self.mute && baud == self.kind.baud();
         self.unheard = self.deaf;
         self.left = false;
         self.command.clear();

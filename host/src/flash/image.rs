@@ -12,6 +12,9 @@ use lizard_core::section::START;
 pub const PAGE: usize = 128;
 /// Where the boot loader of a UNO begins.
 pub const BOOT: usize = 0x7e00;
+/// Where the boot section of a Nano begins (the fuses of Arduino's boards.txt: 2 KB). The chip
+/// starts there, whether the boot loader is as long or not.
+pub const NANO_BOOT: usize = 0x7800;
 /// A byte of flash that was never written.
 pub const BLANK: u8 = 0xff;
 

@@ -1,4 +1,4 @@
-//! `lizard flash`: the firmware into a UNO, by the boot loader that every UNO has.
+//! `lizard flash`: the firmware into a UNO or a Nano, by the boot loader that each of them has.
 //!
 //! A boot loader is talked to over the same USB cable as the console, but within a second
 //! after a reset, without checksums, and a part of flash is wrong whenever a cable is pulled in
@@ -13,10 +13,11 @@ mod found;
 pub mod image;
 pub mod serial_board;
 pub mod stk500;
+pub mod target;
 pub mod upload;
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -26,13 +27,15 @@ pub use found::{Found, Program, TheirRobot};
 
 use crate::console::find::{self, FindError, UsbPort};
 use crate::console::link::{self, Link};
+use crate::console::port::BAUD;
 use crate::{Failure, RobotFile};
 use image::{Image, PAGE};
 use serial_board::SerialBoard;
 use stk500::{Loader, Patience};
+use target::{Model, Target};
 use upload::{Done, Event, Step};
 
-/// Write the firmware with your robot to a UNO on USB
+/// Write the firmware with your robot to a UNO or a Nano on USB
 ///
 /// The firmware is inside this program and needs no compiler; the robot is that of
 /// robot.toml. Says what the board has, writes the pages that differ, reads them back, starts the
@@ -42,6 +45,9 @@ use upload::{Done, Event, Step};
 pub struct Args {
     /// The board's serial port [default: the one that has a UNO, or the only one]
     port: Option<String>,
+    /// Which board it is [default: what its boot loader and its USB chip tell]
+    #[arg(long, value_enum)]
+    board: Option<Model>,
     /// Write only the robot, where the board has a firmware that reads it: a new gait, another
     /// length
     #[arg(long)]
@@ -63,17 +69,22 @@ pub fn run(args: Args) -> Result<(), Failure> {
         None if args.only_robot => file::robot_alone(&args.robot.load()?)?,
         None => file::image(&args.robot.load()?)?,
     };
+    let ports = find::usb_ports();
     let (port, name) = match args.port {
         Some(port) => (port.clone(), port),
         None => {
-            let found = choose(&find::usb_ports())?;
+            let found = choose(&ports)?;
             (found.name.clone(), found.to_string())
         }
+    };
+    let target = Target {
+        model: args.board,
+        may_be_nano: may_be_nano(&ports, &port),
     };
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
     let at = |sentence: String| Failure::Impossible(format!("{name}: {sentence}"));
-    let board = write(board, &image).map_err(|error| at(error.to_string()))?;
+    let board = write(board, &image, target).map_err(|error| at(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         at(format!(
             "the flash is written and verified, but the firmware is not heard: {error}"
@@ -97,20 +108,33 @@ fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     })
 }
 
+/// Whether a port has a USB chip that a Nano may have: those of Arduino are on its UNOs alone.
+fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
+    // It may have been given by a link, as those of /dev/serial/by-id.
+    let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
+    let port = ports.iter().find(|port| target == Path::new(&port.name));
+    port.is_some_and(|port| !port.is_arduinos())
+}
+
 /// Writes the board and says what is done, with a bar meanwhile. Returns the board, its
 /// firmware starting.
-fn write(board: SerialBoard, image: &Image) -> Result<SerialBoard, Failure> {
+fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %").expect("a template");
     let bar = ProgressBar::new(0).with_style(style);
     let mut loader = Loader::new(board, Patience::default());
     let begin = Instant::now();
-    let done = upload::upload(&mut loader, image, &mut |event| match event {
+    let done = upload::upload(&mut loader, image, target, &mut |event| match event {
         Event::Found(found) => bar.suspend(|| println(&found.to_string())),
-        Event::Again(trouble) => {
-            bar.suspend(|| {
-                eprintln!("lizard: {trouble}; the board is reset, and all begins again")
-            });
-        }
+        Event::Again {
+            trouble,
+            called,
+            next,
+        } => bar.suspend(|| match (called.baud(), next.baud()) {
+            (before, now) if before != now => {
+                eprintln!("lizard: no answer at {before} baud; calling again at {now} baud");
+            }
+            _ => eprintln!("lizard: {trouble}; the board is reset, and all begins again"),
+        }),
         Event::Progress(step, done, of) => {
             bar.set_message(match step {
                 Step::Reading => "reading  ",
@@ -123,7 +147,9 @@ fn write(board: SerialBoard, image: &Image) -> Result<SerialBoard, Failure> {
     });
     bar.finish_and_clear();
     println(&summary(done?, begin.elapsed()));
-    Ok(loader.into_board())
+    let mut board = loader.into_board();
+    board.set_baud(BAUD)?;
+    Ok(board)
 }
 
 /// What was done, as a sentence.
@@ -168,6 +194,19 @@ mod tests {
             words(0, 212),
             "nothing to write: all 27136 bytes are right; 1.2 s"
         );
+    }
+
+    #[test]
+    fn a_board_with_a_usb_chip_of_arduino_is_no_nano_and_one_with_another_may_be() {
+        let at = |name: &str, vendor| UsbPort {
+            name: name.to_owned(),
+            vendor,
+            product: None,
+        };
+        let ports = [at("/dev/ttyACM7", 0x2341), at("/dev/ttyUSB7", 0x1a86)];
+        assert!(!may_be_nano(&ports, "/dev/ttyACM7"));
+        assert!(may_be_nano(&ports, "/dev/ttyUSB7"));
+        assert!(!may_be_nano(&ports, "/dev/pts/7"), "no USB port");
     }
 
     #[test]

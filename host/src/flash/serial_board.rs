@@ -49,6 +49,14 @@ impl SerialBoard {
         Ok(())
     }
 
+    /// Sets the speed of the line.
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn set_baud(&mut self, baud: u32) -> io::Result<()> {
+        Ok(self.port()?.set_baud_rate(baud)?)
+    }
+
     fn open_again(&mut self) -> io::Result<()> {
         self.port = None;
         sleep(PULL);
@@ -62,15 +70,16 @@ impl SerialBoard {
 }
 
 impl Board for SerialBoard {
-    fn reset(&mut self) -> io::Result<()> {
+    fn reset(&mut self, baud: u32) -> io::Result<()> {
         let fresh = std::mem::take(&mut self.fresh);
         match self.pull() {
-            Ok(()) => Ok(()),
+            Ok(()) => {}
             // A pseudo terminal, as a simulated board has it, has no such lines; but opening it
             // resets that board. Nor have they a port that is gone, which then does not open.
-            Err(_) if fresh => Ok(()),
-            Err(_) => self.open_again(),
+            Err(_) if fresh => {}
+            Err(_) => self.open_again()?,
         }
+        self.set_baud(baud)
     }
 }
 

@@ -1,18 +1,22 @@
-//! The language of a UNO's boot loader, optiboot: STK500, version 1.
+//! The language of the boot loaders of UNO and Nano: STK500, version 1.
 //!
 //! After a reset by its button or by USB's DTR line, the chip starts in the boot loader. It
 //! blinks, then listens for about a second, and starts the program in flash if nobody calls.
-//! Whatever it does not understand makes it start that program at once; then only another
-//! reset brings it back. Commands and answers have no checksums: what was written must be
-//! read back.
+//! Whatever it does not understand, once or some times, makes it start that program at once; then
+//! only another reset brings it back. Commands and answers have no checksums: what was written
+//! must be read back.
+//!
+//! There are two of them, and which one a board has shows only in the speed at which it answers:
+//! see [`Kind`].
 //!
 //! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, as UNOs
-//! have it, for the times and for what it leaves out.
+//! have it, and ATmegaBOOT_168.c, as Nanos had it until 2018, for the times and for what they
+//! leave out.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use super::image::PAGE;
+use super::image::{BOOT, NANO_BOOT, PAGE};
 use crate::console::link::is_gone;
 
 const OK: u8 = 0x10;
@@ -29,14 +33,44 @@ const FLASH: u8 = b'F';
 /// How often the loader is called after one reset.
 const CALLS: usize = 5;
 
+/// A boot loader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// That of UNOs, and of Nanos since 2018.
+    Optiboot,
+    /// That of older Nanos and of many copies of them. It does not start the program when it is
+    /// told to leave, but a second and a half after the last byte.
+    AtmegaBoot,
+}
+
+impl Kind {
+    /// The speed of the serial line at which it listens.
+    #[must_use]
+    pub fn baud(self) -> u32 {
+        match self {
+            Self::Optiboot => 115_200,
+            Self::AtmegaBoot => 57_600,
+        }
+    }
+
+    /// Its first byte in flash.
+    #[must_use]
+    pub fn start(self) -> usize {
+        match self {
+            Self::Optiboot => BOOT,
+            Self::AtmegaBoot => NANO_BOOT,
+        }
+    }
+}
+
 /// A connection to a board. Reading must end by itself within some milliseconds, with
 /// [`ErrorKind::TimedOut`] if there is nothing.
 pub trait Board: Read + Write {
-    /// Resets the chip, which starts its boot loader.
+    /// Resets the chip, which starts its boot loader, and sets the speed of the line.
     ///
     /// # Errors
     /// The connection is gone.
-    fn reset(&mut self) -> io::Result<()>;
+    fn reset(&mut self, baud: u32) -> io::Result<()>;
 }
 
 /// How long is waited for what.
@@ -118,12 +152,12 @@ impl<B: Board> Loader<B> {
         self.board
     }
 
-    /// Resets the board and calls its boot loader until that answers.
+    /// Resets the board and calls a boot loader of this kind until it answers.
     ///
     /// # Errors
     /// [`Trouble::Silent`] if it never does.
-    pub fn call(&mut self) -> Result<(), Trouble> {
-        self.board.reset()?;
+    pub fn call(&mut self, kind: Kind) -> Result<(), Trouble> {
+        self.board.reset(kind.baud())?;
         // What the program said before the reset comes meanwhile, too.
         self.pass_over(self.patience.blinks)?;
         for _ in 0..CALLS {

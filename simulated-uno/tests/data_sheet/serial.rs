@@ -197,6 +197,24 @@ fn a_wrong_baud_rate_is_a_framing_error() {
 }
 
 #[test]
+fn at_a_wrong_baud_rate_other_bytes_are_read() {
+    let read = |baud| {
+        let mut uno = Uno::with_image(program("GPIOR0 = get();"), Fidelity::DataSheet);
+        uno.set_baud(baud);
+        uno.run_ms(1);
+        uno.send(b"0");
+        uno.run_ms(2);
+        uno.marks()[0].value
+    };
+    assert_eq!(read(115_200.0), b'0');
+    // '0' is 0b0011_0000. A sender twice as slow has sent its start bit and four data bits, all of
+    // them 0, when the UNO has taken its eight: at 0.73, 1.22, ... 4.16 bits of the sender.
+    assert_eq!(read(57_600.0), 0);
+    // Twice as fast: taken at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) and then in the silence.
+    assert_eq!(read(230_400.0), 0b1111_0100);
+}
+
+#[test]
 fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
     // The flag is valid until UDR0 is read, so it is looked at first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}

@@ -22,10 +22,12 @@ use lizard_core::section::{FORMAT, Header, MAGIC, Region, START};
 use super::chip::Chip;
 use super::found::{Found, IDLE, Program};
 use super::image::{BLANK, BOOT, Image, PAGE, Page};
-use super::stk500::{Board, Loader, Trouble};
+use super::stk500::{Board, Kind, Loader, Trouble};
+use super::target::{Target, TooLong};
 
-/// How often a board is reset and all is begun again, when bytes were lost on the way.
-const ATTEMPTS: usize = 3;
+/// How often a board is reset and all is begun again: where it does not answer, at each speed
+/// twice, or when bytes were lost on the way.
+const ATTEMPTS: usize = 4;
 /// The page where a robot's section begins.
 const ROBOT: usize = START as usize / PAGE;
 
@@ -48,7 +50,14 @@ pub enum Event<'a> {
     /// So many pages of so many are done.
     Progress(Step, usize, usize),
     /// The board is reset, and all begins again.
-    Again(&'a Trouble),
+    Again {
+        /// Why.
+        trouble: &'a Trouble,
+        /// Which boot loader was called.
+        called: Kind,
+        /// Which one is called next.
+        next: Kind,
+    },
 }
 
 /// What was done.
@@ -65,7 +74,7 @@ pub struct Done {
 pub enum UploadError {
     /// No boot loader.
     #[error(
-        "no boot loader answers. Is it a UNO? Has another program this port open? Is something \
+        "no boot loader answers. Is it a UNO or a Nano? Has another program this port open? Is something \
          wired to D0 or D1? Where USB does not reset the board, press its button just after the \
          start of this command"
     )]
@@ -90,6 +99,9 @@ pub enum UploadError {
         /// What its code says of itself.
         mark: Mark,
     },
+    /// It would reach into the boot section.
+    #[error(transparent)]
+    TooLong(#[from] TooLong),
     /// A byte was written twice and is still another.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
@@ -148,7 +160,7 @@ impl From<UploadError> for crate::Failure {
     }
 }
 
-/// Writes an image to a board, and starts it. Resets the board up to three times, where it does
+/// Writes an image to a board, and starts it. Resets the board up to four times, where it does
 /// not answer or bytes are lost on the way.
 ///
 /// # Errors
@@ -156,19 +168,26 @@ impl From<UploadError> for crate::Failure {
 pub fn upload<B: Board>(
     loader: &mut Loader<B>,
     image: &Image,
+    target: Target,
     tell: &mut dyn FnMut(Event<'_>),
 ) -> Result<Done, UploadError> {
     let mut upload = Upload {
         loader,
         image,
+        target,
         tell,
         answered: false,
         told: false,
         left: Left::AsBefore,
     };
     let mut written = vec![false; BOOT / PAGE];
+    let mut loaders = target.loaders().iter().copied().cycle();
+    let mut kind = Kind::Optiboot;
     for attempt in 1.. {
-        let trouble = match upload.attempt(&mut written) {
+        if !upload.answered {
+            kind = loaders.next().unwrap_or(kind);
+        }
+        let trouble = match upload.attempt(kind, &mut written) {
             Ok(()) => break,
             Err(Stop::Error(error)) => return Err(error),
             Err(Stop::Trouble(trouble)) => trouble,
@@ -176,7 +195,15 @@ pub fn upload<B: Board>(
         if attempt == ATTEMPTS || !trouble.may_pass() {
             return Err(upload.broken(trouble));
         }
-        (upload.tell)(Event::Again(&trouble));
+        let next = match upload.answered {
+            true => kind,
+            false => loaders.clone().next().unwrap_or(kind),
+        };
+        (upload.tell)(Event::Again {
+            trouble: &trouble,
+            called: kind,
+            next,
+        });
     }
     let pages = image.pages().len();
     let written = written.into_iter().filter(|it| *it).count();
@@ -201,6 +228,7 @@ impl From<Trouble> for Stop {
 struct Upload<'a, B> {
     loader: &'a mut Loader<B>,
     image: &'a Image,
+    target: Target,
     tell: &'a mut dyn FnMut(Event<'_>),
     /// The loader has answered once.
     answered: bool,
@@ -211,14 +239,16 @@ struct Upload<'a, B> {
 
 impl<B: Board> Upload<'_, B> {
     /// From a reset to the start of the program. Marks what it writes.
-    fn attempt(&mut self, written: &mut [bool]) -> Result<(), Stop> {
-        self.loader.call()?;
+    fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), Stop> {
+        self.loader.call(kind)?;
         self.answered = true;
         let chip = Chip(self.loader.signature()?);
         if chip != Chip::ATMEGA328P {
             return Err(Stop::Error(UploadError::Chip(chip)));
         }
-        let flash = self.look()?;
+        let room = self.target.has_room(self.image, kind);
+        room.map_err(|error| Stop::Error(error.into()))?;
+        let flash = self.look(kind.start())?;
         let mut goal = self.image.pages();
         goal.retain(|page| flash[page.range()] != page.bytes);
         if !goal.is_empty() {
@@ -261,15 +291,15 @@ impl<B: Board> Upload<'_, B> {
 
     /// Reads flash, all of it but the boot loader, and says what is there. Of the code, a
     /// robot alone needs only the first page.
-    fn look(&mut self) -> Result<Vec<u8>, Stop> {
+    fn look(&mut self, boot: usize) -> Result<Vec<u8>, Stop> {
         let mut flash = vec![BLANK; BOOT];
         if self.image.is_robot_alone() {
             self.read(&mut flash, 0..1)?;
             self.read(&mut flash, ROBOT..ROBOT + 1)?;
-            let end = self.image.end().max(end_of_robot(&flash));
+            let end = self.image.end().max(end_of_robot(&flash, boot));
             self.read(&mut flash, ROBOT + 1..end.div_ceil(PAGE))?;
         } else {
-            self.read(&mut flash, 0..BOOT / PAGE)?;
+            self.read(&mut flash, 0..boot / PAGE)?;
         }
         let found = Found::in_flash(&flash, self.image);
         if self.image.is_robot_alone() {
@@ -346,11 +376,11 @@ impl<B: Board> Upload<'_, B> {
 
 /// Where the robot in a flash ends, as its header says, of which only the first page needs to
 /// be there.
-fn end_of_robot(flash: &[u8]) -> usize {
+fn end_of_robot(flash: &[u8], boot: usize) -> usize {
     let start = usize::from(START);
     let header: Header = Region::new(&flash[start..]).read(0);
     let end = start + usize::from(header.length);
-    if header.magic == MAGIC && end <= BOOT {
+    if header.magic == MAGIC && end <= boot {
         end
     } else {
         start
