@@ -3,6 +3,8 @@
 use std::format;
 use std::string::{String, ToString};
 
+mod angles;
+
 use super::*;
 use crate::sample::{GAITS, Sample};
 
@@ -372,93 +374,5 @@ fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
     assert_eq!(
         number_of(b"655.36", Kind::Hundredths),
         Some((u16::MAX, false))
-    );
-}
-
-/// `pose` with one angle among three others.
-fn pose_with(place: usize, angle: &str) -> String {
-    let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
-    words[place] = angle.to_string();
-    format!("pose {}", words.join(" "))
-}
-
-fn angle_read(place: usize, angle: &str) -> Result<i32, Misread> {
-    match thread_robot(|robot| parse(pose_with(place, angle).as_bytes(), robot)) {
-        Ok(Command::Order(Order::Pose(angles))) => Ok(angles[place].centideg().into()),
-        Ok(other) => panic!("{other:?}"),
-        Err(misread) => Err(misread),
-    }
-}
-
-#[test]
-fn every_hundredth_of_a_degree_a_turn_either_way_is_read_and_told_again() {
-    for centideg in (-36_100..36_100)
-        .step_by(3)
-        .chain([-36_000, -1, 36_000, 36_001])
-    {
-        let sign = if centideg < 0 { "-" } else { "" };
-        let size: i32 = i32::abs(centideg);
-        let angle = format!("{sign}{}.{:02}", size / 100, size % 100);
-        let place = size as usize % 4;
-        let expected = if size > 36_000 {
-            Err(Misread::PoseRange(Servo::at(place)))
-        } else {
-            Ok(centideg.rem_euclid(36_000))
-        };
-        assert_eq!(angle_read(place, &angle), expected, "{angle}");
-    }
-}
-
-#[test]
-fn an_angle_may_be_written_in_several_ways() {
-    for (ways, centideg) in [
-        (["7.5", "7.50", "+7.5", "007.5", "-352.5"], 750),
-        (["7", "7.", "7.0", "7.00", "+7"], 700),
-        (["0", "-0", "360", "-360", "-0.00"], 0),
-    ] {
-        for way in ways {
-            assert_eq!(angle_read(1, way), Ok(centideg), "{way}");
-        }
-    }
-}
-
-#[test]
-fn what_is_no_angle_is_not_taken_for_one() {
-    for word in [
-        "", "a", ".5", "-", "+", "--1", "+-1", "1e2", "138.5x", "138.591", "138,59", "1.x", "1.5.",
-        "1.-5", ".", "0x10",
-    ] {
-        assert_eq!(
-            angle_read(2, word),
-            Err(Misread::Wants(Text::PoseWants)),
-            "{word}"
-        );
-    }
-    for line in [
-        "pose",
-        "pose 1",
-        "pose 1 2 3",
-        "pose 1 2 3 4 5",
-        "pose 1 2 3 4 x",
-        "pose 1 999 3 4 5",
-    ] {
-        assert_eq!(read(line), Err(Misread::Wants(Text::PoseWants)), "{line}");
-    }
-}
-
-#[test]
-fn four_angles_go_to_the_servos_in_their_order_and_the_first_too_large_is_named() {
-    let Ok(Command::Order(Order::Pose(angles))) = read("pose 138.59   41.42\t318.60 221.44") else {
-        panic!("a pose");
-    };
-    let centideg = angles.map(Angle::centideg);
-    assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
-    assert_eq!(
-        read("pose 1 361 3 -400"),
-        Err(Misread::PoseRange(Servo::A2))
-    );
-    assert_eq!(
-        read("pose 1 2 3 99999999"),
-        Err(Misread::PoseRange(Servo::A4))
     );
 }

@@ -6,9 +6,12 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
+mod any_line;
 mod calibration;
 mod dialogue;
 mod faults;
+mod memory;
+mod status;
 
 use super::*;
 use crate::guard::Clearance;
@@ -19,8 +22,8 @@ use crate::sample::{GAITS, Sample};
 use crate::settings::Settings;
 use crate::step::Step;
 use crate::units::Width;
-use crate::virtual_board::{Eeprom, VirtualBoard, is_final, reading};
-use dialogue::{Dialogue, awake, pairs, standing, widths};
+use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
+use dialogue::{Dialogue, awake, neutral, pairs, standing, supply, widths};
 
 /// The neutral pose of the odd robot, as a command.
 const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
@@ -104,134 +107,6 @@ fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_lon
             assert!(whole > usize::from(LONGEST_LINE), "{pair:?}");
         }
     }
-}
-
-#[test]
-fn status_tells_everything_as_key_and_value() {
-    let mut dialogue = standing();
-    dialogue.board.late = 7;
-    dialogue.board.lose(65_535);
-    dialogue.run(1);
-    dialogue.say("speed 42");
-    dialogue.say("sway left");
-    dialogue.run(200);
-    let line = dialogue.say("status");
-    let motion = dialogue.motion();
-    let phase = (u64::from(motion.phase()) * 1000) >> 24;
-    let angles: Vec<String> = motion
-        .pose()
-        .angles(&motion.robot().neutral())
-        .iter()
-        .map(|angle| {
-            let centideg = angle.centideg();
-            format!("{}.{:02}", centideg / 100, centideg % 100)
-        })
-        .collect();
-    let margin = Clearance::of(motion.robot(), motion.pose())
-        .smallest()
-        .thousandths();
-    let expected = format!(
-        "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
-         late=7 rx_lost=65535 guard=clear fault=none reset=power resets=0 vcc=5.00 rail=6.00",
-        angles.join(","),
-        motion.frames(),
-    );
-    assert_eq!(line, expected);
-}
-
-#[test]
-fn status_names_what_the_robot_does() {
-    let mut dialogue = standing();
-    assert_eq!(dialogue.status("gait"), "stand");
-    for (command, name) in [
-        ("sway", "sway"),
-        ("sway left", "sway-left"),
-        (NEUTRAL, "pose"),
-        ("stop", "stop"),
-        ("rest", "rest"),
-        ("stand", "stand"),
-    ] {
-        dialogue.say(command);
-        assert_eq!(dialogue.status("gait"), name);
-    }
-}
-
-#[test]
-fn the_longest_status_that_there_can_be_fits_a_line() {
-    let name = "longest name of a gait that any robot may have..";
-    assert_eq!(name.len(), crate::gait::LONGEST_NAME);
-    let robot = Sample::odd().with_gait(name);
-    let mut dialogue = awake(robot);
-    dialogue.board.late = u16::MAX;
-    dialogue.board.lose(u16::MAX);
-    assert_eq!(dialogue.say(name), format!("ok {name}"));
-    let line = dialogue.say("status");
-    // Each number as long as it gets.
-    let values = pairs(line.strip_prefix("ok ").expect("a status"));
-    let most = [
-        ("phase", "0.999"),
-        ("pose", "359.99,359.99,359.99,359.99"),
-        ("margin", "-1.000"),
-        ("speed", "100"),
-        ("frames", "4294967295"),
-        ("guard", "clear"),
-    ];
-    let more: usize = most
-        .iter()
-        .map(|(key, most)| most.len() - values[*key].len())
-        .sum();
-    assert!(line.len() + more + "\r\n".len() <= usize::from(LONGEST_LINE));
-}
-
-#[test]
-fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
-    for every in [1u32, 2, 7, 50] {
-        let mut dialogue = standing();
-        dialogue.say("sway");
-        dialogue.say(&format!("watch {every}"));
-        let begin = dialogue.motion().frames();
-        let mut times = Vec::new();
-        for _ in 0..200 {
-            for line in dialogue.run(1) {
-                let report = pairs(line.strip_prefix("# ").expect("a report"));
-                let time: u32 = report["t"].parse().expect("a number");
-                assert_eq!(time, dialogue.motion().frames());
-                assert_eq!(report["pose"], dialogue.status("pose"));
-                assert_eq!(report.len(), 2);
-                times.push(time - begin);
-            }
-        }
-        let expected: Vec<u32> = (1..=200).filter(|time| time % every == 0).collect();
-        assert_eq!(times, expected);
-        dialogue.say("watch 0");
-        assert!(dialogue.run(200).is_empty());
-    }
-}
-
-#[test]
-fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginning() {
-    let mut dialogue = standing();
-    dialogue.say("watch 5");
-    dialogue.say("rest");
-    assert_eq!(dialogue.run(50).len(), 10);
-    dialogue.run(3);
-    dialogue.say("watch 10");
-    assert!(dialogue.run(9).is_empty());
-    assert_eq!(dialogue.run(1).len(), 1);
-}
-
-#[test]
-fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
-    let mut dialogue = standing();
-    dialogue.say("watch 2");
-    dialogue.run_unheard(20);
-    assert_eq!(dialogue.lines().len(), 1);
-    dialogue.run_unheard(2);
-    assert!(dialogue.has_output());
-    dialogue.board.send(b"watch 0\r");
-    let said = dialogue.lines();
-    assert!(said.len() == 2 && said[1] == "ok watch 0", "{said:?}");
-    assert!(dialogue.run(10).is_empty());
 }
 
 /// A robot that the guard has just stopped, with nothing read since.
@@ -381,102 +256,5 @@ fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
         assert_eq!(dialogue.say(&line), format!("ok {line}"));
         dialogue.run(120);
         assert_eq!(dialogue.status("pose"), pose.replace(' ', ","));
-    }
-}
-
-#[test]
-fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
-    let mut dialogue = standing();
-    let refused = "err 6 a line has at most 63 characters";
-    assert_eq!(dialogue.say(&"stand".repeat(13)), refused);
-    assert_eq!(dialogue.say("stand"), "ok stand");
-}
-
-/// Lines that are refused, in whatever state the robot is.
-const REFUSED: [&str; 9] = [
-    "dance",
-    "sway fast",
-    "speed 9",
-    "speed",
-    "watch 10001",
-    "pose 1 2 3",
-    "pose 400 1 1 1",
-    "pose 132.37 1 309.64 226.18",
-    "pose 170 130 309.64 226.18",
-];
-
-/// Bytes of a person, of a program gone mad, and of a broken cable.
-fn bytes() -> impl Strategy<Value = Vec<u8>> {
-    let mut lines = GAITS.to_vec();
-    lines.extend([
-        "help", "stop", "rest", "speed 33", "watch 9", "watch 0", "status", NEUTRAL,
-    ]);
-    lines.extend(REFUSED);
-    let line = prop::sample::select(lines).prop_map(|line| format!("{line}\r").into_bytes());
-    let piece = prop_oneof![
-        4 => line,
-        1 => prop::collection::vec(any::<u8>(), 0..40),
-        1 => "[ -~\x08\x7f\t]{0,80}[\r\n]{0,2}".prop_map(String::into_bytes),
-        2 => "(pose|speed|watch|sway|POSE)( [+-]?[0-9]{0,6}\\.?[0-9]{0,3}){0,5}\r\n"
-            .prop_map(String::into_bytes),
-    ];
-    prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
-}
-
-/// The final lines that bytes are owed.
-fn owed(bytes: &[u8]) -> usize {
-    let mut line = Line::new();
-    bytes
-        .iter()
-        .filter(|byte| line.push(**byte).is_some())
-        .count()
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
-
-    #[test]
-    fn every_line_of_any_bytes_gets_one_final_line_whatever_the_frames_between(
-        bytes in bytes(),
-        frames in 0u32..3,
-    ) {
-        let (mut at_once, mut apart) = (standing(), standing());
-        let finals = |said: Vec<String>| -> Vec<String> {
-            said.into_iter().filter(|line| is_final(line)).collect()
-        };
-        let once = finals(at_once.send(&bytes));
-        prop_assert_eq!(once.len(), owed(&bytes));
-        let mut said = Vec::new();
-        for byte in &bytes {
-            said.extend(apart.send(&[*byte]));
-            said.extend(apart.run(frames));
-        }
-        // All but status say the same at any time.
-        let timeless = |said: Vec<String>| -> Vec<String> {
-            said.into_iter().filter(|line| !line.contains('=')).collect()
-        };
-        prop_assert_eq!(timeless(finals(said)), timeless(once));
-    }
-
-    #[test]
-    fn a_refused_line_changes_nothing(
-        history in prop::collection::vec((prop::sample::select(GAITS.to_vec()), 0u32..90), 0..4),
-        speed in 10u8..=100,
-        line in prop::sample::select(REFUSED.to_vec()),
-    ) {
-        let [mut asked, mut spared] = [(); 2].map(|()| standing());
-        for dialogue in [&mut asked, &mut spared] {
-            dialogue.say(&format!("speed {speed}"));
-            for (gait, frames) in &history {
-                dialogue.say(gait);
-                dialogue.run(*frames);
-            }
-        }
-        prop_assert!(asked.say(line).starts_with("err "));
-        for _ in 0..40 {
-            prop_assert_eq!(asked.frame(), spared.frame());
-            prop_assert_eq!(asked.lines(), spared.lines());
-        }
-        prop_assert_eq!(asked.say("status"), spared.say("status"));
     }
 }

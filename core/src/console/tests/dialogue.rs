@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 use std::string::{String, ToString};
 
+use super::NEUTRAL;
 use crate::sample::Sample;
-use crate::virtual_board::Running;
+use crate::virtual_board::{Running, reading};
 
 /// Frames until the robot stands and may begin to move.
 pub(super) const WAKING: u32 = 21;
@@ -44,4 +45,16 @@ pub(super) fn pairs(text: &str) -> HashMap<String, String> {
         assert!(pairs.insert(key.to_string(), value.to_string()).is_none());
     }
     pairs
+}
+
+/// The board's supply is at this many millivolts, its rail at 6 V.
+pub(super) fn supply(dialogue: &mut Dialogue, mv: u32) {
+    let supplies = dialogue.motion().robot().supplies();
+    let truth = reading(&supplies, mv, 6_000);
+    dialogue.board.converter.set(truth);
+}
+
+/// The neutral pose as `status` has it.
+pub(super) fn neutral() -> String {
+    NEUTRAL.replacen("pose ", "", 1).replace(' ', ",")
 }

@@ -45,13 +45,6 @@ fn a_gait_ends_when_the_link_is_lost_and_says_why() {
     assert_eq!(dialogue.status("fault"), "none");
 }
 
-/// The board's supply is at this many millivolts, its rail at 6 V.
-fn supply(dialogue: &mut Dialogue, mv: u32) {
-    let supplies = dialogue.motion().robot().supplies();
-    let truth = reading(&supplies, mv, 6_000);
-    dialogue.board.converter.set(truth);
-}
-
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothing_restarts() {
     let mut dialogue = standing();
@@ -131,11 +124,7 @@ fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
     dialogue.say("stand");
     dialogue.run(100);
     assert_eq!(dialogue.status("fault"), "none");
-    assert_eq!(dialogue.status("pose"), dialogue_neutral());
-}
-
-fn dialogue_neutral() -> String {
-    NEUTRAL.replacen("pose ", "", 1).replace(' ', ",")
+    assert_eq!(dialogue.status("pose"), neutral());
 }
 
 #[test]
@@ -153,7 +142,7 @@ fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over_and_the_robot_rests(
             assert_eq!(dialogue.status("gait"), "rest");
             dialogue.say("stand");
             dialogue.run(50);
-            assert_eq!(dialogue.status("pose"), dialogue_neutral());
+            assert_eq!(dialogue.status("pose"), neutral());
         }
     }
 }
@@ -304,148 +293,4 @@ fn brown_outs_half_a_minute_apart_are_none_in_a_row() {
         dialogue.run(1501);
         assert_ne!(dialogue.frame(), Pulses::default());
     }
-}
-
-#[test]
-fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
-    let mut dialogue = standing();
-    dialogue.say("rest");
-    dialogue.run(2);
-    assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
-    let chip = dialogue.board.memory.clone();
-    let mut again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
-    let writes = again.board.memory.log.len();
-    for _ in 0..60 {
-        again.lines();
-        let measured = again.main.control().safety().supply().measured();
-        if measured.is_none() {
-            assert_eq!(again.board.memory.log.len(), writes);
-        }
-        again.frame();
-    }
-    assert_eq!(again.board.memory.bytes()[128], 0xff, "it woke and stands");
-    again.say("rest");
-    again.run(10);
-    supply(&mut again, 4_400);
-    again.run(30);
-    let writes = again.board.memory.log.len();
-    assert_eq!(again.say("stand"), "ok stand");
-    again.run(50);
-    assert_eq!(again.board.memory.log.len(), writes, "a byte at 4.4 V");
-    assert_eq!(again.say("save"), "err 8 the supply is too low");
-    supply(&mut again, 5_000);
-    again.run(80);
-    assert_eq!(again.board.memory.bytes()[128], 0xff, "forgotten later");
-}
-
-#[test]
-fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
-    let mut dialogue = standing();
-    dialogue.say("deadman 1000");
-    assert_eq!(dialogue.say("save"), "ok save");
-    dialogue.say("deadman 2000");
-    dialogue.board.memory.slowness = 1;
-    dialogue.board.send(b"save\r");
-    for _ in 0..30 {
-        dialogue.main.step(&mut dialogue.board);
-    }
-    assert!(dialogue.main.control().is_writing());
-    supply(&mut dialogue, 4_400);
-    let mut said = Vec::new();
-    for _ in 0..20 {
-        // Frames alone: main has no time for the memory.
-        dialogue.board.tick();
-        dialogue.main.step(&mut dialogue.board);
-    }
-    said.extend(dialogue.lines());
-    assert!(
-        said.contains(&"err 8 the supply is too low".to_string()),
-        "{said:?}"
-    );
-    let chip = dialogue.board.memory.clone();
-    let again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
-    assert_eq!(again.main.control().settings().deadman(), 1000);
-}
-
-#[test]
-fn rest_sent_again_and_again_writes_nothing_and_a_worn_cell_is_told() {
-    let mut dialogue = standing();
-    dialogue.say("rest");
-    dialogue.run(2);
-    let writes = dialogue.board.memory.log.len();
-    for _ in 0..50 {
-        assert_eq!(dialogue.say("rest"), "ok rest");
-        dialogue.run(2);
-    }
-    assert_eq!(dialogue.board.memory.log.len(), writes);
-    dialogue.say("stand");
-    dialogue.run(50);
-    dialogue.board.memory.worn = true;
-    dialogue.board.send(b"rest\r");
-    let said = dialogue.run(3);
-    let told = "# memory: does not keep the pose of this rest";
-    assert!(said.iter().any(|line| line == told), "{said:?}");
-}
-
-#[test]
-fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
-    let mut dialogue = standing();
-    dialogue.say("pose 140 50 311 224.5");
-    dialogue.run(150);
-    dialogue.say("rest");
-    let chip = dialogue.board.memory.clone();
-    let mut again = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
-    again.lines();
-    assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
-    let there = again.motion().pose().pulses(again.motion().calibration());
-    for servo in 0..4 {
-        for _ in 0..5 {
-            let widths = widths(&mut again);
-            for (other, width) in widths.into_iter().enumerate() {
-                let expected = if other < servo { there.0[other].0 } else { 0 };
-                // The fifth frame wakes the next one.
-                assert!(width == expected || other == servo, "{servo} {other}");
-            }
-        }
-    }
-    again.run(200);
-    assert_eq!(again.status("pose"), dialogue_neutral());
-    // Having moved, it has forgotten where it rested.
-    let after = Dialogue::with(
-        *Sample::odd(),
-        again.board.memory.clone(),
-        Restart::default(),
-    );
-    assert_eq!(after.motion().pose(), &Pose::NEUTRAL);
-}
-
-#[test]
-fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
-    let mut dialogue = standing();
-    dialogue.say("rest");
-    assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
-    dialogue.board.send(b"stand\r");
-    // The answer goes first; then main deals with the memory, long before the first
-    // servo wakes.
-    dialogue.lines();
-    assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
-    assert_eq!(dialogue.frame(), Pulses::default());
-}
-
-#[test]
-fn a_save_right_after_the_start_waits_for_the_supply_and_no_longer_than_half_a_second() {
-    let mut dialogue = Dialogue::power_on(*Sample::odd());
-    dialogue.lines();
-    dialogue.board.send(b"save\r");
-    let said = dialogue.run(5);
-    assert!(
-        said.is_empty() && dialogue.board.memory.log.is_empty(),
-        "{said:?}"
-    );
-    assert_eq!(dialogue.run(15), ["ok save"]);
-    let mut never = Dialogue::on(Sample::odd().section(), VirtualBoard::default());
-    never.lines();
-    never.board.send(b"save\r");
-    assert_eq!(never.run(30), ["err 8 the supply is too low"]);
-    assert!(never.board.memory.log.is_empty());
 }

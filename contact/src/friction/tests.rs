@@ -1,0 +1,238 @@
+//! The least cost against the dual problem, for random pads and springs.
+
+use super::*;
+use proptest::prelude::*;
+
+use crate::yields::{Side, Stretch};
+
+const EVEN: [f64; 4] = [1.0; 4];
+/// More than a pad at the end of a leg of 45 mm can push.
+const STOP: f64 = 250.0;
+const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
+
+/// The friction's work and the springs' energy.
+fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
+    let length = |slide: Point| {
+        let w = pads.weight(slide);
+        (w[0] * slide[0]).hypot(w[1] * slide[1])
+    };
+    let slides = pads.slides(displacement).into_iter().zip(pads.load);
+    let friction: f64 = slides.map(|(slide, load)| load * length(slide)).sum();
+    let energy = |give: Give| -> f64 {
+        let each = displacement.lag.iter();
+        each.zip(give.yields)
+            .map(|(lag, drive)| drive.expand(*lag, 0.0).0)
+            .sum()
+    };
+    friction + pads.give.map_or(0.0, energy)
+}
+
+/// The lower bound of duality: forces within the pads' friction that balance
+/// each other do at least `sum f . swing` of work, whatever the body does, less
+/// what their torques can gain on the springs. The forces at a displacement, if they
+/// balance, prove how far its cost is from the least. Returns their imbalance
+/// and that distance.
+fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
+    let eps = largest(&pads.swing) * SMALLEST;
+    let (mut work, mut net) = (0.0, [0.0; 3]);
+    for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
+        let w = pads.weight(slide);
+        let length = (w[0] * slide[0]).hypot(w[1] * slide[1]).hypot(eps);
+        let force = [w[0] * w[0] * slide[0] / length, w[1] * slide[1] / length];
+        assert!(
+            (force[0] / w[0]).hypot(force[1]) <= 1.0 + 1e-12,
+            "a pad cannot hold that"
+        );
+        let force = force.map(|part| pads.load[i] * part);
+        let along = |[x, y]: Point| force[0] * x + force[1] * y;
+        work += along(pads.swing[i]);
+        if let Some(give) = pads.give {
+            let torque = along(give.along[i]);
+            work += torque * give.before[i] - give.yields[i].conjugate(torque);
+        }
+        net[0] += force[0];
+        net[1] += force[1];
+        net[2] += (pads.at[i][0] * force[1] - pads.at[i][1] * force[0]) / 100.0;
+    }
+    (net, cost(pads, displacement) - work)
+}
+
+fn assert_least(pads: &Pads) {
+    let (net, gap) = certificate(pads, &pads.least());
+    assert!(
+        net.iter().all(|part| part.abs() < 1e-5),
+        "forces out of balance: {net:?}"
+    );
+    assert!(gap.abs() < 1e-5 * largest(&pads.swing), "gap {gap}");
+}
+
+#[test]
+fn nearly_two_against_two_is_still_decided_rightly() {
+    // A sine walk: at each instant two legs go one way about as fast as two
+    // go the other, so that only lever arms decide.
+    for step in 0..1000 {
+        let (from, to) = (f64::from(step), f64::from(step + 1));
+        let foot = |i: usize, step: f64| {
+            let start = [0.25, 0.75, 0.5, 0.0][i];
+            let psi = 0.35 * ((step / 1000.0 - start) * std::f64::consts::TAU).cos();
+            let side = [1.0, -1.0, -1.0, 1.0][i];
+            [
+                [55.0, 55.0, -55.0, -55.0][i] + 45.0 * psi.sin(),
+                side * (35.0 + 45.0 * psi.cos()),
+            ]
+        };
+        let at = std::array::from_fn(|i| foot(i, (from + to) / 2.0));
+        let swing = std::array::from_fn(|i| {
+            let (a, b) = (foot(i, from), foot(i, to));
+            [b[0] - a[0], b[1] - a[1]]
+        });
+        assert_least(&Pads {
+            at,
+            swing,
+            ratio: 1.0,
+            load: EVEN,
+            give: None,
+        });
+    }
+}
+
+#[test]
+fn three_pads_that_agree_hold_and_the_fourth_slides() {
+    for odd in 0..4 {
+        let mut swing = [[-1.0, 0.0]; 4];
+        swing[odd] = [3.0, 0.0];
+        let twist = Pads {
+            at: AT,
+            swing,
+            ratio: 1.0,
+            load: EVEN,
+            give: None,
+        }
+        .least()
+        .twist;
+        assert!(
+            (twist[0] - 1.0).abs() < 1e-7 && twist[1].abs() < 1e-7 && twist[2].abs() < 1e-9,
+            "{twist:?}"
+        );
+    }
+}
+
+#[test]
+fn a_single_pad_that_swings_alone_moves_nothing() {
+    let twist = Pads {
+        at: AT,
+        swing: [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]],
+        ratio: 1.0,
+        load: EVEN,
+        give: None,
+    }
+    .least()
+    .twist;
+    assert!(twist.iter().all(|part| part.abs() < 1e-7), "{twist:?}");
+}
+
+#[test]
+fn legs_that_swing_against_each_other_turn_the_body() {
+    // Pads that move as a rigid turn by 0.01 rad are followed exactly.
+    let swing = AT.map(|[x, y]| [0.01 * y, -0.01 * x]);
+    let twist = Pads {
+        at: AT,
+        swing,
+        ratio: 1.0,
+        load: EVEN,
+        give: None,
+    }
+    .least()
+    .twist;
+    assert!((twist[2] - 0.01).abs() < 1e-9 && twist[0].abs() < 1e-7 && twist[1].abs() < 1e-7);
+}
+
+fn point(size: f64) -> impl Strategy<Value = Point> {
+    [-size..size, -size..size]
+}
+
+proptest! {
+    #[test]
+    fn no_twist_costs_less_than_the_balanced_forces_prove(
+        jitter in prop::array::uniform4(point(20.0)),
+        swing in prop::array::uniform4(point(5.0)),
+        ratio in 0.5f64..2.0,
+        load in prop::array::uniform4(0.8f64..1.2),
+    ) {
+        let at = std::array::from_fn(|i| [AT[i][0] + jitter[i][0], AT[i][1] + jitter[i][1]]);
+        assert_least(&Pads { at, swing, ratio, load, give: None });
+    }
+
+    #[test]
+    fn no_twist_nearby_costs_less(
+        swing in prop::array::uniform4(point(5.0)),
+        nudge in prop::array::uniform3(-1.0f64..1.0),
+        size in -6i32..1,
+        load in prop::array::uniform4(0.8f64..1.2),
+    ) {
+        let pads = Pads { at: AT, swing, ratio: 1.3, load, give: None };
+        let least = pads.least();
+        let (twist, scale) = (least.twist, 10f64.powi(size));
+        let other = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
+        let other = Displacement { twist: other, ..least };
+        prop_assert!(cost(&pads, &least) <= cost(&pads, &other) + 1e-6);
+    }
+
+    // Springs from too soft to walk (.8 N mm/deg) to nearly rigid, with and without a stop.
+    #[test]
+    fn no_lag_costs_less_either(
+        sweep in prop::array::uniform4(-90.0f64..90.0),
+        swing in prop::array::uniform4(point(5.0)),
+        ratio in 0.5f64..2.0,
+        load in prop::array::uniform4(0.5f64..1.5),
+        rate in 2.0f64..6.0,
+        preload in prop::option::of(0.0f64..100.0),
+        hold in prop::array::uniform4(-0.9f64..0.9),
+    ) {
+        let along = sweep.map(|sweep: f64| {
+            let (sin, cos) = sweep.to_radians().sin_cos();
+            [45.0 * cos, 45.0 * sin]
+        });
+        prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
+        let (rate, preload) = (10f64.powf(rate), preload.unwrap_or(0.0));
+        let side = Side::Spring { rate, preload };
+        let drive = Yield { play: 0.0, stop: STOP, lower: side, upper: side };
+        // The lags that the pads could hold before.
+        let before = std::array::from_fn(|i| {
+            let torque: f64 = hold[i] * 45.0 * load[i];
+            (torque.abs() - preload).max(0.0).copysign(torque) / rate
+        });
+        let give = Some(Give { along, before, yields: [drive; 4] });
+        assert_least(&Pads { at: AT, swing, ratio, load, give });
+    }
+
+    // Play together with stops, and slotted struts that yield one way.
+    #[test]
+    fn nor_does_another_place_within_the_play_or_the_slot(
+        swing in prop::array::uniform4(point(5.0)),
+        load in prop::array::uniform4(0.5f64..1.5),
+        play in 0.0f64..0.03,
+        within in prop::array::uniform4(-1.0f64..1.0),
+        force in prop::option::of(0.2f64..6.0),
+        arm in 40.0f64..85.0,
+    ) {
+        prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
+        let (sin, cos) = arm.to_radians().sin_cos();
+        let far = [22.0 * cos - 30.2, 22.0 * sin];
+        let stretch = Stretch {
+            far: far[0].hypot(far[1]),
+            near: 22.0,
+            angle: far[1].atan2(far[0]) - arm.to_radians(),
+        };
+        // The spring of the paper's size; one without a rate would pull less the
+        // further it is stretched, where its lever shrinks.
+        let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
+        let drive = Yield { play, stop: STOP, lower: Side::Stop, upper };
+        let give = Some(Give {
+            along: [[45.0, 0.0]; 4],
+            before: within.map(|share| share * play),
+            yields: [drive; 4],
+        });
+        assert_least(&Pads { at: AT, swing, ratio: 1.0, load, give });
+    }
+}

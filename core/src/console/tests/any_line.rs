@@ -1,0 +1,100 @@
+//! Lines of any bytes and of any length.
+
+use super::*;
+
+#[test]
+fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
+    let mut dialogue = standing();
+    let refused = "err 6 a line has at most 63 characters";
+    assert_eq!(dialogue.say(&"stand".repeat(13)), refused);
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+/// Lines that are refused, in whatever state the robot is.
+const REFUSED: [&str; 9] = [
+    "dance",
+    "sway fast",
+    "speed 9",
+    "speed",
+    "watch 10001",
+    "pose 1 2 3",
+    "pose 400 1 1 1",
+    "pose 132.37 1 309.64 226.18",
+    "pose 170 130 309.64 226.18",
+];
+
+/// Bytes of a person, of a program gone mad, and of a broken cable.
+fn bytes() -> impl Strategy<Value = Vec<u8>> {
+    let mut lines = GAITS.to_vec();
+    lines.extend([
+        "help", "stop", "rest", "speed 33", "watch 9", "watch 0", "status", NEUTRAL,
+    ]);
+    lines.extend(REFUSED);
+    let line = prop::sample::select(lines).prop_map(|line| format!("{line}\r").into_bytes());
+    let piece = prop_oneof![
+        4 => line,
+        1 => prop::collection::vec(any::<u8>(), 0..40),
+        1 => "[ -~\x08\x7f\t]{0,80}[\r\n]{0,2}".prop_map(String::into_bytes),
+        2 => "(pose|speed|watch|sway|POSE)( [+-]?[0-9]{0,6}\\.?[0-9]{0,3}){0,5}\r\n"
+            .prop_map(String::into_bytes),
+    ];
+    prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
+}
+
+/// The final lines that bytes are owed.
+fn owed(bytes: &[u8]) -> usize {
+    let mut line = Line::new();
+    bytes
+        .iter()
+        .filter(|byte| line.push(**byte).is_some())
+        .count()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn every_line_of_any_bytes_gets_one_final_line_whatever_the_frames_between(
+        bytes in bytes(),
+        frames in 0u32..3,
+    ) {
+        let (mut at_once, mut apart) = (standing(), standing());
+        let finals = |said: Vec<String>| -> Vec<String> {
+            said.into_iter().filter(|line| is_final(line)).collect()
+        };
+        let once = finals(at_once.send(&bytes));
+        prop_assert_eq!(once.len(), owed(&bytes));
+        let mut said = Vec::new();
+        for byte in &bytes {
+            said.extend(apart.send(&[*byte]));
+            said.extend(apart.run(frames));
+        }
+        // All but status say the same at any time.
+        let timeless = |said: Vec<String>| -> Vec<String> {
+            said.into_iter().filter(|line| !line.contains('=')).collect()
+        };
+        prop_assert_eq!(timeless(finals(said)), timeless(once));
+    }
+
+    #[test]
+    fn a_refused_line_changes_nothing(
+        history in prop::collection::vec((prop::sample::select(GAITS.to_vec()), 0u32..90), 0..4),
+        speed in 10u8..=100,
+        line in prop::sample::select(REFUSED.to_vec()),
+    ) {
+        let [mut asked, mut spared] = [(); 2].map(|()| standing());
+        for dialogue in [&mut asked, &mut spared] {
+            dialogue.say(&format!("speed {speed}"));
+            for (gait, frames) in &history {
+                dialogue.say(gait);
+                dialogue.run(*frames);
+            }
+        }
+        prop_assert!(asked.say(line).starts_with("err "));
+        for _ in 0..40 {
+            prop_assert_eq!(asked.frame(), spared.frame());
+            prop_assert_eq!(asked.lines(), spared.lines());
+        }
+        prop_assert_eq!(asked.say("status"), spared.say("status"));
+    }
+}

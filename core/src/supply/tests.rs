@@ -1,0 +1,205 @@
+//! What readings of the supplies make of the robot, frame by frame.
+
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+
+const SUPPLIES: Supplies = Supplies {
+    reference: 1100,
+    board: Thresholds {
+        slow: 4500,
+        stop: 4300,
+        rest: 4100,
+    },
+    rail_reference: 0,
+    rail: Thresholds {
+        slow: 0,
+        stop: 0,
+        rest: 0,
+    },
+};
+
+const WITH_RAIL: Supplies = Supplies {
+    rail_reference: 2200,
+    rail: Thresholds {
+        slow: 6400,
+        stop: 6200,
+        rest: 6000,
+    },
+    ..SUPPLIES
+};
+
+/// What the converter reads of a board at `volts`, its rail at `rail` volts.
+fn reading(volts: f64, rail: f64) -> Reading {
+    Reading {
+        reference: (1.1 / volts * 1024.0) as u16,
+        rail: (rail / 2.0 / volts * 1024.0) as u16,
+    }
+}
+
+/// Frames until the level changes, and the level.
+fn until_change(supply: &mut Supply, reading: Reading, supplies: &Supplies) -> (usize, Level) {
+    for frame in 1..=200 {
+        if supply.measure(reading, supplies) {
+            return (frame, supply.level());
+        }
+    }
+    (0, supply.level())
+}
+
+#[test]
+fn a_voltage_is_told_to_two_decimals_for_every_reading() {
+    for reference in 1..=1023u16 {
+        for mv in [1000, 1080, 1100, 1200] {
+            let supplies = Supplies {
+                reference: mv,
+                ..SUPPLIES
+            };
+            let reading = Reading {
+                reference,
+                rail: 700,
+            };
+            let exact = 1024.0 * f64::from(mv) / f64::from(reference) / 10.0;
+            let told = Voltage::of_board(reading, &supplies).hundredths();
+            // More than 81.91 V is no supply.
+            let expected = exact.floor().min(8191.0);
+            assert_eq!(f64::from(told), expected, "{reference} {mv}");
+            let rail = Voltage::of_rail(reading, &WITH_RAIL).hundredths();
+            let exact = 700.0 * 2200.0 / f64::from(reference) / 10.0;
+            assert_eq!(f64::from(rail), exact.floor().min(8191.0));
+        }
+    }
+    assert_eq!(
+        Voltage::of_board(Reading::default(), &SUPPLIES).hundredths(),
+        0
+    );
+}
+
+proptest! {
+    #[test]
+    fn a_voltage_is_below_what_it_is_below(reference in 100u16..1023, mv in 0u16..9000) {
+        let voltage = Voltage::of_board(Reading { reference, rail: 0 }, &SUPPLIES);
+        let exact = 1024.0 * 1100.0 / f64::from(reference);
+        prop_assert_eq!(voltage.is_below(mv), exact < f64::from(mv));
+    }
+}
+
+#[test]
+fn a_falling_supply_slows_then_stops_then_ends_the_pulses_each_after_six_frames() {
+    let mut supply = Supply::default();
+    assert_eq!(until_change(&mut supply, reading(5.0, 0.0), &SUPPLIES).0, 0);
+    for (volts, level) in [
+        (4.45, Level::Slow),
+        (4.25, Level::Stop),
+        (4.05, Level::Rest),
+    ] {
+        assert_eq!(
+            until_change(&mut supply, reading(volts, 0.0), &SUPPLIES),
+            (6, level)
+        );
+    }
+    let mut supply = Supply::default();
+    let change = until_change(&mut supply, reading(3.9, 0.0), &SUPPLIES);
+    assert_eq!(change, (6, Level::Rest), "all at once, if it falls at once");
+}
+
+#[test]
+fn one_reading_decides_nothing_what_held_for_all_six_frames_counts() {
+    for (others, one, level) in [
+        (4.45, 3.5, Level::Slow),
+        (4.25, 3.5, Level::Stop),
+        (3.5, 4.45, Level::Slow),
+    ] {
+        for odd in 0..6 {
+            let mut supply = Supply::default();
+            for frame in 0..6 {
+                let volts = if frame == odd { one } else { others };
+                supply.measure(reading(volts, 0.0), &SUPPLIES);
+            }
+            assert_eq!(supply.level(), level, "{one} V in frame {odd}");
+        }
+    }
+}
+
+#[test]
+fn one_reading_does_not_recover_a_supply_either() {
+    for odd in 0..50 {
+        let mut supply = Supply::default();
+        until_change(&mut supply, reading(4.2, 0.0), &SUPPLIES);
+        for frame in 0..50 {
+            let volts = if frame == odd { 4.5 } else { 5.0 };
+            supply.measure(reading(volts, 0.0), &SUPPLIES);
+        }
+        assert_eq!(supply.level(), Level::Slow, "4.5 V in frame {odd}");
+    }
+}
+
+#[test]
+fn a_short_dip_changes_nothing() {
+    let mut supply = Supply::default();
+    for _ in 0..100 {
+        for volts in [4.0, 4.0, 4.0, 4.0, 4.0, 5.0] {
+            assert!(!supply.measure(reading(volts, 0.0), &SUPPLIES));
+        }
+    }
+    assert_eq!(supply.level(), Level::Good);
+}
+
+#[test]
+fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold() {
+    let mut supply = Supply::default();
+    until_change(&mut supply, reading(4.2, 0.0), &SUPPLIES);
+    assert_eq!(supply.level(), Level::Stop);
+    // Between the threshold and .15 V more it stays as it is.
+    assert_eq!(
+        until_change(&mut supply, reading(4.40, 0.0), &SUPPLIES).0,
+        0
+    );
+    let slow = until_change(&mut supply, reading(4.5, 0.0), &SUPPLIES);
+    assert_eq!(slow, (50, Level::Slow));
+    assert_eq!(until_change(&mut supply, reading(4.6, 0.0), &SUPPLIES).0, 0);
+    let good = until_change(&mut supply, reading(4.7, 0.0), &SUPPLIES);
+    assert_eq!(good, (50, Level::Good));
+}
+
+#[test]
+fn a_supply_that_wavers_around_a_threshold_changes_once() {
+    let mut supply = Supply::default();
+    let mut levels = Vec::new();
+    for frame in 0..2000 {
+        let volts = if frame % 20 < 10 { 4.47 } else { 4.60 };
+        if supply.measure(reading(volts, 0.0), &SUPPLIES) {
+            levels.push(supply.level());
+        }
+    }
+    assert_eq!(levels, [Level::Slow]);
+}
+
+#[test]
+fn the_worse_of_two_supplies_counts_and_is_the_one_that_is_told() {
+    let supplies = WITH_RAIL;
+    for (board, rail, level, worst) in [
+        (5.0, 6.6, Level::Good, 5.0),
+        (5.0, 6.3, Level::Slow, 6.3),
+        (4.25, 6.3, Level::Stop, 4.25),
+        (4.45, 5.0, Level::Rest, 5.0),
+    ] {
+        let mut supply = Supply::default();
+        until_change(&mut supply, reading(board, rail), &supplies);
+        assert_eq!(supply.level(), level);
+        let told = f64::from(supply.worst(&supplies).hundredths()) / 100.0;
+        assert!((told - worst).abs() < 0.05, "{told} {worst}");
+    }
+}
+
+#[test]
+fn what_has_not_been_measured_yet_is_not_low() {
+    let supplies = WITH_RAIL;
+    let mut supply = Supply::default();
+    assert_eq!(
+        until_change(&mut supply, Reading::default(), &supplies).0,
+        0
+    );
+}

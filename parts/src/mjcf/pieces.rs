@@ -1,0 +1,128 @@
+//! The layers of the parts, on the bodies of the file that they move with.
+
+use lizard_kinematics::Vector;
+use lizard_robot::servo::LEGS;
+
+use super::inertia::Inertia;
+use super::node::Node;
+use super::scene::Scene;
+use crate::assembly::Assembly;
+use crate::bill;
+use crate::body::{Body, Kind, Mount, Prism};
+use crate::mesh::Mesh;
+use crate::outline::Outline;
+use crate::part::volume;
+use crate::shape::Shape;
+use crate::solid::Solid;
+use crate::unfit::Unfit;
+
+/// What of a foot is nearer to its middle than this is its post, mm; the rest is the leaf
+/// and what holds it.
+const POST: f64 = 8.0;
+
+/// Some layers of a part, on the body of the file that they move with.
+pub(super) struct Piece {
+    pub name: String,
+    pub node: Node,
+    pub kind: Kind,
+    pub mesh: Mesh,
+    pub inertia: Inertia,
+}
+
+pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, Unfit> {
+    let slotted = scene.pull.is_some();
+    let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
+    let has = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
+    // The other kind of strut lies in the drawer.
+    let swap = has(assembly.bodies()) != slotted;
+    let own = assembly
+        .bodies()
+        .iter()
+        .filter(|body| !(swap && is_strut(body)));
+    let other = assembly
+        .instead()
+        .iter()
+        .filter(|body| swap && is_strut(body));
+    let springs = (0..4)
+        .filter(|_| swap && slotted)
+        .map(|servo| spring(assembly, servo));
+    let mut pieces: Vec<Piece> = springs.collect();
+    for body in own.chain(other) {
+        let grams = bill::grams(body, assembly);
+        let volume = volume(&body.prisms);
+        for (node, prisms) in shares(assembly, scene, body) {
+            let name = match node {
+                Node::Of(_) => body.name.clone(),
+                node if body.kind == Kind::Printed => format!("{} of {}", node.name(), body.name),
+                _ => body.name.clone(),
+            };
+            let solid = Solid::of(&prisms);
+            let mesh = Mesh::of(&solid);
+            if !solid.is_closed() || !mesh.is_closed() {
+                return Err(Unfit::Surface(name));
+            }
+            let inertia = Inertia::of(&mesh).scaled(grams / volume);
+            let kind = body.kind;
+            pieces.push(Piece {
+                name,
+                node,
+                kind,
+                mesh,
+                inertia,
+            });
+        }
+    }
+    Ok(pieces)
+}
+
+/// The spring of a strut that the robot has not, but could have: it is in no drawer, so it is
+/// taken for a bar of its coil's width from screw to screw.
+fn spring(assembly: &Assembly, servo: usize) -> Piece {
+    let coil = assembly.robot().parts().spring;
+    let length = assembly.layout().legs[servo].strut_length;
+    let radius = coil.outer / 2.0;
+    let middle = assembly.stack().strut[1];
+    let bar = Prism {
+        add: vec![Shape::rectangle(
+            Vector::new(length / 2.0, 0.0),
+            Vector::new(length - 2.0 * coil.outer, coil.outer),
+            0.0,
+        )],
+        cut: Vec::new(),
+        z: [middle - radius, middle + radius],
+    };
+    let mesh = Mesh::of(&Solid::of(&[bar]));
+    let shape = Inertia::of(&mesh);
+    Piece {
+        name: format!("spring {}", LEGS[servo]),
+        node: Node::Slot(servo),
+        kind: Kind::Spring,
+        inertia: shape.scaled(bill::spring(&coil) / shape.mass),
+        mesh,
+    }
+}
+
+/// Which of its layers move with which body of the file: mostly all with one.
+fn shares(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
+    let of = |node: Node| vec![(node, body.prisms.clone())];
+    match body.mount {
+        Mount::Foot(servo) => {
+            let foot = assembly.layout().legs[servo].foot;
+            let post = |prism: &&Prism| (middle(prism) - foot).length() < POST;
+            let (post, rest): (Vec<&Prism>, Vec<&Prism>) = body.prisms.iter().partition(post);
+            [(Node::Pad(servo), post), (Node::Of(body.mount), rest)]
+                .into_iter()
+                .filter(|(_, prisms)| !prisms.is_empty())
+                .map(|(node, prisms)| (node, prisms.into_iter().cloned().collect()))
+                .collect()
+        }
+        Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => of(Node::Horn(servo)),
+        Mount::Strut(servo) if body.kind == Kind::Spring => of(Node::Slot(servo)),
+        mount => of(Node::Of(mount)),
+    }
+}
+
+fn middle(prism: &Prism) -> Vector {
+    let outline = Outline::of(prism);
+    outline.moment() * (1.0 / outline.area())
+}

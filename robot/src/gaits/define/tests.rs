@@ -1,0 +1,195 @@
+//! Gaits as robot.toml may define them, and as it may not.
+
+use crate::testing::{body, robot};
+use crate::{Error, Robot};
+
+fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
+    Robot::parse(&format!("{}{gaits}", body("paper")))
+}
+
+const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+const WALK: &str = "[gait.walk]\nperiod = 1.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 10.0\nstart = { LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }\n";
+
+#[test]
+fn a_gait_reversed_twice_goes_forward() {
+    let robot = robot("own-gaits");
+    let reversed = |name| robot.gait(name).expect(name).is_reversed();
+    assert_eq!(
+        [
+            "stroll",
+            "stroll-back",
+            "stroll-on",
+            "veer-right",
+            "veer-right-back",
+            "veer-left-back"
+        ]
+        .map(reversed),
+        [false, true, false, false, true, true]
+    );
+    let on = robot.gait("stroll-on").expect("stroll-on");
+    assert_eq!((on.phase(0.6), on.period()), (0.25, 2.4));
+    let back = robot.gait("stroll-back").expect("stroll-back");
+    assert_eq!((back.phase(0.4), back.period()), (0.75, 1.6));
+}
+
+#[test]
+fn a_mirror_exchanges_the_legs_and_its_gains_count_after_it() {
+    let robot = robot("own-gaits");
+    let strides = |name| {
+        let strides = robot.gait(name).expect(name).strides();
+        strides.each_ref().map(|s| (s.amplitude, s.start))
+    };
+    assert_eq!(
+        strides("stroll"),
+        [(12.5, 0.0), (12.5, 0.5), (12.5, 0.25), (12.5, 0.75)]
+    );
+    assert_eq!(
+        strides("veer-left"),
+        [(3.75, 0.0), (12.5, 0.5), (12.5, 0.25), (3.75, 0.75)]
+    );
+    assert_eq!(
+        strides("veer-right"),
+        [(12.5, 0.5), (3.75, 0.0), (3.75, 0.75), (12.5, 0.25)]
+    );
+    assert_eq!(
+        strides("veer-left-back"),
+        [(3.75, 0.0), (15.0, 0.5), (12.5, 0.25), (3.75, 0.75)]
+    );
+}
+
+#[test]
+fn an_order_gives_each_leg_its_turn() {
+    let robot = robot("own-gaits");
+    let creep = robot.gait("creep").expect("creep");
+    // RF, LH, LF, RH, each in a fifth after the first, in which all hold back.
+    for (leg, fifth) in [(1, 1), (3, 2), (0, 3), (2, 4)] {
+        let sweeps = |phase: f64| creep.sweeps(phase)[leg];
+        assert!((sweeps(0.2 * f64::from(fifth)) + 17.5).abs() < 1e-9);
+        assert!((sweeps(0.2 * f64::from(fifth + 1)) - 17.5).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_path_leads_the_end_that_it_names_and_leaves_the_other() {
+    let robot = robot("own-gaits");
+    let neutral: [f64; 4] = robot.neutral().into();
+    let wag = robot.gait("wag").expect("wag");
+    let nod = robot.gait("nod").expect("nod");
+    for i in 0..64 {
+        let phase = f64::from(i) / 64.0;
+        let turn = std::f64::consts::TAU * phase;
+        let solved = robot.lizard().solve(&wag.pose(phase)).expect("closes");
+        let tail = solved.tail.end_point;
+        let (x, y) = (
+            9.0 * turn.sin(),
+            54.0 + 3.0 * (2.0 * turn + 0.5 * std::f64::consts::PI).sin(),
+        );
+        assert!((tail.x - x).hypot(tail.y - y) < 1e-9, "{tail:?}");
+        assert_eq!(wag.angles(phase)[..2], neutral[..2]);
+        let solved = robot.lizard().solve(&nod.pose(phase)).expect("closes");
+        let head = solved.head.end_point;
+        let (x, y) = (4.0 + 2.0 * turn.sin(), 56.0 + 5.0 * turn.sin());
+        assert!((head.x - x).hypot(head.y - y) < 1e-9, "{head:?}");
+        assert_eq!(nod.angles(phase)[2..], neutral[2..]);
+    }
+}
+
+#[test]
+fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
+    let path = |end: &str, centre: &str| {
+        let gaits =
+            format!("{STAND}[gait.point]\nperiod = 4.0\n[gait.point.{end}]\ncentre = {centre}\n");
+        paper_with_gaits(&gaits).expect_err(&gaits).to_string()
+    };
+    for end in ["head", "tail"] {
+        for (centre, point) in [
+            ("[45.0, 60.0]", "(45.00, 60.00)"),
+            ("[-45.0, 60.0]", "(-45.00, 60.00)"),
+            ("[0.0, 82.0]", "(0.00, 82.00)"),
+        ] {
+            let refused = path(end, centre);
+            let expected = format!(
+                "gait.point.{end}: the point {point} mm at phase 0.0000 is out of reach of the {end}"
+            );
+            assert!(refused.ends_with(&expected), "{refused}");
+        }
+    }
+}
+
+#[test]
+fn a_name_may_have_48_characters() {
+    let name = |length: usize| format!("{STAND}{}", WALK.replace("walk", &"w".repeat(length)));
+    let longest = paper_with_gaits(&name(48)).expect("48 characters");
+    assert_eq!(longest.gaits()[1].name().len(), 48);
+    let longer = paper_with_gaits(&name(49)).expect_err("49").to_string();
+    assert!(
+        longer.contains("has 49 characters") && longer.ends_with("so it may have 48"),
+        "{longer}"
+    );
+}
+
+/// The error of a robot that has too many bytes of gaits.
+const LEAVE_OUT: &str = "leave out gaits, first those whose waveform no other has";
+
+#[test]
+fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
+    let gaits = |count: usize| {
+        let like = |i| format!("[gait.walk{i}]\nlike = \"walk\"\n");
+        let more: String = (2..count).map(like).collect();
+        format!("{STAND}{WALK}{more}")
+    };
+    let many = paper_with_gaits(&gaits(100)).expect("100 gaits");
+    assert_eq!(many.gaits().len(), 100);
+    assert_eq!(many.gait("walk99").map(|gait| gait.index()), Some(99));
+    assert_eq!(
+        many.gait("walk99").map(|gait| gait.table_sweeps(99)),
+        many.gait("walk").map(|gait| gait.table_sweeps(99))
+    );
+    // Also where there is no room for its maps of cells.
+    for count in 100..255 {
+        match paper_with_gaits(&gaits(count)) {
+            Ok(robot) => {
+                assert!(robot.section().len() <= usize::from(lizard_core::section::SPACE))
+            }
+            Err(error) => {
+                assert!(count > 110, "{count}");
+                assert!(error.to_string().ends_with(LEAVE_OUT), "{error}");
+                break;
+            }
+        }
+    }
+    let most = paper_with_gaits(&gaits(255)).expect_err("255").to_string();
+    assert!(most.ends_with(LEAVE_OUT), "{most}");
+    let more = paper_with_gaits(&gaits(256)).expect_err("256").to_string();
+    assert!(
+        more.ends_with(
+            "gait holds 256 gaits; the firmware numbers them with a byte, so leave at most 255"
+        ),
+        "{more}"
+    );
+}
+
+#[test]
+fn waveforms_are_refused_that_the_section_has_no_room_for() {
+    // Walking takes one, and each nod on a line of its own two.
+    let gaits = |count: usize| {
+        let nod = |i: usize| {
+            let x = 0.03 * (i as f64 + 1.0);
+            format!(
+                "[gait.nod{i}]\nperiod = 4.0\n[gait.nod{i}.head]\ncentre = [{x:.2}, 55.0]\nx = [{{ k = 1, amplitude = 3.0 }}]\ny = [{{ k = 2, amplitude = {x:.2}, shift = 0.1 }}]\n"
+            )
+        };
+        let more: String = (0..count).map(nod).collect();
+        format!("{STAND}{WALK}{more}")
+    };
+    let some = paper_with_gaits(&gaits(6)).expect("13 waveforms");
+    assert_eq!(some.firmware().waves().len(), 13);
+    for count in [10, 127] {
+        let most = paper_with_gaits(&gaits(count))
+            .expect_err("too many")
+            .to_string();
+        assert!(most.ends_with(LEAVE_OUT), "{most}");
+    }
+    let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
+    assert!(more.contains("gait.nod127 needs one waveform too many: the firmware numbers them with a byte, so gaits may share 255"), "{more}");
+}
