@@ -7,9 +7,9 @@ use lizard_kinematics::{Solution, Vector};
 use lizard_robot::Coil;
 use serde::{Serialize, Serializer};
 
-use crate::assembly::Assembly;
-use crate::body::{Body, Kind, Prism};
-use crate::outline::Outline;
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Kind, Prism};
+use crate::layers::outline::Outline;
 use crate::part::{Part, volume};
 
 /// A printed part's mass over its volume, g/mm^3: PLA of 1.24, a third of infill within

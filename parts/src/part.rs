@@ -3,12 +3,13 @@
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::servo::{LEGS, NAMES};
 
-use crate::assembly::Assembly;
-use crate::body::{Body, Kind, Mount, Prism};
-use crate::outline::Outline;
-use crate::placement::Placement;
-use crate::shape::Shape;
-use crate::{mark, roof};
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Kind, Mount, Prism};
+use crate::layers::mark;
+use crate::layers::outline::Outline;
+use crate::layers::placement::Placement;
+use crate::layers::roof;
+use crate::layers::shape::Shape;
 
 /// Rings are known by their length, not by where they are.
 const SPACER: &str = "spacer";

@@ -2,13 +2,13 @@
 
 use lizard_kinematics::Vector;
 
-use crate::assembly::Assembly;
-use crate::body::{Body, Kind, Prism};
+use crate::bodies::assembly::Assembly;
+use crate::bodies::sliders::slider_range;
+use crate::layers::body::{Body, Kind, Prism};
+use crate::layers::shape::Shape;
+use crate::order::reach::Blocked;
+use crate::order::steps::steps;
 use crate::proof::Clash;
-use crate::reach::Blocked;
-use crate::shape::Shape;
-use crate::sliders::slider_range;
-use crate::steps::steps;
 
 /// What does not fit, in the sentence that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -164,7 +164,7 @@ impl Assembly {
         }
         for body in self.bodies() {
             if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind
-                && !crate::stack::is_sold(length)
+                && !crate::layers::stack::is_sold(length)
             {
                 return Err(Unfit::Screw(body.name.clone(), length));
             }

@@ -2,8 +2,8 @@
 
 use lizard_kinematics::{End, Side, Vector};
 
-use crate::assembly::Assembly;
-use crate::body::Mount;
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::Mount;
 use crate::mjcf::node::Node;
 
 /// A point that two bodies share.

@@ -7,7 +7,7 @@ use super::closed;
 use super::node::Node;
 use super::text::{MILLI, metres, round};
 use super::writer::Writer;
-use crate::body::Mount;
+use crate::layers::body::Mount;
 
 /// At this error a servo turns with all that it has, deg.
 const FULL: f64 = 3.0;

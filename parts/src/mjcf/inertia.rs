@@ -3,7 +3,7 @@
 //! Each triangle makes a tetrahedron with the origin, whose signed volume and moments
 //! have closed forms; over a closed surface they add up to those of the body.
 
-use crate::mesh::Mesh;
+use crate::files::mesh::Mesh;
 
 /// Moments of a mass: its sum, that times the place, that times the place's products.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -94,9 +94,9 @@ mod tests {
     use lizard_kinematics::Vector;
 
     use super::*;
-    use crate::body::Prism;
-    use crate::shape::Shape;
-    use crate::solid::Solid;
+    use crate::files::solid::Solid;
+    use crate::layers::body::Prism;
+    use crate::layers::shape::Shape;
 
     fn prism(add: Shape, z: [f64; 2]) -> Inertia {
         let (add, cut) = (vec![add], Vec::new());

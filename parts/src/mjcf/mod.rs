@@ -27,7 +27,7 @@ mod writer;
 use lizard_kinematics::Solution;
 use xmlwriter::{Indent, Options, XmlWriter};
 
-use crate::assembly::Assembly;
+use crate::bodies::assembly::Assembly;
 use crate::unfit::Unfit;
 use pieces::{Piece, pieces};
 pub use scene::{Course, Motor, Pull, Scene};

@@ -6,7 +6,7 @@
 use lizard_kinematics::Side;
 use lizard_robot::servo::{LEGS, NAMES};
 
-use crate::body::Mount;
+use crate::layers::body::Mount;
 
 /// A body of the file: what moves as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

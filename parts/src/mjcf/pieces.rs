@@ -6,14 +6,14 @@ use lizard_robot::servo::LEGS;
 use super::inertia::Inertia;
 use super::node::Node;
 use super::scene::Scene;
-use crate::assembly::Assembly;
 use crate::bill;
-use crate::body::{Body, Kind, Mount, Prism};
-use crate::mesh::Mesh;
-use crate::outline::Outline;
+use crate::bodies::assembly::Assembly;
+use crate::files::mesh::Mesh;
+use crate::files::solid::Solid;
+use crate::layers::body::{Body, Kind, Mount, Prism};
+use crate::layers::outline::Outline;
+use crate::layers::shape::Shape;
 use crate::part::volume;
-use crate::shape::Shape;
-use crate::solid::Solid;
 use crate::unfit::Unfit;
 
 /// What of a foot is nearer to its middle than this is its post, mm; the rest is the leaf

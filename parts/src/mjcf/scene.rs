@@ -3,7 +3,7 @@
 
 use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Robot};
 
-use crate::assembly::Assembly;
+use crate::bodies::assembly::Assembly;
 
 /// What a robot.toml leaves open, or what is to be tried.
 #[derive(Clone, Debug, PartialEq)]

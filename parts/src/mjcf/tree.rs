@@ -9,8 +9,8 @@ use super::scene::{Motor, Pull};
 use super::text::{MILLI, metres, round};
 use super::writer::{CONTACT, FIRM, Writer, colour, limits};
 use crate::bill::{self, Bill};
-use crate::body::Mount;
-use crate::placement::Placement;
+use crate::layers::body::Mount;
+use crate::layers::placement::Placement;
 
 /// Damping of a foot on its leaf over the critical one of a quarter of the robot.
 const DAMPING: f64 = 0.4;

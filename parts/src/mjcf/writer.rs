@@ -10,9 +10,9 @@ use super::node::Node;
 use super::pieces::Piece;
 use super::scene::Scene;
 use super::text::{escaped, round};
-use crate::assembly::Assembly;
-use crate::body::{Kind, Mount};
-use crate::placement::Placement;
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Kind, Mount};
+use crate::layers::placement::Placement;
 
 /// Time of a step, s.
 const STEP: f64 = 0.0002;

@@ -10,7 +10,7 @@ use lizard_kinematics::Solution;
 use lizard_robot::Robot;
 
 use super::solids::Task;
-use crate::assembly::Assembly;
+use crate::bodies::assembly::Assembly;
 
 /// Angles of each servo on the grid.
 const STEPS: u32 = 6;

@@ -12,7 +12,7 @@ use lizard_robot::Robot;
 
 use super::interval::Interval;
 use super::slope::Slope;
-use crate::joints::{Cranks, Joints};
+use crate::bodies::joints::{Cranks, Joints};
 
 /// How far below the limit of a margin a pose is still checked.
 const SINE: f64 = 0.005;

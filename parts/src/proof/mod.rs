@@ -14,6 +14,7 @@
 //! `sweep.rs` leaves out pairs that are never close, `guard.rs` knows what the guard
 //! certainly refuses.
 
+pub(crate) mod clearance;
 mod first;
 mod guard;
 mod interval;
@@ -27,9 +28,9 @@ use std::fmt;
 use lizard_kinematics::Solution;
 use serde::{Deserialize, Serialize};
 
-use crate::assembly::Assembly;
-use crate::body::Body;
-use crate::clearance::Clearance;
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::Body;
+use crate::proof::clearance::Clearance;
 use guard::Guard;
 pub use search::ENOUGH;
 use search::Found;

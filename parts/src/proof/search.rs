@@ -13,8 +13,8 @@ use lizard_kinematics::{Solution, Vector};
 use super::guard::{Guard, Region, middle, within};
 use super::slope::Slope;
 use super::solids::Task;
-use crate::assembly::Assembly;
-use crate::placement::Placement;
+use crate::bodies::assembly::Assembly;
+use crate::layers::placement::Placement;
 
 /// More air than this is not measured, mm.
 pub const ENOUGH: f64 = 2.0;

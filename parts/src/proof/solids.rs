@@ -9,10 +9,10 @@ use lizard_kinematics::Vector;
 use super::guard::{Guard, Region};
 use super::slope::Slope;
 use super::{LEAST, TOUCH, sweep};
-use crate::assembly::Assembly;
-use crate::body::{Body, Mount, Prism};
-use crate::placement::Placement;
-use crate::shape::Shape;
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Mount, Prism};
+use crate::layers::placement::Placement;
+use crate::layers::shape::Shape;
 
 /// Heights that differ by less are the same, mm.
 const SAME: f64 = 1e-6;

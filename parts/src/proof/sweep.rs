@@ -7,8 +7,8 @@ use lizard_kinematics::Vector;
 
 use super::guard::{Guard, Region, middle, within};
 use super::interval::Interval;
-use crate::assembly::Assembly;
-use crate::body::{Body, Mount};
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Mount};
 
 /// Regions of this half width are not halved, deg.
 const FINE: f64 = 2.0;

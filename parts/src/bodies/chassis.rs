@@ -1,0 +1,363 @@
+//! What does not move: plate, servos, battery, deck and board.
+
+use lizard_kinematics::{End, Vector};
+
+use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::fittings;
+use crate::bodies::layout::STANDOFFS;
+use crate::bodies::leads;
+use crate::bodies::names::names;
+use crate::layers::body::{Kind, Mount, Prism};
+use crate::layers::mark;
+use crate::layers::shape::Shape;
+
+/// Radius of a standoff, mm: 5.5 mm over flats.
+const STANDOFF: f64 = 3.2;
+/// Radius of a servo's spline, mm.
+pub const SPLINE: f64 = 2.4;
+/// Radius of the hole that a servo's own screw cuts its thread into, mm. One of the two
+/// is beside the notch for the lead, with 0.35 mm between them: there the screw holds on
+/// its three other sides.
+const PILOT: f64 = 0.75;
+
+/// From a seat to the middle of its servo's number, and as much outward, mm.
+const NUMBER: f64 = 4.0;
+
+/// An Arduino UNO, mm: its board, what stands on it, its four holes from its middle
+/// with the USB socket behind. From 2700 x 2100 mil and holes at (550, 100), (600, 2000),
+/// (2600, 300), (2600, 1400).
+pub const UNO: [f64; 3] = [53.34, 68.58, 12.0];
+const UNO_HOLES: [(f64, f64); 4] = [
+    (24.13, -20.32),
+    (-24.13, -19.05),
+    (19.05, 31.75),
+    (-8.89, 31.75),
+];
+const UNO_BOARD: f64 = 1.6;
+/// The hole beside the pin AREF, whose header leaves no room for a screw's head.
+const UNO_TIGHT: usize = 1;
+
+fn at(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
+pub fn add(builder: &mut Builder) {
+    plate(builder);
+    for servo in 0..4 {
+        case(builder, servo);
+    }
+    leads::add(builder);
+    battery(builder);
+    fittings::add(builder);
+    deck(builder);
+    board(builder);
+}
+
+/// The middle of a servo's case, and its size grown by `air` on each side.
+fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
+    let body = &builder.parts.servo;
+    Shape::rectangle(
+        middle(builder, servo),
+        at(body.width + 2.0 * air, body.length + 2.0 * air),
+        0.0,
+    )
+}
+
+fn middle(builder: &Builder, servo: usize) -> Vector {
+    builder.layout.plate.cases[servo]
+}
+
+fn inward(servo: usize) -> Vector {
+    at(0.0, -End::of_servo(servo).sign())
+}
+
+/// Where the two screws of a flange are.
+fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
+    let half = inward(servo) * (builder.parts.servo.holes / 2.0);
+    let middle = middle(builder, servo);
+    [middle - half, middle + half]
+}
+
+fn seat(builder: &Builder, servo: usize) -> Shape {
+    let body = &builder.parts.servo;
+    Shape::rectangle(
+        middle(builder, servo),
+        at(
+            body.width + 2.0 * (builder.parts.fit + builder.parts.wall),
+            body.flange + 2.0,
+        ),
+        1.0,
+    )
+}
+
+fn standoffs() -> [Vector; 4] {
+    let [x, y] = STANDOFFS;
+    [at(-x, y), at(x, y), at(x, -y), at(-x, -y)]
+}
+
+fn plate(builder: &mut Builder) {
+    let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
+    let plate = layout.plate;
+    let mut seats = Vec::new();
+    let mut openings = Vec::new();
+    let mut holes = Vec::new();
+    for servo in 0..4 {
+        seats.push(seat(builder, servo));
+        openings.push(opening(builder, servo, parts.fit));
+        let outward = End::of_servo(servo).sign();
+        let middle = middle(builder, servo);
+        openings.push(leads::notch(&parts.servo, middle, parts.fit, outward));
+        holes.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    }
+    let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
+    let mut add = vec![body];
+    let mut through = Vec::new();
+    for (leg, [between, driven, idle]) in layout.legs.iter().zip(plate.arms) {
+        let bar = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
+        add.push(bar(between, plate.arm));
+        for (pivot, arm) in [(leg.driven, driven), (leg.idle, idle)] {
+            add.push(bar(arm, plate.arm - 0.01));
+            through.push(builder.hole(pivot));
+        }
+    }
+    through.extend(standoffs().map(|at| builder.hole(at)));
+    through.extend(leads::holes());
+    through.extend(fittings::slots(builder));
+    let cut = [&openings[..], &holes].concat();
+    let [low, high] = stack.plate;
+    let through = [&cut[..], &through].concat();
+    let prisms = vec![
+        Prism {
+            add: add.clone(),
+            cut: through.clone(),
+            z: [low, high - mark::DEEP],
+        },
+        Prism {
+            add,
+            cut: [through, numbers(builder)].concat(),
+            z: [high - mark::DEEP, high],
+        },
+        Prism {
+            add: seats,
+            cut,
+            z: stack.seat,
+        },
+    ];
+    builder.body("plate".to_owned(), Kind::Printed, Mount::Chassis, prisms);
+}
+
+/// A piece of the plate for one servo and its leg: what is printed first.
+pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
+    /// What is around the seat, mm.
+    const AROUND: f64 = 2.0;
+    let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
+    let leg = &builder.layout.legs[servo];
+    let middle = middle(builder, servo);
+    let size = at(
+        parts.servo.width + 2.0 * (parts.fit + parts.wall + AROUND),
+        parts.servo.flange + 2.0 + 2.0 * AROUND,
+    );
+    let mut add = vec![Shape::rectangle(middle, size, 1.0)];
+    let [between, driven, idle] = plate.arms[servo];
+    add.push(Shape::bar(between[0], between[1], plate.arm));
+    for [from, to] in [driven, idle] {
+        add.push(Shape::bar(from, to, plate.arm - 0.01));
+        add.push(Shape::bar(to, middle, plate.arm - 0.02));
+    }
+    let outward = End::of_servo(servo).sign();
+    let mut cut = vec![
+        opening(builder, servo, parts.fit),
+        leads::notch(&parts.servo, middle, parts.fit, outward),
+    ];
+    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    let pivots = [leg.driven, leg.idle].map(|at| builder.hole(at));
+    vec![
+        Prism {
+            add,
+            cut: [&cut[..], &pivots].concat(),
+            z: [0.0, parts.plate],
+        },
+        Prism {
+            add: vec![seat(builder, servo)],
+            cut,
+            z: stack.seat.map(|z| z + parts.plate),
+        },
+    ]
+}
+
+/// The servos' numbers, engraved beside the seats: so the plate says which end is which.
+fn numbers(builder: &Builder) -> Vec<Shape> {
+    let body = &builder.parts.servo;
+    let strokes = (0..4).flat_map(|servo| {
+        let [wide, high] = mark::size("1");
+        let middle = middle(builder, servo);
+        // Before the seat, away from the hole for the leads.
+        let out = middle.x.signum() * NUMBER;
+        let before = inward(servo) * (body.flange / 2.0 + 1.0 + NUMBER);
+        let at = middle + before + at(out - wide / 2.0, -high / 2.0);
+        mark::strokes(&(servo + 1).to_string(), at)
+    });
+    strokes.collect()
+}
+
+fn case(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let body = builder.parts.servo;
+    let bottom = builder.stack.servo;
+    let shaft = builder.layout.shafts[servo];
+    let layer = |add: Vec<Shape>, low: f64, high: f64| Prism {
+        add,
+        cut: Vec::new(),
+        z: [bottom + low, bottom + high],
+    };
+    let case = opening(builder, servo, 0.0);
+    let flange = Shape::rectangle(middle(builder, servo), at(body.width, body.flange), 0.0);
+    let gears = vec![
+        Shape::disc(shaft, body.width / 2.0 - 0.05),
+        Shape::bar(shaft, shaft + inward(servo) * body.shaft, 3.0),
+    ];
+    let over = body.flange_height + body.flange_thickness;
+    let prisms = vec![
+        layer(vec![case.clone()], 0.0, body.flange_height),
+        layer(vec![flange], body.flange_height, over),
+        layer(vec![case], over, body.height),
+        layer(gears, body.height, body.boss),
+        layer(vec![Shape::disc(shaft, SPLINE)], body.boss, body.boss + 3.0),
+    ];
+    builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
+    builder.meeting(&format!("horn {name}"));
+    for (number, at) in flange_holes(builder, servo).into_iter().enumerate() {
+        let head = Prism {
+            add: vec![Shape::disc(at, 2.2)],
+            cut: Vec::new(),
+            z: [bottom + over, bottom + over + 1.6],
+        };
+        builder.body(
+            format!("servo screw {name} {}", number + 1),
+            Kind::ServoScrew,
+            Mount::Chassis,
+            vec![head],
+        );
+    }
+}
+
+fn battery(builder: &mut Builder) {
+    let [x, y, z] = builder.parts.battery;
+    let block = Prism {
+        add: vec![Shape::rectangle(Vector::default(), at(x, y), 0.0)],
+        cut: Vec::new(),
+        z: [0.0, z],
+    };
+    builder.body(
+        "battery".to_owned(),
+        Kind::Battery,
+        Mount::Chassis,
+        vec![block],
+    );
+}
+
+fn deck(builder: &mut Builder) {
+    let (stack, parts) = (builder.stack, builder.parts);
+    let [x, y] = STANDOFFS;
+    let bar = |a: (f64, f64), b: (f64, f64)| Shape::bar(at(a.0, a.1), at(b.0, b.1), 5.0);
+    let add = vec![
+        Shape::rectangle(Vector::default(), at(2.0 * x + 10.5, 2.0 * y + 14.0), 5.0),
+        bar(UNO_HOLES[0], UNO_HOLES[1]),
+        bar(UNO_HOLES[2], UNO_HOLES[3]),
+    ];
+    let screws = standoffs().map(|at| builder.hole(at));
+    let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
+    // Lighter, and a way for the straps of what hangs under it.
+    let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
+    let prisms = vec![
+        Prism {
+            add,
+            cut: [&screws[..], &threads, &leads::holes(), &[window]].concat(),
+            z: stack.deck,
+        },
+        Prism {
+            add: UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0)).to_vec(),
+            cut: threads.to_vec(),
+            z: stack.boss,
+        },
+    ];
+    builder.body("deck".to_owned(), Kind::Printed, Mount::Chassis, prisms);
+    for (number, place) in standoffs().into_iter().enumerate() {
+        let length = stack.deck[0];
+        let post = Prism {
+            add: vec![Shape::disc(place, STANDOFF)],
+            cut: vec![builder.thread(place)],
+            z: [0.0, length],
+        };
+        builder.body(
+            format!("standoff {}", number + 1),
+            Kind::Standoff(length),
+            Mount::Chassis,
+            vec![post],
+        );
+        for (name, head, points) in [
+            ("below", stack.plate[0], Points::Up),
+            ("above", stack.deck[1], Points::Down),
+        ] {
+            builder.screw(
+                &Bolt {
+                    name: &format!("standoff {} {name}", number + 1),
+                    mount: Mount::Chassis,
+                    at: place,
+                    head,
+                    points,
+                    nut: 0.0,
+                    length: None,
+                    meets: &[],
+                    hex: false,
+                },
+                parts.plate + 4.0,
+            );
+        }
+    }
+}
+
+fn board(builder: &mut Builder) {
+    let low = builder.stack.boss[1];
+    let [x, y, z] = UNO;
+    let layer = |low: f64, high: f64| Prism {
+        add: vec![Shape::rectangle(Vector::default(), at(x, y), 0.0)],
+        cut: UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 1.6)).to_vec(),
+        z: [low, high],
+    };
+    let board = layer(low, low + UNO_BOARD);
+    let parts = Prism {
+        add: vec![Shape::rectangle(
+            Vector::default(),
+            at(x - 4.0, y - 4.0),
+            0.0,
+        )],
+        cut: UNO_HOLES.map(|(x, y)| builder.sink(at(x, y))).to_vec(),
+        z: [low + UNO_BOARD, low + z],
+    };
+    builder.body(
+        "board".to_owned(),
+        Kind::Board,
+        Mount::Chassis,
+        vec![board, parts],
+    );
+    for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
+        if number == UNO_TIGHT {
+            continue;
+        }
+        builder.screw(
+            &Bolt {
+                name: &format!("board {}", number + 1),
+                mount: Mount::Chassis,
+                at: at(x, y),
+                head: low + UNO_BOARD,
+                points: Points::Down,
+                nut: 0.0,
+                length: None,
+                meets: &[],
+                hex: false,
+            },
+            10.0,
+        );
+    }
+}

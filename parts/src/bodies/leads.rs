@@ -1,0 +1,97 @@
+//! The servos' leads: three wires side by side, which leave the case at the shaft's end.
+//!
+//! A servo is pushed into the plate from above, with its plug and its lead first. The
+//! lead sticks out of the case, so the opening needs a notch for it. Below the plate it
+//! is folded around the case's corner, runs between the servos towards the middle, and
+//! goes up through plate and deck to the board.
+
+use lizard_kinematics::{End, Vector};
+use lizard_robot::ServoBody;
+
+use crate::bodies::builder::Builder;
+use crate::bodies::layout::STANDOFFS;
+use crate::bodies::names::names;
+use crate::layers::body::{Kind, Mount, Prism};
+use crate::layers::shape::Shape;
+
+/// Width and thickness of a lead, mm.
+pub const LEAD: [f64; 2] = [4.0, 1.2];
+/// What a notch is wider than a lead, mm.
+const WIDER: f64 = 1.0;
+/// From the bottom of the case to the lead's lower edge, and what it takes of height, mm.
+const LEAVES: [f64; 2] = [3.0, 4.0];
+/// How far it stands out before it is folded, mm.
+const BEND: f64 = 4.0;
+/// A hole for the leads and the wires, mm: across and along the plate.
+const WIRES: [f64; 2] = [8.4, 6.0];
+/// From the middle of the plate to such a hole: a little beyond the standoffs, mm.
+const BEYOND: f64 = 2.0;
+
+/// The notch in a servo's opening, by the middle of its case, its air on each side, and
+/// the way to the shaft's end: 1 forward, -1 back.
+pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
+    let reach = body.length / 2.0 + LEAD[1] + fit;
+    // It begins within the case's own opening.
+    let from = body.length / 2.0 - 2.0;
+    let half = (LEAD[0] + WIDER) / 2.0;
+    let corner = |x: f64, y: f64| middle + Vector::new(x, outward * y);
+    Shape::hull(
+        &[
+            corner(-half, from),
+            corner(half, from),
+            corner(half, reach),
+            corner(-half, reach),
+        ],
+        0.0,
+    )
+}
+
+fn wires(sign: f64) -> Vector {
+    Vector::new(0.0, sign * (STANDOFFS[1] + BEYOND))
+}
+
+/// The holes through which leads and wires go up, both in plate and deck.
+pub fn holes() -> [Shape; 2] {
+    let [across, along] = WIRES;
+    [1.0, -1.0].map(|sign| Shape::rectangle(wires(sign), Vector::new(across, along), 1.0))
+}
+
+pub fn add(builder: &mut Builder) {
+    for servo in 0..4 {
+        let (name, _) = names(servo);
+        let outward = End::of_servo(servo).sign();
+        let body = builder.parts.servo;
+        let middle = builder.layout.plate.cases[servo];
+        let half = Vector::new(body.width, body.length) * 0.5;
+        // The neighbour's lead is on the other side of the middle line.
+        let inner = -middle.x.signum();
+        let x = middle.x + inner * (half.x + LEAD[1]);
+        let end = middle.y + outward * (half.y + BEND / 2.0);
+        let at = Vector::new;
+        let up = wires(outward) + at(-inner * 1.6, 0.0);
+        let radius = LEAD[1];
+        let low = builder.stack.servo + LEAVES[0];
+        let [bend, corner] = [at(middle.x, end), at(x, end)];
+        let before = at(x, middle.y - outward * half.y);
+        let way = vec![
+            Shape::rectangle(bend, at(LEAD[0], BEND), 0.0),
+            Shape::bar(bend, corner, radius),
+            Shape::bar(corner, before, radius),
+            Shape::bar(before, up, radius),
+        ];
+        let lies = [low, low + LEAVES[1]];
+        let prisms = vec![
+            Prism {
+                add: way,
+                cut: Vec::new(),
+                z: lies,
+            },
+            Prism {
+                add: vec![Shape::disc(up, radius)],
+                cut: Vec::new(),
+                z: [lies[1], builder.stack.deck[1]],
+            },
+        ];
+        builder.body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);
+    }
+}

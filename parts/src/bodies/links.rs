@@ -1,0 +1,204 @@
+//! What a servo turns: its horn and the link that is pushed over it.
+//!
+//! One part is the crank of head or tail, the arm of a slider and the anchor of the
+//! leg's strut; so one servo moves all three.
+
+use lizard_kinematics::Vector;
+use lizard_robot::Horn;
+
+use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::chassis::SPLINE;
+use crate::bodies::names::names;
+use crate::layers::body::{Kind, Mount, Prism};
+use crate::layers::shape::Shape;
+use crate::layers::stack::{PLAY, Span};
+
+/// Where the horn's small screws are, as shares of its arm.
+const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
+/// Radius of the hole that such a screw cuts its thread into, mm.
+const PILOT: f64 = 0.7;
+/// Length of such a screw: 5 mm would reach the servo's boss under the link. And radius
+/// and height of its head, mm.
+pub const HORN_SCREW: f64 = 4.0;
+const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
+
+/// Wall of the ring between strut and link, which a spring's coil leaves no more room
+/// for, mm.
+const RING: f64 = 1.1;
+
+/// Air on each side of a horn's arm in its pocket, in fits: horns spread.
+pub const POCKET: f64 = 1.5;
+
+pub fn add(builder: &mut Builder) {
+    for servo in 0..4 {
+        horn(builder, servo);
+        link(builder, servo);
+        horn_screws(builder, servo);
+        anchor(builder, servo);
+    }
+}
+
+/// The horn's arm, which points along the crank; `grown` by a pocket's air.
+pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
+    let (hub, tip) = (horn.hub / 2.0 + grown, horn.tip / 2.0 + grown);
+    let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
+    // From hub to tip the arm gets narrower.
+    let width = 0.8 * hub;
+    let taper = Shape::hull(
+        &[
+            Vector::new(0.0, -width),
+            Vector::new(end.x, -tip),
+            Vector::new(end.x, tip),
+            Vector::new(0.0, width),
+        ],
+        0.0,
+    );
+    vec![
+        Shape::disc(Vector::default(), hub),
+        taper,
+        Shape::disc(end, tip + 0.05),
+    ]
+}
+
+fn horn(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let horn = builder.parts.horn;
+    let [low, _] = builder.stack.horn;
+    let spline = Shape::disc(Vector::default(), SPLINE);
+    let mut through = vec![spline.clone()];
+    through.extend(horn_holes(&horn).map(|at| Shape::disc(at, PILOT)));
+    let hub = Prism {
+        add: vec![Shape::disc(Vector::default(), horn.hub / 2.0)],
+        cut: vec![spline.clone()],
+        z: [low + horn.thickness - horn.height, low],
+    };
+    let arm = Prism {
+        add: arm(&horn, 0.0),
+        cut: through,
+        z: [low, low + horn.thickness],
+    };
+    builder.body(
+        format!("horn {name}"),
+        Kind::Horn,
+        Mount::Link(servo),
+        vec![hub, arm],
+    );
+    builder.meeting(&format!("servo {name}"));
+}
+
+fn link(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
+    let hub = Vector::default();
+    let tip = Vector::new(layout.crank[servo], 0.0);
+    let side = Vector::new(0.0, layout.hand[servo] * layout.arm[servo]);
+    let anchor = layout.legs[servo].anchor;
+    let half = builder.half();
+    let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
+    // The corner between crank and arm is where it would break.
+    let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
+    let add = vec![
+        Shape::disc(hub, round),
+        Shape::bar(hub, tip, half),
+        Shape::bar(hub, side, half - 0.01),
+        Shape::bar(hub, anchor, half - 0.02),
+        brace,
+        Shape::disc(tip, builder.eye()),
+        Shape::disc(side, builder.eye()),
+    ];
+    let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
+    let holes = [builder.hole(tip), builder.hole(side)];
+    let pilots = horn_holes(&parts.horn).map(|at| Shape::disc(at, PILOT));
+    let pocket = arm(&parts.horn, POCKET * parts.fit);
+    let anchor_hole = builder.hole(anchor);
+    let [low, high] = stack.link;
+    // What is cut away, and at which heights.
+    let cuts = [
+        (&holes[..], [low, high]),
+        (&[tip, side].map(|at| builder.pocket(at)), [low, stack.held]),
+        (&[horn_hub], [low, stack.horn[0]]),
+        (&pilots, [low, stack.horn[0]]),
+        (&pocket, stack.horn),
+        (&[anchor_hole], [low, high]),
+        (&[builder.sink(anchor)], stack.sunk),
+    ];
+    let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|a, b| *a - *b < 1e-9);
+    let layer = |z: &[f64]| {
+        let through = |of: Span| of[0] < z[1] - 1e-9 && z[0] < of[1] - 1e-9;
+        let cut = cuts.iter().filter(|(_, of)| through(*of));
+        Prism {
+            add: add.clone(),
+            cut: cut.flat_map(|(shapes, _)| shapes.to_vec()).collect(),
+            z: [z[0], z[1]],
+        }
+    };
+    let prisms = heights.windows(2).map(layer).collect();
+    builder.body(
+        format!("link {name}"),
+        Kind::Printed,
+        Mount::Link(servo),
+        prisms,
+    );
+    builder.meeting(&format!("servo {name}"));
+}
+
+/// Where the small screws are that hold the horn.
+fn horn_holes(horn: &Horn) -> [Vector; 2] {
+    HORN_SCREWS.map(|share| Vector::new(share * horn.arm, 0.0))
+}
+
+fn horn_screws(builder: &mut Builder, servo: usize) {
+    let (name, _) = names(servo);
+    let top = builder.stack.horn[0] + builder.parts.horn.thickness;
+    let [radius, high] = HORN_SCREW_HEAD;
+    for (number, at) in horn_holes(&builder.parts.horn).into_iter().enumerate() {
+        let prism = |radius: f64, z: Span| Prism {
+            add: vec![Shape::disc(at, radius)],
+            cut: Vec::new(),
+            z,
+        };
+        let prisms = vec![
+            prism(PILOT, [top - HORN_SCREW, top]),
+            prism(radius, [top, top + high]),
+        ];
+        let name = format!("horn screw {name} {}", number + 1);
+        let kind = Kind::HornScrew(HORN_SCREW);
+        builder.body(name, kind, Mount::Link(servo), prisms);
+    }
+}
+
+/// The screw that holds the strut, and the ring that fills what is between.
+fn anchor(builder: &mut Builder, servo: usize) {
+    let (name, leg) = names(servo);
+    let (stack, parts) = (builder.stack, builder.parts);
+    let at = builder.layout.legs[servo].anchor;
+    let strut = builder.strut(leg);
+    let ring = [stack.on_hook, stack.link[0] - PLAY];
+    // Beside the spring's coil.
+    let thin = Shape::disc(at, parts.screw.diameter / 2.0 + RING);
+    let prism = Prism {
+        add: vec![thin],
+        cut: vec![builder.hole(at)],
+        z: ring,
+    };
+    builder.body(
+        format!("strut ring {name}"),
+        Kind::Printed,
+        Mount::Link(servo),
+        vec![prism],
+    );
+    builder.meeting(&strut);
+    builder.bolt(&Bolt {
+        name: &format!("anchor {name}"),
+        mount: Mount::Link(servo),
+        at,
+        head: stack.sunk[0],
+        points: Points::Down,
+        nut: stack.strut[0] - PLAY,
+        length: None,
+        meets: &[&strut],
+        hex: false,
+    });
+}

@@ -1,0 +1,20 @@
+//! The bodies of the robot, and where each is at a pose.
+//!
+//! A robot is some eighty bodies: printed parts, servos, screws, a board, a battery. Each
+//! file here makes the bodies of one place of the robot from its robot.toml;
+//! [`assembly`] has them all and moves them.
+
+pub(crate) mod assembly;
+pub(crate) mod builder;
+pub(crate) mod chassis;
+pub(crate) mod ends;
+pub(crate) mod fittings;
+pub(crate) mod joints;
+pub(crate) mod layout;
+pub(crate) mod leads;
+pub(crate) mod legs;
+pub(crate) mod links;
+pub(crate) mod looks;
+pub(crate) mod names;
+pub(crate) mod sliders;
+pub(crate) mod struts;

@@ -1,0 +1,119 @@
+//! The strut between a servo's link and its leg: one with a spring, or a rigid one.
+//!
+//! A strut with a stop: a hole at the servo's end, a slot at the leg's end, a spring
+//! between both screws. The spring pulls the leg's screw against the slot's inner end, so
+//! the leg follows its servo exactly until the foot is held by more than the spring's
+//! pull. Then the screw runs along the slot.
+//!
+//! Between its screws a spring is longer than in the shop, and so is its coil. It reaches
+//! nearly from screw to screw, and farther when the leg lags. So the strut is a channel,
+//! and the coil lies on its floor along its whole length.
+//!
+//! A rigid strut is a bar with two holes in the same places, for the same screws. It fits
+//! in the space of the one with a spring, so either can replace the other, and it has at
+//! least the same distance from all other parts.
+
+use lizard_kinematics::Vector;
+use lizard_robot::SLOT;
+
+use crate::bodies::builder::Builder;
+use crate::bodies::names::{self, names};
+use crate::layers::body::{Body, Kind, Mount, Prism};
+use crate::layers::shape::Shape;
+
+pub fn add(builder: &mut Builder) {
+    for servo in 0..4 {
+        let strut = body(builder, servo, builder.slotted());
+        builder.bodies.push(strut);
+        if builder.slotted() {
+            spring(builder, servo);
+        }
+    }
+}
+
+/// The struts that the robot has not, but could have.
+pub fn instead(builder: &Builder) -> Vec<Body> {
+    (0..4)
+        .map(|servo| body(builder, servo, !builder.slotted()))
+        .collect()
+}
+
+fn body(builder: &Builder, servo: usize, slotted: bool) -> Body {
+    let (_, leg) = names(servo);
+    Body {
+        name: names::strut(slotted, leg),
+        kind: Kind::Printed,
+        mount: Mount::Strut(servo),
+        prisms: match slotted {
+            true => with_slot(builder, servo),
+            false => vec![rigid(builder, servo)],
+        },
+        meets: vec![format!("crank {leg}")],
+    }
+}
+
+fn at(x: f64) -> Vector {
+    Vector::new(x, 0.0)
+}
+
+/// Half the width of the channel that spring, hooks and heads lie in, mm.
+fn channel(builder: &Builder) -> f64 {
+    let parts = builder.parts;
+    let spring = parts.spring.outer / 2.0 + 1.5 * parts.fit;
+    (parts.screw.head / 2.0).max(spring) + parts.fit
+}
+
+fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
+    let (stack, channel) = (builder.stack, channel(builder));
+    let length = builder.layout.legs[servo].strut_length;
+    let whole = |half: f64| Shape::bar(at(0.0), at(length + SLOT), half);
+    let outer = vec![whole(channel + builder.parts.wall)];
+    let hole = builder.hole(at(0.0));
+    let slot = Shape::bar(at(length), at(length + SLOT), hole.radius);
+    vec![
+        Prism {
+            add: outer.clone(),
+            cut: vec![hole, slot],
+            z: stack.strut,
+        },
+        Prism {
+            add: outer,
+            cut: vec![whole(channel)],
+            z: stack.recess,
+        },
+    ]
+}
+
+fn rigid(builder: &Builder, servo: usize) -> Prism {
+    let [from, to] = [at(0.0), at(builder.layout.legs[servo].strut_length)];
+    Prism {
+        add: vec![Shape::bar(from, to, channel(builder) + builder.parts.wall)],
+        cut: [from, to].map(|at| builder.hole(at)).to_vec(),
+        z: builder.stack.rigid,
+    }
+}
+
+fn spring(builder: &mut Builder, servo: usize) {
+    let (_, leg) = names(servo);
+    let (stack, parts) = (builder.stack, builder.parts);
+    let length = builder.layout.legs[servo].strut_length;
+    let radius = parts.spring.outer / 2.0;
+    // Each hook lies around the far side of its screw; between both is the coil.
+    let hook = parts.spring.outer - 2.0 * parts.spring.wire;
+    let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
+    let coil = Prism {
+        add: vec![Shape::rectangle(at(length / 2.0), size, 0.0)],
+        cut: Vec::new(),
+        z: [stack.coil - radius, stack.coil + radius],
+    };
+    builder.body(
+        format!("spring {leg}"),
+        Kind::Spring,
+        Mount::Strut(servo),
+        vec![coil],
+    );
+    // Heads lie over the hooks, so they reach to the coil's ends.
+    let (name, _) = names(servo);
+    builder.meeting(&format!("screw leg anchor {leg}"));
+    builder.meeting(&format!("screw anchor {name}"));
+}

@@ -1,0 +1,114 @@
+//! A fit coupon: an hour of printing that shows which `fit` a printer needs.
+//!
+//! Each column has another fit, 0.0 to 0.4 mm from the left, marked by one to five dots:
+//! an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, a piece of
+//! a sleeve. Use the first column in which all of them go together by hand.
+
+use lizard_kinematics::Vector;
+use lizard_robot::Parts;
+
+use crate::bodies::leads::{LEAD, notch};
+use crate::bodies::links::{POCKET, arm};
+use crate::bodies::sliders::ROD;
+use crate::layers::body::Prism;
+use crate::layers::placement::Placement;
+use crate::layers::shape::Shape;
+use crate::part::Part;
+
+/// Columns, and the step of the fit, mm.
+const COLUMNS: u32 = 5;
+const STEP: f64 = 0.1;
+/// Thickness of the coupon and of the floor of its pockets, mm.
+const THICK: f64 = 4.0;
+const FLOOR: f64 = 1.8;
+/// Length of a piece of a sleeve, and of the rod that is tried in it, mm.
+const SLEEVE: f64 = 10.0;
+const GAUGE: f64 = 30.0;
+
+/// The coupon, and a piece of rod to try its sleeves with.
+#[must_use]
+pub fn coupon(parts: &Parts) -> [Part; 2] {
+    let (servo, horn) = (&parts.servo, &parts.horn);
+    let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;
+    // From below: opening, pocket, hole and dots, sleeve.
+    let most = STEP * f64::from(COLUMNS);
+    let opening = 3.0 + LEAD[1] + most + servo.length / 2.0;
+    let pocket = opening + servo.length / 2.0 + most + 3.0 + horn.hub / 2.0;
+    let hole = pocket + horn.arm + 5.0;
+    let sleeve = hole + 6.0 + SLEEVE / 2.0;
+    let top = sleeve + SLEEVE / 2.0 + 2.0;
+    let wide = pitch * f64::from(COLUMNS);
+    let at = Vector::new;
+    let plate = Shape::rectangle(at(wide / 2.0, top / 2.0), at(wide, top), 2.0);
+    let (mut floor, mut below, mut walls, mut bores) = (vec![], vec![], vec![], vec![]);
+    let mut roofs = Vec::new();
+    for column in 0..COLUMNS {
+        let fit = STEP * f64::from(column);
+        let x = pitch * (f64::from(column) + 0.5);
+        let through = [
+            Shape::disc(at(x - 3.0, hole), (parts.screw.diameter + fit) / 2.0),
+            Shape::rectangle(
+                at(x, opening),
+                at(servo.width + 2.0 * fit, servo.length + 2.0 * fit),
+                0.0,
+            ),
+            notch(servo, at(x, opening), fit, -1.0),
+        ];
+        floor.extend(through.iter().cloned());
+        below.extend(through);
+        floor.push(Shape::disc(at(x, pocket), horn.hub / 2.0 + fit));
+        let upright = Placement {
+            at: at(x, pocket),
+            turn: at(0.0, 1.0),
+        };
+        below.extend(
+            arm(horn, POCKET * fit)
+                .iter()
+                .map(|shape| shape.placed(&upright)),
+        );
+        for dot in 0..=column {
+            let place = at(
+                x + 1.6 + 1.6 * f64::from(dot % 3),
+                hole + 1.6 - 3.2 * f64::from(dot / 3),
+            );
+            below.push(Shape::disc(place, 0.5));
+        }
+        let bore = ROD + 2.0 * fit;
+        let outer = bore + 2.0 * parts.wall;
+        walls.push(Shape::rectangle(at(x, sleeve), at(outer, SLEEVE), 0.5));
+        bores.push(Shape::rectangle(at(x, sleeve), at(bore, 2.0 * SLEEVE), 0.0));
+        roofs.push((THICK + parts.thickness + 2.0 * fit, outer));
+    }
+    let prism = |add: &[Shape], cut: &[Shape], z: [f64; 2]| Prism {
+        add: add.to_vec(),
+        cut: cut.to_vec(),
+        z,
+    };
+    let mut prisms = vec![
+        prism(std::slice::from_ref(&plate), &floor, [0.0, FLOOR]),
+        prism(&[plate], &below, [FLOOR, THICK]),
+    ];
+    // Each sleeve is higher by two fits than the one before, so the roofs begin one after another.
+    let mut low = THICK;
+    for (column, &(roof, _)) in roofs.iter().enumerate() {
+        let mut open = bores.clone();
+        open.drain(..column);
+        prisms.push(prism(&walls, &open, [low, roof]));
+        low = roof;
+    }
+    prisms.push(prism(&walls, &[], [low, low + 1.3]));
+    let gauge = Prism {
+        add: vec![Shape::rectangle(at(0.0, 0.0), at(GAUGE, ROD), 1.0)],
+        cut: Vec::new(),
+        z: [0.0, parts.thickness],
+    };
+    let part = |name: &str, prisms: Vec<Prism>| Part {
+        name: name.to_owned(),
+        bodies: vec![name.to_owned()],
+        prisms,
+        turned: false,
+        instead_of: None,
+        mark: String::new(),
+    };
+    [part("coupon", prisms), part("coupon rod", vec![gauge])]
+}

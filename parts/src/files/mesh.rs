@@ -1,0 +1,275 @@
+//! A part's surface as triangles, without a gap.
+//!
+//! Each edge of the solid is divided once, and both faces that share it use the same
+//! points, so the triangles fit whatever their number.
+
+use std::collections::BTreeMap;
+
+use lizard_kinematics::Vector;
+
+use crate::files::solid::{Face, Solid, Surface, progress};
+use crate::layers::outline::Side;
+
+/// How far a chord may stay within its arc, mm.
+const CHORD: f64 = 0.01;
+/// The largest angle of a chord, rad: 36 to a circle.
+const ANGLE: f64 = std::f64::consts::TAU / 36.0;
+
+/// Triangles, counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Corners, mm.
+    pub corners: Vec<[f64; 3]>,
+    /// Three corners each.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+impl Mesh {
+    /// The triangles of a surface.
+    ///
+    /// # Panics
+    /// Never for a closed surface.
+    #[must_use]
+    pub fn of(solid: &Solid) -> Self {
+        let mut maker = Maker {
+            solid,
+            mesh: Self::default(),
+            at: BTreeMap::new(),
+            lines: Vec::new(),
+        };
+        for edge in 0..solid.edges.len() {
+            let line = maker.line(edge);
+            maker.lines.push(line);
+        }
+        for face in &solid.faces {
+            match face.surface {
+                Surface::Top(_) => maker.flat(face, false),
+                Surface::Bottom(_) => maker.flat(face, true),
+                Surface::Wall(side, end) => maker.wall(face, side, end),
+            }
+        }
+        maker.mesh
+    }
+
+    /// Its volume, mm^3.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let corner = |i: usize| self.corners[i];
+        let six: f64 = self
+            .triangles
+            .iter()
+            .map(|&[a, b, c]| {
+                let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (corner(a), corner(b), corner(c));
+                ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+            })
+            .sum();
+        six / 6.0
+    }
+
+    /// Whether every side of a triangle has exactly one neighbour.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        let mut sides = BTreeMap::new();
+        for &[a, b, c] in &self.triangles {
+            for side in [(a, b), (b, c), (c, a)] {
+                *sides.entry(side).or_insert(0) += 1;
+            }
+        }
+        sides
+            .iter()
+            .all(|(&(a, b), count)| *count == 1 && sides.get(&(b, a)) == Some(&1))
+    }
+}
+
+struct Maker<'a> {
+    solid: &'a Solid,
+    mesh: Mesh,
+    at: BTreeMap<(usize, usize), usize>,
+    /// Each edge's corners from its first end to its second.
+    lines: Vec<Vec<usize>>,
+}
+
+impl Maker<'_> {
+    fn corner(&mut self, (point, level): (usize, usize)) -> usize {
+        let (at, z) = (self.solid.points[point], self.solid.heights[level]);
+        let corners = &mut self.mesh.corners;
+        *self.at.entry((point, level)).or_insert_with(|| {
+            corners.push([at.x, at.y, z]);
+            corners.len() - 1
+        })
+    }
+
+    fn line(&mut self, edge: usize) -> Vec<usize> {
+        let edge = self.solid.edges[edge];
+        let [from, to] = edge.ends;
+        let (first, last) = (self.corner(from), self.corner(to));
+        let side = Side {
+            from: self.solid.points[from.0],
+            bulge: edge.bulge,
+        };
+        let mut line = vec![first];
+        if let Some((centre, radius)) = side.arc(self.solid.points[to.0]) {
+            let whole = 4.0 * libm::atan(edge.bulge);
+            let step = (2.0 * libm::acos((1.0 - CHORD / radius).clamp(-1.0, 1.0))).min(ANGLE);
+            let count = (whole.abs() / step).ceil() as usize;
+            for i in 1..count {
+                let angle = whole * i as f64 / count as f64;
+                let arm = side.from - centre;
+                let at = centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle);
+                let z = self.solid.heights[from.1];
+                self.mesh.corners.push([at.x, at.y, z]);
+                line.push(self.mesh.corners.len() - 1);
+            }
+        }
+        line.push(last);
+        line
+    }
+
+    /// The corners of a trail of edges, without its last.
+    fn trail(&self, edges: &[(usize, bool)]) -> Vec<usize> {
+        let mut trail = Vec::new();
+        for &(edge, forward) in edges {
+            let mut line = self.lines[edge].clone();
+            if !forward {
+                line.reverse();
+            }
+            line.pop();
+            trail.extend(line);
+        }
+        trail
+    }
+
+    fn flat(&mut self, face: &Face, below: bool) {
+        let mut corners: Vec<usize> = Vec::new();
+        let mut starts = Vec::new();
+        for edges in &face.loops {
+            let trail = self.trail(edges);
+            if !corners.is_empty() {
+                starts.push(corners.len());
+            }
+            corners.extend(trail);
+        }
+        let flat: Vec<f64> = corners
+            .iter()
+            .flat_map(|&corner| {
+                let [x, y, _] = self.mesh.corners[corner];
+                [if below { -x } else { x }, y]
+            })
+            .collect();
+        let found = earcutr::earcut(&flat, &starts, 2).expect("a loop has points");
+        let mut triangles: Vec<[usize; 3]> = found
+            .chunks_exact(3)
+            .map(|three| {
+                let at = |i: usize| Vector::new(flat[2 * three[i]], flat[2 * three[i] + 1]);
+                let [a, b, c] = [0, 1, 2].map(|i| corners[three[i]]);
+                if (at(1) - at(0)).cross(at(2) - at(0)) < 0.0 {
+                    [a, c, b]
+                } else {
+                    [a, b, c]
+                }
+            })
+            .collect();
+        let known: Vec<_> = corners
+            .iter()
+            .enumerate()
+            .map(|(i, &corner)| (corner, Vector::new(flat[2 * i], flat[2 * i + 1])))
+            .collect();
+        fill(&mut triangles, &known);
+        self.mesh.triangles.extend(triangles);
+    }
+
+    fn wall(&mut self, face: &Face, side: Side, end: Vector) {
+        let level = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
+        let edges = &face.loops[0];
+        let upright = |&(edge, _): &(usize, bool)| {
+            let [low, high] = level(edge);
+            low != high
+        };
+        let first = edges.iter().position(upright).unwrap_or(0);
+        let mut low = self.trail(&edges[..first]);
+        low.push(self.end(edges[first], false));
+        let mut high = self.trail(&edges[first + 1..edges.len() - 1]);
+        high.push(self.end(edges[edges.len() - 1], false));
+        high.reverse();
+        let along = |&corner: &usize| {
+            let [x, y, _] = self.mesh.corners[corner];
+            progress(side, end, Vector::new(x, y))
+        };
+        let ways = |chain: &[usize]| {
+            let mut ways: Vec<f64> = chain.iter().map(along).collect();
+            ways[0] = 0.0;
+            ways
+        };
+        let (low_ways, high_ways) = (ways(&low), ways(&high));
+        let (mut i, mut j) = (0, 0);
+        let mut triangles = Vec::new();
+        while i + 1 < low.len() || j + 1 < high.len() {
+            let goes_low =
+                j + 1 == high.len() || (i + 1 < low.len() && low_ways[i + 1] <= high_ways[j + 1]);
+            if goes_low {
+                triangles.push([low[i], low[i + 1], high[j]]);
+                i += 1;
+            } else {
+                triangles.push([low[i], high[j + 1], high[j]]);
+                j += 1;
+            }
+        }
+        self.mesh.triangles.extend(triangles);
+    }
+
+    /// The corner at which an edge begins, or ends.
+    fn end(&self, (edge, forward): (usize, bool), last: bool) -> usize {
+        let line = &self.lines[edge];
+        if forward == last {
+            line[line.len() - 1]
+        } else {
+            line[0]
+        }
+    }
+}
+
+/// The triangulation leaves out points on a straight line, which walls and other
+/// triangles have. A triangle with such points on a side is divided there.
+fn fill(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
+    let mut done = 0;
+    while done < triangles.len() {
+        let triangle = triangles[done];
+        let found = (0..3).find_map(|i| {
+            let [a, b, c] = [0, 1, 2].map(|k| triangle[(i + k) % 3]);
+            let within = between(corners, a, b);
+            (!within.is_empty()).then_some((a, within, b, c))
+        });
+        let Some((a, within, b, c)) = found else {
+            done += 1;
+            continue;
+        };
+        triangles.swap_remove(done);
+        if within.contains(&c) {
+            // It has no area, and its neighbours meet without it.
+            continue;
+        }
+        let chain = [&[a][..], &within, &[b]].concat();
+        triangles.extend(chain.windows(2).map(|pair| [pair[0], pair[1], c]));
+    }
+}
+
+/// The corners on the line between two others, in order.
+fn between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
+    let find = |which: usize| corners.iter().find(|(corner, _)| *corner == which);
+    let (Some(&(_, from)), Some(&(_, to))) = (find(a), find(b)) else {
+        return Vec::new();
+    };
+    let (long, line) = ((to - from).length(), to - from);
+    let mut found: Vec<(f64, usize)> = corners
+        .iter()
+        .filter(|(corner, _)| *corner != a && *corner != b)
+        .filter_map(|&(corner, at)| {
+            let along = (at - from).dot(line) / long;
+            let beside = line.cross(at - from) / long;
+            let within = beside.abs() < 1e-7 && along > 0.0 && along < long;
+            within.then_some((along, corner))
+        })
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, corner)| corner).collect()
+}

@@ -1,0 +1,426 @@
+//! A part's surface: flat faces and walls that share their edges.
+//!
+//! A stack of layers has walls along the outlines and flat faces where a layer ends
+//! and the next one does not cover it. Two layers' outlines may run together for a
+//! part of their way, so at each height both are cut where they meet. Every piece is
+//! then one edge, which exactly two faces share; from that follow a valid solid in
+//! STEP and a mesh without gaps.
+
+use std::collections::BTreeMap;
+
+use cavalier_contours::polyline::{PlineSegIntr, PlineVertex, pline_seg_intr};
+use lizard_kinematics::Vector;
+
+use crate::layers::body::Prism;
+use crate::layers::outline::{Loop, Outline, SAME, Side};
+
+/// The surface of a part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    /// Points from above, mm.
+    pub points: Vec<Vector>,
+    /// Heights, ascending, mm.
+    pub heights: Vec<f64>,
+    /// Lines and arcs.
+    pub edges: Vec<Edge>,
+    /// Flat faces and walls.
+    pub faces: Vec<Face>,
+    /// mm^3.
+    pub volume: f64,
+}
+
+/// Between two corners; upright where both have one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Two corners, each as a point and a height.
+    pub ends: [(usize, usize); 2],
+    /// As a side: 0 where it is straight.
+    pub bulge: f64,
+}
+
+/// A face by its edges, each with whether it is gone along forward.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// What it lies on.
+    pub surface: Surface,
+    /// The outer loop, counter-clockwise seen from outside the part, then its holes.
+    pub loops: Vec<Vec<(usize, bool)>>,
+}
+
+/// What a face lies on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    /// A height, seen from above.
+    Top(usize),
+    /// A height, seen from below.
+    Bottom(usize),
+    /// A wall above a side of an outline, and the side's end.
+    Wall(Side, Vector),
+}
+
+/// A piece of an outline at a height.
+#[derive(Clone, Copy)]
+struct Piece {
+    from: usize,
+    to: usize,
+    middle: usize,
+    edge: usize,
+    forward: bool,
+}
+
+impl Solid {
+    /// The surface of some layers, which lie on each other from below to above.
+    #[must_use]
+    pub fn of(prisms: &[Prism]) -> Self {
+        let outlines: Vec<Outline> = prisms.iter().map(Outline::of).collect();
+        let mut maker = Maker::default();
+        maker.solid.heights = prisms.iter().map(|prism| prism.z[0]).collect();
+        maker
+            .solid
+            .heights
+            .extend(prisms.last().map(|last| last.z[1]));
+        let nothing = Outline::default();
+        let mut below: Vec<Vec<Piece>> = Vec::new();
+        for level in 0..=outlines.len() {
+            let lower = level.checked_sub(1).map_or(&nothing, |k| &outlines[k]);
+            let upper = outlines.get(level).unwrap_or(&nothing);
+            let lower_pieces = maker.pieces(level, lower, upper);
+            let upper_pieces = maker.pieces(level, upper, lower);
+            let ends = Meeting {
+                level,
+                lower: (lower, &lower_pieces),
+                upper: (upper, &upper_pieces),
+            };
+            maker.flats(&ends);
+            maker.walls(level, lower, &below, &lower_pieces);
+            below = upper_pieces;
+        }
+        maker.solid.volume = prisms
+            .iter()
+            .zip(&outlines)
+            .map(|(prism, outline)| outline.area() * (prism.z[1] - prism.z[0]))
+            .sum();
+        maker.solid
+    }
+
+    /// Whether every edge has exactly two faces, which go along it in opposite ways.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        let mut uses = vec![[0, 0]; self.edges.len()];
+        for &(edge, forward) in self.faces.iter().flat_map(|face| &face.loops).flatten() {
+            uses[edge][usize::from(forward)] += 1;
+        }
+        uses.iter().all(|uses| *uses == [1, 1])
+    }
+}
+
+/// Two layers at the height where they meet.
+struct Meeting<'a> {
+    level: usize,
+    lower: (&'a Outline, &'a [Vec<Piece>]),
+    upper: (&'a Outline, &'a [Vec<Piece>]),
+}
+
+#[derive(Default)]
+struct Maker {
+    solid: Solid,
+    known: BTreeMap<(usize, usize, usize, usize), usize>,
+    /// Middles of pieces, which distinguish two arcs between the same points.
+    middles: Vec<Vector>,
+    uprights: BTreeMap<(usize, usize), usize>,
+}
+
+fn place(points: &mut Vec<Vector>, point: Vector) -> usize {
+    let near = |other: &Vector| (*other - point).square() < SAME * SAME;
+    points.iter().position(near).unwrap_or_else(|| {
+        points.push(point);
+        points.len() - 1
+    })
+}
+
+impl Maker {
+    /// Each side of an outline as pieces, cut where it meets another outline.
+    fn pieces(&mut self, level: usize, of: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
+        let others: Vec<_> = other.loops().flat_map(Loop::ends).collect();
+        let sides: Vec<_> = of.loops().flat_map(Loop::ends).collect();
+        sides
+            .into_iter()
+            .map(|(side, to)| {
+                let mut cuts = vec![side.from, to];
+                for (across, end) in &others {
+                    meetings(side, to, *across, *end, &mut cuts);
+                }
+                let mut along: Vec<(f64, usize)> = cuts
+                    .into_iter()
+                    .map(|cut| (progress(side, to, cut), place(&mut self.solid.points, cut)))
+                    .collect();
+                along[0].0 = 0.0;
+                along[1].0 = progress(side, to, to).max(SAME);
+                along.sort_by(|a, b| a.0.total_cmp(&b.0));
+                along.dedup_by_key(|(_, point)| *point);
+                let whole = along.len() == 2;
+                along
+                    .windows(2)
+                    .map(|pair| {
+                        let [(_, from), (_, to)] = [pair[0], pair[1]];
+                        let bulge = if whole {
+                            side.bulge
+                        } else {
+                            (pair[1].0 - pair[0].0).tan_of_quarter(side.bulge)
+                        };
+                        self.piece(level, from, to, bulge)
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+
+    fn piece(&mut self, level: usize, from: usize, to: usize, bulge: f64) -> Piece {
+        let points = &self.solid.points;
+        let side = Side {
+            from: points[from],
+            bulge,
+        };
+        let middle = place(&mut self.middles, side.middle(points[to]));
+        let key = (level, from.min(to), from.max(to), middle);
+        let edges = &mut self.solid.edges;
+        let edge = *self.known.entry(key).or_insert_with(|| {
+            edges.push(Edge {
+                ends: [(from, level), (to, level)],
+                bulge,
+            });
+            edges.len() - 1
+        });
+        Piece {
+            from,
+            to,
+            middle,
+            edge,
+            forward: edges[edge].ends[0].0 == from,
+        }
+    }
+
+    /// The flat faces at a height: what one layer has and the other has not.
+    fn flats(&mut self, meeting: &Meeting) {
+        let (lower, upper) = (meeting.lower, meeting.upper);
+        let tops = self.difference(lower, upper);
+        self.faces(tops, Surface::Top(meeting.level), false);
+        let bottoms = self.difference(upper, lower);
+        self.faces(bottoms, Surface::Bottom(meeting.level), true);
+    }
+
+    /// The outline of what `a` has and `b` has not, as pieces with it on their left.
+    fn difference(&self, a: (&Outline, &[Vec<Piece>]), b: (&Outline, &[Vec<Piece>])) -> Vec<Piece> {
+        let find = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
+        let mut outline = Vec::new();
+        for piece in a.1.iter().flatten() {
+            let keep = match find(piece.edge) {
+                Some(same) => same.forward != piece.forward,
+                None => !b.0.holds(self.middles[piece.middle]),
+            };
+            if keep {
+                outline.push(*piece);
+            }
+        }
+        for piece in b.1.iter().flatten() {
+            let shared = a.1.iter().flatten().any(|other| other.edge == piece.edge);
+            if !shared && a.0.holds(self.middles[piece.middle]) {
+                outline.push(Piece {
+                    from: piece.to,
+                    to: piece.from,
+                    forward: !piece.forward,
+                    ..*piece
+                });
+            }
+        }
+        outline
+    }
+
+    /// Pieces as faces; seen from below, each loop is gone along the other way.
+    fn faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, below: bool) {
+        let mut outer: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
+        let mut holes = Vec::new();
+        while let Some(first) = pieces.pop() {
+            let mut trail = vec![first];
+            let mut at = first.to;
+            while at != first.from
+                && let Some(next) = pieces.iter().position(|piece| piece.from == at)
+            {
+                let next = pieces.swap_remove(next);
+                at = next.to;
+                trail.push(next);
+            }
+            let around = self.around(&trail);
+            let area = around.area();
+            if area > 0.0 {
+                let outline = Outline {
+                    pieces: vec![vec![around]],
+                };
+                outer.push((area, outline, vec![trail]));
+            } else {
+                holes.push(trail);
+            }
+        }
+        outer.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for hole in holes {
+            let inside = self.middles[hole[0].middle];
+            if let Some(face) = outer.iter_mut().find(|face| face.1.holds(inside)) {
+                face.2.push(hole);
+            }
+        }
+        for (_, _, loops) in outer {
+            let loops = loops.into_iter().map(|trail| {
+                let mut edges: Vec<_> = trail
+                    .into_iter()
+                    .map(|piece| (piece.edge, piece.forward != below))
+                    .collect();
+                if below {
+                    edges.reverse();
+                }
+                edges
+            });
+            let loops = loops.collect();
+            self.solid.faces.push(Face { surface, loops });
+        }
+    }
+
+    fn around(&self, trail: &[Piece]) -> Loop {
+        let sides = trail.iter().map(|piece| {
+            let bulge = self.solid.edges[piece.edge].bulge;
+            Side {
+                from: self.solid.points[piece.from],
+                bulge: if piece.forward { bulge } else { -bulge },
+            }
+        });
+        Loop {
+            sides: sides.collect(),
+        }
+    }
+
+    /// The walls of the layer below a height.
+    fn walls(&mut self, level: usize, of: &Outline, low: &[Vec<Piece>], high: &[Vec<Piece>]) {
+        let sides = of.loops().flat_map(Loop::ends);
+        for ((low, high), (side, end)) in low.iter().zip(high).zip(sides) {
+            let (Some(first), Some(last)) = (low.first(), low.last()) else {
+                continue;
+            };
+            let (from, to) = (first.from, last.to);
+            let mut edges: Vec<_> = low
+                .iter()
+                .map(|piece| (piece.edge, piece.forward))
+                .collect();
+            edges.push((self.upright(to, level), true));
+            edges.extend(high.iter().rev().map(|piece| (piece.edge, !piece.forward)));
+            edges.push((self.upright(from, level), false));
+            self.solid.faces.push(Face {
+                surface: Surface::Wall(side, end),
+                loops: vec![edges],
+            });
+        }
+    }
+
+    /// The upright edge at a point from the level below to a level.
+    fn upright(&mut self, point: usize, level: usize) -> usize {
+        let edges = &mut self.solid.edges;
+        *self.uprights.entry((point, level)).or_insert_with(|| {
+            edges.push(Edge {
+                ends: [(point, level - 1), (point, level)],
+                bulge: 0.0,
+            });
+            edges.len() - 1
+        })
+    }
+}
+
+/// How far along a side a point of it is: mm, or rad of an arc.
+pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
+    let Some((centre, _)) = side.arc(to) else {
+        return (point - side.from).length();
+    };
+    let (a, b) = (side.from - centre, point - centre);
+    let angle = libm::atan2(a.cross(b), a.dot(b)) * side.bulge.signum();
+    // What is a little before the beginning is at it.
+    if angle < -1e-6 {
+        angle + std::f64::consts::TAU
+    } else {
+        angle.max(0.0)
+    }
+}
+
+trait Quarter {
+    fn tan_of_quarter(self, bulge: f64) -> f64;
+}
+
+impl Quarter for f64 {
+    /// The bulge of an arc of this many rad that turns as another does; of a line 0.
+    fn tan_of_quarter(self, bulge: f64) -> f64 {
+        if bulge == 0.0 {
+            0.0
+        } else {
+            libm::tan(self / 4.0) * bulge.signum()
+        }
+    }
+}
+
+/// Where two sides meet.
+fn meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, found: &mut Vec<Vector>) {
+    let end = |at: Vector| PlineVertex::new(at.x, at.y, 0.0);
+    let met = pline_seg_intr(a.vertex(), end(a_end), b.vertex(), end(b_end), SAME);
+    match met {
+        PlineSegIntr::NoIntersect => {}
+        PlineSegIntr::TangentIntersect { point } | PlineSegIntr::OneIntersect { point } => {
+            found.push(Vector::new(point.x, point.y));
+        }
+        PlineSegIntr::TwoIntersects { point1, point2 }
+        | PlineSegIntr::OverlappingLines { point1, point2 }
+        | PlineSegIntr::OverlappingArcs { point1, point2 } => {
+            for point in [point1, point2] {
+                found.push(Vector::new(point.x, point.y));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::shape::Shape;
+
+    fn at(x: f64, y: f64) -> Vector {
+        Vector::new(x, y)
+    }
+
+    fn prism(add: Vec<Shape>, cut: Vec<Shape>, z: [f64; 2]) -> Prism {
+        Prism { add, cut, z }
+    }
+
+    #[test]
+    fn a_plate_with_a_hole_has_eight_faces() {
+        let plate = prism(
+            vec![Shape::rectangle(at(0.0, 0.0), at(20.0, 10.0), 0.0)],
+            vec![Shape::disc(at(1.0, 1.0), 2.0)],
+            [0.0, 3.0],
+        );
+        let solid = Solid::of(&[plate]);
+        assert!(solid.is_closed());
+        // Four walls, two halves of a hole, top and bottom.
+        assert_eq!(solid.faces.len(), 8);
+        assert_eq!(solid.edges.len(), 2 * (4 + 2) + 4 + 2);
+    }
+
+    #[test]
+    fn layers_whose_outlines_run_together_share_their_edges() {
+        // A sleeve: floor, two walls, roof.
+        let case = Shape::rectangle(at(0.0, 0.0), at(40.0, 10.0), 1.0);
+        let bore = Shape::rectangle(at(0.0, 0.0), at(60.0, 6.0), 0.0);
+        let eye = Shape::disc(at(-15.0, -6.0), 4.0);
+        let sleeve = [
+            prism(vec![case.clone(), eye.clone()], vec![], [0.0, 1.0]),
+            prism(vec![case.clone(), eye], vec![bore.clone()], [1.0, 3.0]),
+            prism(vec![case.clone()], vec![bore], [3.0, 5.0]),
+            prism(vec![case], vec![], [5.0, 6.0]),
+        ];
+        let solid = Solid::of(&sleeve);
+        assert!(solid.is_closed());
+    }
+}

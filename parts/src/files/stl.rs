@@ -1,0 +1,35 @@
+//! A mesh as a binary STL file, mm.
+
+use crate::files::mesh::Mesh;
+
+/// The bytes of a file.
+#[must_use]
+pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
+    let mut bytes = format!("lizard parts: {name}, mm").into_bytes();
+    bytes.resize(80, b' ');
+    let count = u32::try_from(mesh.triangles.len()).unwrap_or(u32::MAX);
+    bytes.extend(count.to_le_bytes());
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
+        let (u, v) = (difference(b, a), difference(c, a));
+        let normal = [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ];
+        let long = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let unit = normal.map(|part| if long > 0.0 { part / long } else { 0.0 });
+        for corner in [unit, a, b, c] {
+            for part in corner {
+                // Neither -0 nor 0 is more right; one of them is the same every time.
+                bytes.extend((part as f32 + 0.0).to_le_bytes());
+            }
+        }
+        bytes.extend([0, 0]);
+    }
+    bytes
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}

@@ -1,0 +1,75 @@
+//! A sheet as an SVG drawing, 1:1 in mm.
+
+use std::fmt::Write;
+
+use lizard_kinematics::Vector;
+
+use crate::files::sheet::{Sheet, extent};
+use crate::layers::outline::Loop;
+
+/// Around the part, mm.
+const MARGIN: f64 = 5.0;
+/// Cut through; then pockets.
+const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
+
+/// The text of a file.
+#[must_use]
+pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
+    let [low, high] = extent(sheet);
+    let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
+    let page = |at: Vector| (at.x - low.x + MARGIN, high.y - at.y + MARGIN);
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \
+         viewBox=\"0 0 {width:.3} {height:.3}\">\n\
+         <desc>{}: 1:1 in mm, {:.2} mm thick. Lines are the edge of the part; a cutter goes {:.2} mm \
+         outside of them (kerf {kerf} mm).</desc>\n",
+        sheet.name,
+        sheet.thickness,
+        kerf / 2.0
+    );
+    for (layer, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
+        let _ = writeln!(
+            text,
+            "<g id=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\">",
+            layer.name
+        );
+        for line in &layer.loops {
+            let _ = writeln!(text, "{}", element(line, page));
+        }
+        text.push_str("</g>\n");
+    }
+    text.push_str("</svg>\n");
+    text
+}
+
+fn element(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
+    if let Some((centre, radius)) = line.circle() {
+        let (x, y) = page(centre);
+        return format!("<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{radius:.6}\"/>");
+    }
+    format!("<path d=\"{}\"/>", path(line, page))
+}
+
+/// A loop as the data of a path.
+pub(crate) fn path(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
+    let mut data = String::new();
+    for (number, (side, to)) in line.ends().enumerate() {
+        let (x, y) = page(side.from);
+        if number == 0 {
+            let _ = write!(data, "M{x:.6} {y:.6}");
+        }
+        let (x, y) = page(to);
+        let _ = match side.arc(to) {
+            // The page's y points down, so a left turn goes against its clock.
+            Some((_, radius)) => write!(
+                data,
+                "A{radius:.6} {radius:.6} 0 {} {} {x:.6} {y:.6}",
+                u8::from(side.bulge.abs() > 1.0),
+                u8::from(side.bulge < 0.0)
+            ),
+            None => write!(data, "L{x:.6} {y:.6}"),
+        };
+    }
+    data.push('Z');
+    data
+}

@@ -1,0 +1,52 @@
+//! One corner of the robot, to be printed first: a seat for one servo with the pivots of
+//! its leg, the servo's link, the leg, its strut and its foot.
+//!
+//! After three hours of printing it shows what all parts show after fifteen: whether the
+//! servo fits its opening and the horn its link, whether bearings turn without play, and
+//! how much a foot gives.
+
+use crate::bodies::assembly::Assembly;
+use crate::bodies::builder::Builder;
+use crate::bodies::chassis;
+use crate::bodies::names::names;
+use crate::guide::CORNER;
+use crate::layers::body::{Kind, Mount};
+use crate::part::Part;
+
+impl Assembly {
+    /// The printed parts of the corner of A1, each once.
+    #[must_use]
+    pub fn corner(&self) -> Vec<Part> {
+        let (name, leg) = names(CORNER);
+        let seat = Part {
+            name: format!("seat {name}"),
+            bodies: vec![format!("seat {name}")],
+            prisms: chassis::corner(&Builder::new(self.robot()), CORNER),
+            turned: false,
+            instead_of: None,
+            mark: String::new(),
+        };
+        let own = |body: &str| {
+            let body = self.body(body);
+            body.is_some_and(|body| {
+                let moves = !matches!(body.mount, Mount::Coupler(_));
+                let of = [name, leg].iter().any(|of| body.name.ends_with(of));
+                moves && of && body.kind == Kind::Printed
+            })
+        };
+        let mut corner = vec![seat];
+        for part in self.parts() {
+            let bodies: Vec<_> = part
+                .bodies
+                .iter()
+                .filter(|body| own(body))
+                .cloned()
+                .collect();
+            let spacer = part.name.starts_with("spacer");
+            if !bodies.is_empty() && !spacer {
+                corner.push(Part { bodies, ..part });
+            }
+        }
+        corner
+    }
+}

@@ -1,0 +1,28 @@
+//! What `lizard parts` writes besides the files of the parts: the list to buy and the guide.
+
+use lizard_kinematics::Solution;
+
+use crate::bill::Bill;
+use crate::bodies::assembly::Assembly;
+use crate::files::File;
+use crate::guide::guide;
+use crate::guide::placements::placements;
+use crate::unfit::Unfit;
+
+/// bill.json and the folder guide/, with pictures at a pose, as a rule neutral.
+///
+/// # Errors
+/// [`Unfit::Blocked`] for a screw that cannot be reached.
+///
+/// # Panics
+/// Never: what is written as JSON is plain.
+pub fn papers(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
+    let list = serde_json::to_string_pretty(bill).expect("texts and numbers");
+    let mut files = vec![File::text("bill.json".to_owned(), list + "\n")];
+    files.extend(guide(assembly, bill, pose)?);
+    files.push(File::text(
+        "guide/placements.json".to_owned(),
+        placements(assembly, pose),
+    ));
+    Ok(files)
+}

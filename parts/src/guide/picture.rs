@@ -1,0 +1,523 @@
+//! The robot, or some of its bodies, in perspective.
+//!
+//! Everything is a flat layer seen from above, so the order of drawing is known without a
+//! search: the space is cut at every height at which something begins or ends, and the
+//! slices are drawn from below to above. In a slice, walls are drawn from far to near and
+//! then the tops: a wall never rises above its own slice, so it hides no top of it.
+
+use std::fmt::Write;
+
+use lizard_kinematics::{Solution, Vector, sin_cos};
+
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Kind, Mount};
+use crate::layers::outline::{Loop, Outline};
+
+/// A body to be drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn<'a> {
+    /// Which.
+    pub body: &'a Body,
+    /// How far it is lifted off its place, mm.
+    pub lift: f64,
+    /// Whether it is drawn in grey, because the picture is about others.
+    pub pale: bool,
+}
+
+/// A name in a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// What it names, chassis frame, mm.
+    pub at: Vector,
+    /// Its height, mm.
+    pub z: f64,
+    /// The name.
+    pub text: String,
+    /// Whether it is written beside the picture with a line to its place, as the names of
+    /// parts are, or on the place itself.
+    pub beside: bool,
+}
+
+/// Where it is seen from.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Where the eye is, seen from above: deg counter-clockwise from the robot's right.
+    pub azimuth: f64,
+    /// How high it is, deg above the floor.
+    pub elevation: f64,
+    /// Width of the picture, pixels.
+    pub width: f64,
+    /// Whether the robot is turned over about its long axis, and so seen from below.
+    pub below: bool,
+    /// Whether only what is not grey, and a little around it, is in the picture.
+    pub near: bool,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            azimuth: 240.0,
+            elevation: 38.0,
+            width: 900.0,
+            below: false,
+            near: false,
+        }
+    }
+}
+
+/// From the middle to the eye, mm.
+const AWAY: f64 = 900.0;
+/// Around the robot, pixels.
+const MARGIN: f64 = 12.0;
+/// Largest angle of a chord, rad.
+const CHORD: f64 = 0.55;
+/// The thinnest slice, mm.
+const SLICE: f64 = 0.45;
+/// Holes that are smaller have a screw in them, mm.
+const HOLE: f64 = 1.75;
+
+/// Servos A1 to A4 and what they move: Okabe and Ito's colours and a purple of Tol's.
+const SERVO: [[f64; 3]; 4] = [
+    [0.0, 114.0, 178.0],
+    [213.0, 94.0, 0.0],
+    [0.0, 158.0, 115.0],
+    [170.0, 68.0, 153.0],
+];
+
+struct Eye {
+    right: Vector,
+    away: Vector,
+    sin: f64,
+    cos: f64,
+}
+
+impl Eye {
+    fn new(view: &View) -> Self {
+        let away = Vector::direction(view.azimuth);
+        let (sin, cos) = sin_cos(view.elevation);
+        Self {
+            right: away.left(),
+            away,
+            sin,
+            cos,
+        }
+    }
+
+    /// A point of space on the page, mm before the page's scale; y down.
+    fn page(&self, at: Vector, z: f64) -> (f64, f64) {
+        let (x, along) = (at.dot(self.right), at.dot(self.away));
+        let near = along * self.cos + z * self.sin;
+        let up = z * self.cos - along * self.sin;
+        let scale = AWAY / (AWAY - near);
+        (x * scale, -up * scale)
+    }
+
+    /// Where the eye is, from above.
+    fn at(&self) -> Vector {
+        self.away * (AWAY * self.cos)
+    }
+}
+
+/// Points on the page.
+type Trail = Vec<(f64, f64)>;
+/// How far a wall is, its outline and its colour.
+type Wall = (f64, Trail, [f64; 3]);
+
+/// What is drawn in a slice.
+struct Layer {
+    colour: [f64; 3],
+    /// Whether it is grey.
+    pale: bool,
+    /// Outer loops and holes as points.
+    loops: Vec<Vec<Vector>>,
+    z: [f64; 2],
+    /// Whether nothing of the same body lies on it.
+    tops: Vec<Vec<Vector>>,
+}
+
+/// Some bodies at a pose, as SVG.
+#[must_use]
+pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &View) -> String {
+    labelled(assembly, drawn, pose, view, &[])
+}
+
+/// The same with names.
+#[must_use]
+pub fn labelled(
+    assembly: &Assembly,
+    drawn: &[Drawn],
+    pose: &Solution,
+    view: &View,
+    labels: &[Label],
+) -> String {
+    let eye = Eye::new(view);
+    let mut layers = layers(assembly, drawn, pose);
+    if view.below {
+        for layer in &mut layers {
+            layer.turn_over();
+        }
+    }
+    let heights = slices(&mut layers);
+    let mut ink = Ink::default();
+    for slice in heights.windows(2) {
+        let [low, high] = [slice[0], slice[1]];
+        let present = || {
+            layers
+                .iter()
+                .filter(|layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6)
+        };
+        let mut walls: Vec<Wall> = Vec::new();
+        for layer in present() {
+            for line in &layer.loops {
+                layer.walls(line, &eye, [low, high], &mut walls);
+            }
+        }
+        walls.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, points, colour) in walls {
+            ink.polygon(&[points], colour, false);
+        }
+        for layer in present() {
+            if layer.z[1] < high + 1e-6 && !layer.tops.is_empty() {
+                let loops: Vec<Vec<_>> = layer
+                    .tops
+                    .iter()
+                    .map(|line| line.iter().map(|at| eye.page(*at, high)).collect())
+                    .collect();
+                ink.polygon(&loops, layer.colour, true);
+            }
+        }
+    }
+    let place = |at: Vector, z: f64| match view.below {
+        true => eye.page(turned_over(at), -z),
+        false => eye.page(at, z),
+    };
+    // What is meant: all, or what is not grey.
+    let meant = layers.iter().filter(|layer| !view.near || !layer.pale);
+    let points = meant.flat_map(|layer| {
+        let all = layer.loops.iter().flatten();
+        all.flat_map(|at| layer.z.map(|z| eye.page(*at, z)))
+    });
+    let mut names = Vec::new();
+    for label in labels {
+        names.push((place(label.at, label.z), label));
+    }
+    ink.finish(view.width, &Frame::around(points, view.near), &names)
+}
+
+/// A point of a robot that is turned over about its long axis.
+fn turned_over(at: Vector) -> Vector {
+    Vector::new(-at.x, at.y)
+}
+
+/// The heights at which layers begin or end. What is nearer than `SLICE` is one, to
+/// which the layers are moved.
+fn slices(layers: &mut [Layer]) -> Vec<f64> {
+    let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|b, a| *b - *a < SLICE);
+    for layer in layers {
+        for z in &mut layer.z {
+            let below = heights.partition_point(|height| *height <= *z + 1e-9);
+            *z = heights[below.saturating_sub(1)];
+        }
+    }
+    heights
+}
+
+fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
+    let mut layers = Vec::new();
+    for Drawn { body, lift, pale } in drawn {
+        let place = assembly.place(body.mount, pose);
+        let colour = colour(body, *pale);
+        for prism in &body.prisms {
+            let outline = Outline::of(prism);
+            let filled = |line: &&Loop| {
+                let hole = line.circle().filter(|_| *pale || *lift == 0.0);
+                !hole.is_some_and(|(_, radius)| radius < HOLE && line.area() < 0.0)
+            };
+            let loops: Vec<Vec<Vector>> = outline
+                .loops()
+                .filter(filled)
+                .map(|line| points(line).into_iter().map(|at| place.map(at)).collect())
+                .collect();
+            layers.push(Layer {
+                colour,
+                pale: *pale,
+                tops: loops.clone(),
+                loops,
+                z: prism.z.map(|z| z + lift),
+            });
+        }
+    }
+    layers
+}
+
+/// A loop as points.
+fn points(line: &Loop) -> Vec<Vector> {
+    let mut points = Vec::new();
+    for (side, to) in line.ends() {
+        points.push(side.from);
+        if let Some((centre, _)) = side.arc(to) {
+            let whole = 4.0 * libm::atan(side.bulge);
+            let count = (whole.abs() / CHORD).ceil() as u32;
+            let arm = side.from - centre;
+            for i in 1..count {
+                let (sin, cos) = sin_cos((whole * f64::from(i) / f64::from(count)).to_degrees());
+                points.push(centre + arm * cos + arm.left() * sin);
+            }
+        }
+    }
+    points
+}
+
+/// What of the page is shown, mm before the page's scale.
+struct Frame {
+    low: (f64, f64),
+    high: (f64, f64),
+}
+
+impl Frame {
+    fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
+        /// Around what is seen from nearby, mm.
+        const AROUND: f64 = 12.0;
+        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
+        for (x, y) in points {
+            low = (low.0.min(x), low.1.min(y));
+            high = (high.0.max(x), high.1.max(y));
+        }
+        let more = if near { AROUND } else { 0.0 };
+        Self {
+            low: (low.0 - more, low.1 - more),
+            high: (high.0 + more, high.1 + more),
+        }
+    }
+
+    fn holds(&self, (x, y): (f64, f64)) -> bool {
+        self.low.0 <= x && x <= self.high.0 && self.low.1 <= y && y <= self.high.1
+    }
+}
+
+impl Layer {
+    /// Turned over about the robot's long axis; its lines keep the material on their left.
+    fn turn_over(&mut self) {
+        for line in self.loops.iter_mut().chain(&mut self.tops) {
+            for at in line.iter_mut() {
+                *at = turned_over(*at);
+            }
+            line.reverse();
+        }
+        let [low, high] = self.z;
+        self.z = [-high, -low];
+    }
+
+    /// The walls of a loop that the eye sees; neighbours of one shade are one.
+    fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
+        let n = line.len();
+        let shade = |i: usize| {
+            let (a, b) = (line[i], line[(i + 1) % n]);
+            let out = (b - a).right();
+            let seen = out.dot(eye.at() - a) > 0.0;
+            let long = out.length();
+            // The light comes from the eye's left.
+            let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * long.max(1e-9));
+            seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
+        };
+        let mut i = 0;
+        while i < n {
+            let Some(light) = shade(i) else {
+                i += 1;
+                continue;
+            };
+            let mut chain = vec![line[i]];
+            while i < n && shade(i) == Some(light) {
+                chain.push(line[(i + 1) % n]);
+                i += 1;
+            }
+            let far = chain
+                .iter()
+                .map(|at| (eye.at() - *at).length())
+                .sum::<f64>()
+                / chain.len() as f64;
+            let mut points: Vec<_> = chain.iter().map(|at| eye.page(*at, low)).collect();
+            points.extend(chain.iter().rev().map(|at| eye.page(*at, high)));
+            let dark = 0.5 + 0.09 * f64::from(light);
+            walls.push((far, points, self.colour.map(|part| part * dark)));
+        }
+    }
+}
+
+/// The colour of a body.
+fn colour(body: &Body, pale: bool) -> [f64; 3] {
+    if pale {
+        return [222.0, 222.0, 218.0];
+    }
+    let servo = match body.mount {
+        Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => None,
+        Mount::Link(i)
+        | Mount::Crank(i)
+        | Mount::Follower(i)
+        | Mount::Foot(i)
+        | Mount::Strut(i)
+        | Mount::Coupler(i) => Some(i),
+    };
+    match (body.kind, servo) {
+        (Kind::Printed, Some(servo)) => SERVO[servo].map(|part| 0.72 * part + 70.0),
+        (Kind::Printed, None) if body.mount == Mount::Chassis => [236.0, 224.0, 190.0],
+        (Kind::Printed, None) => [240.0, 228.0, 66.0],
+        (Kind::Servo, _) => [70.0, 110.0, 200.0],
+        (Kind::Horn, _) => [250.0, 250.0, 250.0],
+        (Kind::Board, _) => [20.0, 130.0, 135.0],
+        (Kind::Battery, _) => [120.0, 120.0, 130.0],
+        _ => [170.0, 170.0, 176.0],
+    }
+}
+
+#[derive(Default)]
+struct Ink {
+    shapes: Vec<(String, Vec<Trail>, bool)>,
+}
+
+impl Ink {
+    fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], edge: bool) {
+        let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
+        self.shapes
+            .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), edge));
+    }
+
+    fn finish(self, width: f64, frame: &Frame, names: &[((f64, f64), &Label)]) -> String {
+        let (low, high) = (frame.low, frame.high);
+        let beside = |(_, label): &&((f64, f64), &Label)| label.beside;
+        let side = if names.iter().any(|name| beside(&name)) {
+            BESIDE
+        } else {
+            0.0
+        };
+        let room = width - 2.0 * (MARGIN + side);
+        let scale = room / (high.0 - low.0);
+        let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
+        let x0 = MARGIN + side;
+        // Each colour is named once, and a point is tenths of a pixel from the one before:
+        // a third of the text.
+        let mut styles: Vec<(&str, bool)> = Vec::new();
+        let mut paths = String::new();
+        let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
+        for (colour, loops, edge) in &self.shapes {
+            let style = (colour.as_str(), *edge);
+            let class = styles.iter().position(|of| *of == style);
+            let class = class.unwrap_or_else(|| {
+                styles.push(style);
+                styles.len() - 1
+            });
+            let mut data = String::new();
+            let mut at = (0, 0);
+            for line in loops {
+                let mut begin = None;
+                for (x, y) in line {
+                    let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
+                    let by = (to.0 - at.0, to.1 - at.1);
+                    let step = if begin.is_none() { "m" } else { "l" };
+                    let _ = write!(data, "{step}{} {}", tenth(by.0), tenth(by.1));
+                    begin.get_or_insert(to);
+                    at = to;
+                }
+                data.push('z');
+                at = begin.unwrap_or(at);
+            }
+            let _ = writeln!(paths, "<path class=\"c{class}\" d=\"{data}\"/>");
+        }
+        let mut text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             width=\"{width}\" height=\"{height}\">\n<style>\n"
+        );
+        for (class, (colour, edge)) in styles.into_iter().enumerate() {
+            // A wall's own colour as a hair line closes the seams between walls.
+            let (stroke, thick) = if edge { ("#333", 0.5) } else { (colour, 0.4) };
+            let _ = writeln!(
+                text,
+                ".c{class}{{fill:{colour};stroke:{stroke};stroke-width:{thick}}}"
+            );
+        }
+        let _ = write!(
+            text,
+            "</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
+             <g fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
+        );
+        text.push_str("</g>\n");
+        let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
+        let shown: Vec<_> = names.iter().filter(|(at, _)| frame.holds(*at)).collect();
+        for (at, label) in shown.iter().filter(|(_, label)| !label.beside) {
+            let (x, y) = page(*at);
+            let _ = writeln!(
+                text,
+                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT} font-weight=\"bold\" \
+                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
+                label.text
+            );
+        }
+        for left in [true, false] {
+            let middle = width / 2.0;
+            let here = shown.iter().filter(|(_, label)| label.beside);
+            let places = here.map(|(at, label)| (page(*at), label));
+            let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
+            column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
+            write_column(&mut text, &column, left, width, height);
+        }
+        text.push_str("</svg>\n");
+        text
+    }
+}
+
+/// Room for names on each side of a picture, pixels, and from one to the next.
+const BESIDE: f64 = 165.0;
+const LINE: f64 = 16.0;
+const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
+
+/// Names below each other at one side, each with a line to its place.
+fn write_column(
+    text: &mut String,
+    column: &[((f64, f64), &&Label)],
+    left: bool,
+    width: f64,
+    height: f64,
+) {
+    let count = column.len() as f64;
+    let mut least = LINE;
+    for (number, ((x, y), label)) in column.iter().enumerate() {
+        let most = height - (count - number as f64) * LINE + 8.0;
+        let at = (y + 4.0).min(most).max(least);
+        least = at + LINE;
+        let (edge, end, anchor) = match left {
+            true => (8.0, BESIDE - 4.0, "start"),
+            false => (width - 8.0, width - BESIDE + 4.0, "end"),
+        };
+        // The line begins where the words end, about.
+        let words = 6.4 * label.text.chars().count() as f64;
+        let from = if left { edge + words } else { edge - words };
+        let from = if left { from.min(end) } else { from.max(end) };
+        let _ = writeln!(
+            text,
+            "<path d=\"M{from:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
+             <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
+             <text x=\"{edge}\" y=\"{at:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+            at - 4.0,
+            label.text
+        );
+    }
+}
+
+/// A number of tenths, without a point where it needs none.
+fn tenth(tenths: i64) -> String {
+    let text = format!("{:.1}", tenths as f64 / 10.0);
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// All bodies in their places.
+#[must_use]
+pub fn whole(assembly: &Assembly) -> Vec<Drawn<'_>> {
+    let draw = |body| Drawn {
+        body,
+        lift: 0.0,
+        pale: false,
+    };
+    assembly.bodies().iter().map(draw).collect()
+}

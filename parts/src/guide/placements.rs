@@ -1,0 +1,169 @@
+//! Where everything is, for programs: the guide's table of placements as JSON.
+//!
+//! Lengths in mm; the chassis frame, z up from the top of the plate; servos at neutral. A
+//! printed part's file lies as it is printed: it is turned over if `flipped` says so
+//! (x, y, z to x, -y, -z), lifted by `lift`, turned about the upright axis by `turn` (deg,
+//! counter-clockwise) and shifted by `at`. What is bought has `solids`: upright prisms over
+//! convex outlines, already in place. `drill` are the holes to be drilled in a printed part.
+
+use lizard_kinematics::{Solution, Vector};
+use serde::Serialize;
+
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Kind};
+use crate::order::steps::{place_in, steps};
+use crate::part::Part;
+
+/// One body.
+#[derive(Serialize)]
+struct Placed<'a> {
+    name: &'a str,
+    kind: &'static str,
+    /// The step of the guide in which it is added, from 1.
+    step: usize,
+    /// The stage of that step, from 1.
+    stage: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    printed: Option<Print>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    screw: Option<Screw>,
+    solids: Vec<Prism>,
+}
+
+/// Where a printed file goes.
+#[derive(Serialize)]
+struct Print {
+    file: String,
+    mark: String,
+    flipped: bool,
+    lift: f64,
+    turn: f64,
+    at: [f64; 2],
+    /// Holes to be drilled: middle in the chassis frame.
+    drill: Vec<[f64; 2]>,
+}
+
+/// A screw: its axis, where its head bears, its length, and where its head is.
+#[derive(Serialize)]
+struct Screw {
+    at: [f64; 2],
+    head: f64,
+    length: f64,
+    diameter: f64,
+    head_above: bool,
+}
+
+/// A convex prism.
+#[derive(Serialize)]
+struct Prism {
+    z: [f64; 2],
+    radius: f64,
+    outline: Vec<[f64; 2]>,
+    /// Holes in the layer that it is of.
+    holes: Vec<Hole>,
+}
+
+#[derive(Serialize)]
+struct Hole {
+    radius: f64,
+    outline: Vec<[f64; 2]>,
+}
+
+/// The table of placements at a pose.
+///
+/// # Panics
+/// Never: what is written is plain.
+#[must_use]
+pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
+    let parts = assembly.parts();
+    let steps = steps(assembly.robot().drive().strut().is_some());
+    let list: Vec<Placed> = assembly
+        .bodies()
+        .iter()
+        .map(|body| {
+            let (step, stage) = place_in(&steps, body);
+            let part = parts.iter().find(|part| part.bodies.contains(&body.name));
+            Placed {
+                name: &body.name,
+                kind: body.kind.word(),
+                step,
+                stage,
+                printed: part.map(|part| print(assembly, pose, body, part)),
+                screw: screw(assembly, pose, body),
+                solids: match part {
+                    Some(_) => Vec::new(),
+                    None => solids(assembly, pose, body),
+                },
+            }
+        })
+        .collect();
+    serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
+}
+
+fn pair(at: Vector) -> [f64; 2] {
+    [at.x, at.y]
+}
+
+fn print(assembly: &Assembly, pose: &Solution, body: &Body, part: &Part) -> Print {
+    let place = assembly.place(body.mount, pose);
+    let lies = part.lies(body);
+    let home = lies.home;
+    let origin = place.map(home.at);
+    let turn = place.turn * home.turn.x + place.turn.left() * home.turn.y;
+    let over = |at: Vector| match part.turned {
+        true => at.mirrored(),
+        false => at,
+    };
+    let drill = part.closed_holes().into_iter().map(|at| {
+        let at = over(at);
+        pair(origin + turn * at.x + turn.left() * at.y)
+    });
+    Print {
+        file: format!("stl/{}.stl", part.file()),
+        mark: part.mark.clone(),
+        flipped: lies.flipped,
+        lift: lies.lift,
+        turn: turn.angle(),
+        at: pair(origin),
+        drill: drill.collect(),
+    }
+}
+
+fn screw(assembly: &Assembly, pose: &Solution, body: &Body) -> Option<Screw> {
+    let (Kind::Screw(length) | Kind::HexScrew(length)) = body.kind else {
+        return None;
+    };
+    let [low, high] = &body.prisms[..] else {
+        return None;
+    };
+    let head_above = high.add[0].width() > low.add[0].width();
+    let place = assembly.place(body.mount, pose);
+    Some(Screw {
+        at: pair(place.map(low.add[0].middle())),
+        head: low.z[1],
+        length,
+        diameter: assembly.robot().parts().screw.diameter,
+        head_above,
+    })
+}
+
+fn solids(assembly: &Assembly, pose: &Solution, body: &Body) -> Vec<Prism> {
+    let place = assembly.place(body.mount, pose);
+    let points = |points: &[Vector]| points.iter().map(|at| pair(place.map(*at))).collect();
+    let layers = body.prisms.iter().flat_map(|prism| {
+        prism.add.iter().map(move |shape| Prism {
+            z: prism.z,
+            radius: shape.radius,
+            outline: points(&shape.points),
+            holes: prism
+                .cut
+                .iter()
+                .map(|hole| Hole {
+                    radius: hole.radius,
+                    outline: points(&hole.points),
+                })
+                .collect(),
+        })
+    });
+    layers.collect()
+}

@@ -1,0 +1,125 @@
+//! Marks for parts that differ only as left and right.
+//!
+//! A link for A1 and its mirror image for A2 look alike in the hand. So if a part comes
+//! in several kinds, each kind has the numbers of its servos engraved: 13 is for A1 and
+//! A3. Digits are made of straight lines, as on a pocket calculator.
+
+use lizard_kinematics::Vector;
+
+use crate::layers::body::Prism;
+use crate::layers::outline::{Loop, Outline};
+use crate::layers::shape::Shape;
+
+/// Width and height of a digit between the middles of its lines, and from one digit to
+/// the next, mm.
+const DIGIT: [f64; 2] = [1.9, 3.4];
+const NEXT: f64 = 3.5;
+/// Half the width of a line, and its depth: two layers, mm.
+const LINE: f64 = 0.35;
+pub const DEEP: f64 = 0.4;
+/// What remains beside it, mm.
+const BESIDE: f64 = 0.7;
+/// How far apart places are that are tried, mm.
+const STEP: f64 = 0.8;
+
+/// The lines of a digit, from and to, in a field of one by one.
+fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
+    const TOP: [(f64, f64); 2] = [(0.0, 1.0), (1.0, 1.0)];
+    const MIDDLE: [(f64, f64); 2] = [(0.0, 0.5), (1.0, 0.5)];
+    const BOTTOM: [(f64, f64); 2] = [(0.0, 0.0), (1.0, 0.0)];
+    const LEFT_UP: [(f64, f64); 2] = [(0.0, 0.5), (0.0, 1.0)];
+    const LEFT_DOWN: [(f64, f64); 2] = [(0.0, 0.0), (0.0, 0.5)];
+    const RIGHT_UP: [(f64, f64); 2] = [(1.0, 0.5), (1.0, 1.0)];
+    const RIGHT: [(f64, f64); 2] = [(1.0, 0.0), (1.0, 1.0)];
+    match digit {
+        '1' => &[[(0.5, 0.0), (0.5, 1.0)]],
+        '2' => &[TOP, RIGHT_UP, MIDDLE, LEFT_DOWN, BOTTOM],
+        '3' => &[TOP, MIDDLE, BOTTOM, RIGHT],
+        '4' => &[LEFT_UP, MIDDLE, RIGHT],
+        _ => &[],
+    }
+}
+
+/// A mark's lines with its lower left corner at a place.
+pub fn strokes(text: &str, at: Vector) -> Vec<Shape> {
+    let [wide, high] = DIGIT;
+    let mut strokes = Vec::new();
+    for (place, digit) in text.chars().enumerate() {
+        let left = at + Vector::new(NEXT * place as f64, 0.0);
+        let point = |(x, y): (f64, f64)| left + Vector::new(x * wide, y * high);
+        let bars = lines(digit).iter();
+        strokes.extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE)));
+    }
+    strokes
+}
+
+/// Width and height of a mark, mm.
+pub fn size(text: &str) -> [f64; 2] {
+    let count = text.chars().count() as f64;
+    [NEXT * (count - 1.0) + DIGIT[0], DIGIT[1]]
+}
+
+/// Layers with a mark engraved where there is room for it on a face that looks up;
+/// `None` where there is none.
+#[must_use]
+pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
+    let outlines: Vec<_> = prisms.iter().map(Outline::of).collect();
+    for (layer, prism) in prisms.iter().enumerate().rev() {
+        let [low, high] = prism.z;
+        if high - low < 2.0 * DEEP {
+            continue;
+        }
+        let free = |point: Vector| {
+            outlines[layer].holds(point)
+                && outlines
+                    .get(layer + 1)
+                    .is_none_or(|above| !above.holds(point))
+        };
+        let Some(at) = place(&outlines[layer], text, free) else {
+            continue;
+        };
+        let mut layers = prisms.to_vec();
+        let lower = Prism {
+            z: [low, high - DEEP],
+            ..prism.clone()
+        };
+        let mut upper = Prism {
+            z: [high - DEEP, high],
+            ..prism.clone()
+        };
+        upper.cut.extend(strokes(text, at));
+        layers.splice(layer..=layer, [lower, upper]);
+        return Some(layers);
+    }
+    None
+}
+
+/// Where a mark has room in an outline.
+fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
+    let ends = outline.loops().flat_map(Loop::ends);
+    let mut low = Vector::new(f64::INFINITY, f64::INFINITY);
+    let mut high = Vector::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for (side, to) in ends {
+        for point in [side.from, side.middle(to)] {
+            low = Vector::new(low.x.min(point.x), low.y.min(point.y));
+            high = Vector::new(high.x.max(point.x), high.y.max(point.y));
+        }
+    }
+    let [wide, tall] = size(text);
+    let margin = LINE + BESIDE;
+    let steps = |from: f64, to: f64, by: f64| {
+        let count = ((to - from) / by).ceil().max(0.0) as u32;
+        (0..=count).map(move |i| (from + f64::from(i) * by).min(to))
+    };
+    for x in steps(low.x + margin, high.x - margin - wide, STEP) {
+        for y in steps(low.y + margin, high.y - margin - tall, 0.5 * STEP) {
+            let clear = steps(x - margin, x + wide + margin, 0.6).all(|px| {
+                steps(y - margin, y + tall + margin, 0.6).all(|py| free(Vector::new(px, py)))
+            });
+            if clear {
+                return Some(Vector::new(x, y));
+            }
+        }
+    }
+    None
+}

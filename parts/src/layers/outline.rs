@@ -1,0 +1,353 @@
+//! The outline of a layer: loops of lines and arcs.
+//!
+//! A layer is a union of shapes less some holes. The library that unites them keeps
+//! arcs as arcs, so a hole stays a circle in every file.
+
+use cavalier_contours::core::math::Vector2;
+use cavalier_contours::polyline::{
+    BooleanOp, BooleanResultInfo, PlineSource, PlineSourceMut, PlineVertex, Polyline,
+    seg_arc_radius_and_center, seg_midpoint,
+};
+use lizard_kinematics::Vector;
+
+use crate::layers::body::Prism;
+use crate::layers::shape::Shape;
+
+/// Points nearer than this are one, mm.
+pub(crate) const SAME: f64 = 1e-5;
+
+/// A closed line of straight sides and arcs, with the material on its left: around a
+/// part counter-clockwise, around a hole clockwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// Its sides, each from its own point to the next one's.
+    pub sides: Vec<Side>,
+}
+
+/// One side of a loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// Where it begins, mm.
+    pub from: Vector,
+    /// The tangent of a quarter of its arc's angle: 0 of a line, 1 of half a circle;
+    /// positive where it turns left.
+    pub bulge: f64,
+}
+
+/// A layer's outline.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outline {
+    /// Each piece: its outer loop, then those of its holes.
+    pub pieces: Vec<Vec<Loop>>,
+}
+
+impl Outline {
+    /// The outline of a layer.
+    #[must_use]
+    pub fn of(prism: &Prism) -> Self {
+        let (outer, gaps) = unite(prism.add.iter().map(polyline));
+        let (mut cuts, _) = unite(gaps.into_iter().chain(prism.cut.iter().map(polyline)));
+        let mut pieces = outer;
+        // Cuts that open a piece change its outer loop; the others are holes.
+        cuts.retain(|cut| {
+            let mut opens = false;
+            let mut left = Vec::new();
+            for piece in pieces.drain(..) {
+                let rest = piece.boolean(cut, BooleanOp::Not);
+                match rest.result_info {
+                    BooleanResultInfo::Intersected | BooleanResultInfo::Overlapping => {
+                        opens = true;
+                        left.extend(rest.pos_plines.into_iter().map(|part| part.pline));
+                    }
+                    BooleanResultInfo::Pline1InsidePline2 => opens = true,
+                    _ => left.push(piece),
+                }
+            }
+            pieces = left;
+            !opens
+        });
+        let pieces = pieces.into_iter().map(|piece| {
+            let holes = cuts.iter().filter(|cut| {
+                let inside = piece.boolean(*cut, BooleanOp::Not).result_info;
+                matches!(inside, BooleanResultInfo::Pline2InsidePline1)
+            });
+            let mut loops = vec![Loop::of(&piece, true)];
+            loops.extend(holes.map(|hole| Loop::of(hole, false)));
+            loops
+        });
+        Self {
+            pieces: pieces.collect(),
+        }
+    }
+
+    /// All loops.
+    pub fn loops(&self) -> impl Iterator<Item = &Loop> {
+        self.pieces.iter().flatten()
+    }
+
+    /// Its area, mm^2.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.loops().map(Loop::area).sum()
+    }
+
+    /// The area times the place of its middle, mm^3.
+    #[must_use]
+    pub fn moment(&self) -> Vector {
+        self.loops()
+            .fold(Vector::default(), |sum, of| sum + of.moment())
+    }
+
+    /// Whether a point is in the material.
+    #[must_use]
+    pub fn holds(&self, point: Vector) -> bool {
+        let turns: i32 = self.loops().map(|of| of.turns_around(point)).sum();
+        turns > 0
+    }
+}
+
+impl Loop {
+    fn of(line: &Polyline<f64>, outer: bool) -> Self {
+        let mut line = line.remove_redundant(SAME).unwrap_or_else(|| line.clone());
+        if (line.area() > 0.0) != outer {
+            line.invert_direction_mut();
+        }
+        Self {
+            sides: line
+                .iter_vertexes()
+                .map(|vertex| Side {
+                    from: Vector::new(vertex.x, vertex.y),
+                    bulge: if vertex.bulge.abs() < 1e-9 {
+                        0.0
+                    } else {
+                        vertex.bulge
+                    },
+                })
+                .collect(),
+        }
+    }
+
+    /// Its sides with their ends.
+    pub fn ends(&self) -> impl Iterator<Item = (Side, Vector)> {
+        let n = self.sides.len();
+        (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
+    }
+
+    /// Middle and radius, if it is a whole circle.
+    #[must_use]
+    pub fn circle(&self) -> Option<(Vector, f64)> {
+        let arcs: Vec<_> = self
+            .ends()
+            .map(|(side, to)| side.arc(to))
+            .collect::<Option<_>>()?;
+        let (centre, radius) = *arcs.first()?;
+        arcs.iter()
+            .all(|(other, size)| (*other - centre).length() < SAME && (size - radius).abs() < SAME)
+            .then_some((centre, radius))
+    }
+
+    /// The area within, mm^2; negative around a hole.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.polyline().area()
+    }
+
+    /// The area within times the place of its middle, mm^3.
+    fn moment(&self) -> Vector {
+        let mut sum = Vector::default();
+        for (side, to) in self.ends() {
+            let (a, b) = (side.from, to);
+            // A triangle from the origin, and the arc's segment beside its chord.
+            sum = sum + (a + b) * (a.cross(b) / 6.0);
+            if let Some((centre, radius)) = side.arc(to) {
+                let half = 2.0 * libm::atan(side.bulge.abs());
+                let area = radius * radius * (half - libm::sin(half) * libm::cos(half));
+                let reach = radius * libm::sin(half);
+                let out = 2.0 / 3.0 * (reach * reach * reach) / area;
+                let chord = (b - a) * (1.0 / (b - a).length());
+                // A left turn bulges out to the right of its chord.
+                let beyond = chord.right() * side.bulge.signum();
+                let far = centre + beyond * out;
+                sum = sum + far * (area * side.bulge.signum());
+            }
+        }
+        sum
+    }
+
+    fn turns_around(&self, point: Vector) -> i32 {
+        self.polyline()
+            .winding_number(Vector2::new(point.x, point.y))
+    }
+
+    fn polyline(&self) -> Polyline<f64> {
+        let mut line = Polyline::new_closed();
+        for side in &self.sides {
+            line.add(side.from.x, side.from.y, side.bulge);
+        }
+        line
+    }
+}
+
+impl Side {
+    /// As the library has it.
+    pub(crate) fn vertex(&self) -> PlineVertex<f64> {
+        PlineVertex::new(self.from.x, self.from.y, self.bulge)
+    }
+
+    /// Middle and radius of its arc to an end; none of a line.
+    #[must_use]
+    pub fn arc(&self, to: Vector) -> Option<(Vector, f64)> {
+        (self.bulge != 0.0).then(|| {
+            let end = PlineVertex::new(to.x, to.y, 0.0);
+            let (radius, centre) = seg_arc_radius_and_center(self.vertex(), end);
+            (Vector::new(centre.x, centre.y), radius)
+        })
+    }
+
+    /// The point half-way to an end.
+    #[must_use]
+    pub fn middle(&self, to: Vector) -> Vector {
+        let middle = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
+        Vector::new(middle.x, middle.y)
+    }
+}
+
+/// The union of some outlines: what is outside, and the gaps that it encloses.
+fn unite(
+    outlines: impl Iterator<Item = Polyline<f64>>,
+) -> (Vec<Polyline<f64>>, Vec<Polyline<f64>>) {
+    let mut pieces: Vec<Polyline<f64>> = Vec::new();
+    let mut gaps: Vec<Polyline<f64>> = Vec::new();
+    for outline in outlines {
+        let mut joined = outline.clone();
+        let mut apart = Vec::new();
+        let mut enclosed = Vec::new();
+        for piece in pieces {
+            let mut union = piece.boolean(&joined, BooleanOp::Or);
+            let apart_from = matches!(union.result_info, BooleanResultInfo::Disjoint);
+            if apart_from || union.pos_plines.len() != 1 {
+                apart.push(piece);
+            } else {
+                joined = union.pos_plines.remove(0).pline;
+                enclosed.extend(union.neg_plines.into_iter().map(|gap| gap.pline));
+            }
+        }
+        gaps = gaps
+            .iter()
+            .flat_map(|gap| {
+                let rest = gap.boolean(&outline, BooleanOp::Not);
+                rest.pos_plines.into_iter().map(|part| part.pline)
+            })
+            .collect();
+        gaps.extend(enclosed);
+        apart.push(joined);
+        pieces = apart;
+    }
+    (pieces, gaps)
+}
+
+/// The outline of one shape, counter-clockwise.
+fn polyline(shape: &Shape) -> Polyline<f64> {
+    let Shape { points, radius } = shape;
+    let mut line = Polyline::new_closed();
+    let n = points.len();
+    if n == 1 {
+        line.add(points[0].x - radius, points[0].y, 1.0);
+        line.add(points[0].x + radius, points[0].y, 1.0);
+        return line;
+    }
+    let unit = |from: Vector, to: Vector| (to - from) * (1.0 / (to - from).length());
+    for i in 0..n {
+        let (before, at, after) = (points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
+        let (incoming, outgoing) = (unit(before, at), unit(at, after));
+        if *radius == 0.0 {
+            line.add(at.x, at.y, 0.0);
+            continue;
+        }
+        let (begin, end) = (
+            at + incoming.right() * *radius,
+            at + outgoing.right() * *radius,
+        );
+        // tan of a quarter of the turn: half of the half.
+        let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
+        let bulge = if n == 2 {
+            1.0
+        } else {
+            let half = sin / (1.0 + cos);
+            half / (1.0 + (1.0 + half * half).sqrt())
+        };
+        line.add(begin.x, begin.y, bulge);
+        line.add(end.x, end.y, 0.0);
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Vector {
+        Vector::new(x, y)
+    }
+
+    fn outline(add: Vec<Shape>, cut: Vec<Shape>) -> Outline {
+        let z = [0.0, 1.0];
+        Outline::of(&Prism { add, cut, z })
+    }
+
+    #[test]
+    fn a_bar_with_two_holes_has_their_area_and_their_circles() {
+        let (a, b) = (at(0.0, 0.0), at(30.0, 10.0));
+        let bar = outline(
+            vec![Shape::bar(a, b, 4.5)],
+            vec![Shape::disc(a, 1.6), Shape::disc(b, 1.6)],
+        );
+        let area = 1000f64.sqrt() * 9.0 + PI * (4.5 * 4.5 - 2.0 * 1.6 * 1.6);
+        assert!((bar.area() - area).abs() < 1e-9);
+        let circles: Vec<_> = bar.loops().filter_map(Loop::circle).collect();
+        assert_eq!(circles.len(), 2);
+        assert!((circles[1].0 - b).length() < 1e-9 && (circles[1].1 - 1.6).abs() < 1e-9);
+        let middle = bar.moment() * (1.0 / bar.area());
+        assert!((middle - at(15.0, 5.0)).length() < 1e-9, "{middle:?}");
+        assert!(bar.holds(at(15.0, 5.0)) && !bar.holds(a) && !bar.holds(at(0.0, 9.0)));
+    }
+
+    #[test]
+    fn a_ring_of_bars_encloses_a_gap_that_a_later_shape_may_fill() {
+        let corners = [at(0.0, 0.0), at(20.0, 0.0), at(20.0, 20.0), at(0.0, 20.0)];
+        let bars: Vec<_> = (0..4)
+            .map(|i| Shape::bar(corners[i], corners[(i + 1) % 4], 2.0 + 0.01 * i as f64))
+            .collect();
+        let ring = outline(bars.clone(), Vec::new());
+        assert_eq!(ring.pieces.len(), 1);
+        assert_eq!(ring.pieces[0].len(), 2);
+        assert!(!ring.holds(at(10.0, 10.0)) && ring.holds(at(10.0, 0.0)));
+        let across = Shape::bar(at(10.0, 0.0), at(10.0, 20.0), 1.0);
+        let filled = outline([&bars[..], &[across]].concat(), Vec::new());
+        assert_eq!(filled.pieces[0].len(), 3);
+        assert!(filled.holds(at(10.0, 10.0)) && !filled.holds(at(5.0, 10.0)));
+    }
+
+    #[test]
+    fn a_slot_across_a_plate_leaves_two_pieces() {
+        let plate = Shape::rectangle(at(0.0, 0.0), at(20.0, 10.0), 1.0);
+        let slot = Shape::rectangle(at(0.0, 0.0), at(30.0, 2.0), 0.0);
+        let hole = Shape::disc(at(3.0, 3.0), 1.0);
+        let halves = outline(vec![plate], vec![slot, hole]);
+        assert_eq!(halves.pieces.len(), 2);
+        let area = 200.0 - (4.0 - PI) - 40.0 - PI;
+        assert!((halves.area() - area).abs() < 1e-9);
+        assert_eq!(halves.pieces.iter().map(Vec::len).sum::<usize>(), 3);
+    }
+
+    #[test]
+    fn the_middle_of_half_a_disc_is_where_it_should_be() {
+        let disc = Shape::disc(at(5.0, 2.0), 3.0);
+        let below = Shape::rectangle(at(5.0, -8.0), at(20.0, 20.0), 0.0);
+        let half = outline(vec![disc], vec![below]);
+        let middle = half.moment() * (1.0 / half.area());
+        assert!((middle - at(5.0, 2.0 + 4.0 * 3.0 / (3.0 * PI))).length() < 1e-9);
+    }
+}

@@ -1,0 +1,121 @@
+//! Roofs that a printer can make without supports.
+//!
+//! A sunk pocket that lies below when a part is printed has a roof, and in its middle a
+//! hole. A printer can span the pocket with straight lines from edge to edge, but not
+//! draw a ring in the air. So the hole is closed there by one layer, which is drilled
+//! through when the part is done.
+
+use lizard_kinematics::Vector;
+
+use crate::layers::body::Prism;
+use crate::layers::outline::{Loop, Outline};
+use crate::layers::shape::Shape;
+
+/// What a printer lays at once, mm: a hole is closed by one of its layers.
+pub const LAYER: f64 = 0.2;
+/// How far around a hole to search for its support, mm.
+const BESIDE: f64 = 0.3;
+/// Heights that differ by less are the same, mm.
+const SAME: f64 = 1e-6;
+
+/// Layers with the holes closed that would begin in the air, and how many holes are.
+#[must_use]
+pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
+    let mut layers = prisms.to_vec();
+    let mut count = 0;
+    for (number, pair) in prisms.windows(2).enumerate() {
+        let below = Outline::of(&pair[0]);
+        let above = &prisms[number + 1];
+        let low = above.z[0];
+        let high = skin(low);
+        for hole in &above.cut {
+            if !begins_in_air(hole, above, &below) {
+                continue;
+            }
+            count += 1;
+            layers = layers
+                .into_iter()
+                .flat_map(|layer| split(layer, high))
+                .collect();
+            for layer in &mut layers {
+                if layer.z[0] > low - SAME && layer.z[1] < high + SAME {
+                    layer.cut.retain(|other| other != hole);
+                }
+            }
+        }
+    }
+    (layers, count)
+}
+
+/// Where the first of a printer's layers ends that lies above a height: a slicer looks at
+/// the middle of each.
+fn skin(low: f64) -> f64 {
+    let first = ((low - LAYER / 2.0 + SAME) / LAYER).floor() + 1.0;
+    LAYER * (first + 1.0)
+}
+
+/// A layer in two at a height, if it has that height within.
+fn split(layer: Prism, at: f64) -> Vec<Prism> {
+    let [low, high] = layer.z;
+    if at < low + SAME || at > high - SAME {
+        return vec![layer];
+    }
+    let upper = Prism {
+        z: [at, high],
+        ..layer.clone()
+    };
+    let lower = Prism {
+        z: [low, at],
+        ..layer
+    };
+    vec![lower, upper]
+}
+
+/// The middles of those holes.
+pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
+    let mut middles = Vec::new();
+    for pair in prisms.windows(2) {
+        let below = Outline::of(&pair[0]);
+        let holes = pair[1].cut.iter();
+        let in_air = holes.filter(|hole| begins_in_air(hole, &pair[1], &below));
+        middles.extend(in_air.map(Shape::middle));
+    }
+    middles
+}
+
+/// Whether nothing is below the edge of a hole, though it is in the material.
+fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
+    let own = Outline::of(prism);
+    let edge = Shape {
+        points: hole.points.clone(),
+        radius: hole.radius + BESIDE,
+    };
+    let alone = Outline::of(&Prism {
+        add: vec![edge],
+        cut: Vec::new(),
+        z: prism.z,
+    });
+    let mut points = alone.loops().flat_map(Loop::ends);
+    points.all(|(side, to)| {
+        [side.from, side.middle(to)]
+            .into_iter()
+            .all(|point| own.holds(point) && !below.holds(point))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_closed_layer_is_one_that_a_slicer_sees() {
+        for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
+            let high = skin(low);
+            // Slicers look at 0.1, 0.3, 0.5 mm and so on.
+            let seen = (0..100).map(|i| 0.1 + LAYER * f64::from(i));
+            let count = seen.filter(|z| low + 1e-9 < *z && *z < high - 1e-9).count();
+            assert_eq!(count, 1, "{low} {high}");
+            assert!(high - low < 0.31 && high - low > 0.09, "{low} {high}");
+        }
+    }
+}

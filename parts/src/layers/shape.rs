@@ -1,0 +1,325 @@
+//! Flat convex shapes with round corners. All parts are made of them.
+//!
+//! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon
+//! whose corners are rounded. All three are the same: the convex hull of a few points,
+//! grown by a radius. The distance of two such shapes is that of two polygons, less both
+//! radii, which suits a collision test. Their outlines are lines and arcs, which suits a
+//! drawing.
+
+use lizard_kinematics::Vector;
+
+use crate::layers::placement::Placement;
+
+/// The convex hull of some points, grown by a radius; mm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// Corners of a convex polygon, counter-clockwise; one of a disc, two of a bar.
+    pub points: Vec<Vector>,
+    /// What the hull is grown by: 0 for sharp corners.
+    pub radius: f64,
+}
+
+impl Shape {
+    /// A disc.
+    #[must_use]
+    pub fn disc(centre: Vector, radius: f64) -> Self {
+        Self {
+            points: vec![centre],
+            radius,
+        }
+    }
+
+    /// A bar with round ends around two points.
+    #[must_use]
+    pub fn bar(from: Vector, to: Vector, radius: f64) -> Self {
+        if from == to {
+            return Self::disc(from, radius);
+        }
+        Self {
+            points: vec![from, to],
+            radius,
+        }
+    }
+
+    /// A rectangle by its middle and its size, whose corners have a radius.
+    #[must_use]
+    pub fn rectangle(middle: Vector, size: Vector, radius: f64) -> Self {
+        let (x, y) = (size.x / 2.0 - radius, size.y / 2.0 - radius);
+        Self::hull(
+            &[(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| middle + Vector::new(x, y)),
+            radius,
+        )
+    }
+
+    /// A nut's hexagon by its width over flats; a corner points along x.
+    #[must_use]
+    pub fn hexagon(centre: Vector, flats: f64) -> Self {
+        let reach = flats / f64::sqrt(3.0);
+        let corners = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
+        Self::hull(
+            &corners.map(|angle| centre + Vector::direction(angle) * reach),
+            0.0,
+        )
+    }
+
+    /// The hull of any points.
+    #[must_use]
+    pub fn hull(points: &[Vector], radius: f64) -> Self {
+        let mut sorted = points.to_vec();
+        sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        sorted.dedup();
+        // Andrew's monotone chain: the lower half, then the upper one.
+        let half = |points: &mut dyn Iterator<Item = &Vector>| {
+            let mut chain: Vec<Vector> = Vec::new();
+            for &point in points {
+                while let [.., a, b] = chain[..]
+                    && (b - a).cross(point - b) <= 0.0
+                {
+                    chain.pop();
+                }
+                chain.push(point);
+            }
+            chain
+        };
+        let mut chain = half(&mut sorted.iter());
+        let upper = half(&mut sorted.iter().rev());
+        if sorted.len() > 1 {
+            chain.pop();
+            chain.extend(&upper[..upper.len() - 1]);
+        }
+        Self {
+            points: chain,
+            radius,
+        }
+    }
+
+    /// The mean of its points.
+    #[must_use]
+    pub fn middle(&self) -> Vector {
+        let sum = self.points.iter().fold(Vector::default(), |a, b| a + *b);
+        sum * (1.0 / self.points.len() as f64)
+    }
+
+    /// The largest distance of any of its points from one point, mm.
+    #[must_use]
+    pub fn farthest(&self, from: Vector) -> f64 {
+        let away = self.points.iter().map(|&point| (point - from).length());
+        away.fold(0.0, f64::max) + self.radius
+    }
+
+    /// The greatest distance of two of its points, mm.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        let most = self.points.iter().map(|&point| self.farthest(point));
+        most.fold(0.0, f64::max) + self.radius
+    }
+
+    /// The same shape elsewhere.
+    #[must_use]
+    pub fn placed(&self, place: &Placement) -> Self {
+        Self {
+            points: self.points.iter().map(|&point| place.map(point)).collect(),
+            radius: self.radius,
+        }
+    }
+
+    /// The mirror image in the x axis.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            points: self.points.iter().rev().map(|p| p.mirrored()).collect(),
+            radius: self.radius,
+        }
+    }
+
+    /// The distance to another shape, mm: 0 where they touch. Where they overlap, minus
+    /// the shortest way that takes them apart. No point that moves by a length changes
+    /// it by more than that length.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        let between = if self.holds(other.points[0]) || other.holds(self.points[0]) {
+            0.0
+        } else {
+            let mut least = f64::INFINITY;
+            for (a, b) in self.edges() {
+                for (c, d) in other.edges() {
+                    least = least.min(segments(a, b, c, d));
+                }
+            }
+            least
+        };
+        let between = if between == 0.0 {
+            let deep = self.beyond(other).max(other.beyond(self));
+            // Two points have no sides.
+            if deep.is_finite() { deep.min(0.0) } else { 0.0 }
+        } else {
+            between
+        };
+        between - self.radius - other.radius
+    }
+
+    /// How far this shape is within another, mm: below 0 where it stands out. If each
+    /// point may have `strayed` by so much along x and y, how far at the least.
+    #[must_use]
+    pub fn within(&self, hole: &Self, strayed: Vector) -> f64 {
+        let sharp = Self {
+            points: hole.points.clone(),
+            radius: 0.0,
+        };
+        let air = hole.radius - self.radius;
+        let out = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp);
+        let outermost = self
+            .points
+            .iter()
+            .map(out)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let anyhow = air - outermost - strayed.length();
+        // Nearer to the truth where a long hole holds what runs along it.
+        let lines = hole.lines().flat_map(|(from, out)| {
+            let more = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
+            self.points
+                .iter()
+                .map(move |&point| out.dot(point - from) + more)
+        });
+        let outermost = lines.fold(f64::NEG_INFINITY, f64::max);
+        if hole.points.len() > 2 && outermost <= 0.0 {
+            anyhow.max(air - outermost)
+        } else {
+            anyhow
+        }
+    }
+
+    /// The lines along the polygon's sides: a point of each, and the way out, length
+    /// one. A disc has none.
+    fn lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
+        let n = self.points.len();
+        (0..if n > 1 { n } else { 0 }).map(move |i| {
+            let (from, to) = (self.points[i], self.points[(i + 1) % n]);
+            (from, (to - from).right() * (1.0 / (to - from).length()))
+        })
+    }
+
+    /// Of the lines along the polygon's sides: how far the other polygon is beyond the
+    /// one that it is farthest beyond; of a disc, nothing.
+    fn beyond(&self, other: &Self) -> f64 {
+        let beyond = self.lines().map(|(from, out)| {
+            let depths = other.points.iter().map(|&point| out.dot(point - from));
+            depths.fold(f64::INFINITY, f64::min)
+        });
+        beyond.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether the polygon holds a point.
+    fn holds(&self, point: Vector) -> bool {
+        self.points.len() > 2 && self.edges().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
+    }
+
+    /// The sides of the polygon; of a disc one of length 0.
+    fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> {
+        let n = self.points.len();
+        let sides = if n == 2 { 1 } else { n };
+        (0..sides).map(move |i| (self.points[i], self.points[(i + 1) % n]))
+    }
+}
+
+/// The distance of two lines of a length, mm.
+fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
+    let side = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
+    let crosses = side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
+    if crosses {
+        return 0.0;
+    }
+    to_line(a, c, d)
+        .min(to_line(b, c, d))
+        .min(to_line(c, a, b))
+        .min(to_line(d, a, b))
+}
+
+/// The distance of a point from a line of a length, mm.
+fn to_line(point: Vector, from: Vector, to: Vector) -> f64 {
+    let along = to - from;
+    let square = along.square();
+    let share = if square > 0.0 {
+        ((point - from).dot(along) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (point - from - along * share).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Vector {
+        Vector::new(x, y)
+    }
+
+    #[test]
+    fn discs_and_bars_are_apart_by_their_middles_less_their_radii() {
+        let disc = Shape::disc(at(10.0, 3.0), 2.0);
+        let bar = Shape::bar(at(0.0, 0.0), at(20.0, 0.0), 0.5);
+        assert_eq!(disc.distance(&bar), 0.5);
+        assert_eq!(bar.distance(&disc), 0.5);
+        let beyond = Shape::disc(at(23.0, 4.0), 1.0);
+        assert_eq!(bar.distance(&beyond), 3.5);
+    }
+
+    #[test]
+    fn what_lies_in_a_polygon_or_crosses_it_overlaps() {
+        let plate = Shape::rectangle(at(0.0, 0.0), at(10.0, 8.0), 0.0);
+        assert_eq!(plate.distance(&Shape::disc(at(1.0, 1.0), 0.5)), -3.5);
+        let across = Shape::bar(at(-20.0, 0.0), at(20.0, 0.0), 1.0);
+        assert_eq!(plate.distance(&across), -5.0);
+        assert_eq!(across.distance(&plate), -5.0);
+        let aside = Shape::rectangle(at(9.0, 1.0), at(10.0, 8.0), 0.0);
+        assert_eq!(plate.distance(&aside), -1.0);
+        let upright = Shape::bar(at(3.0, -9.0), at(3.0, 2.0), 1.0);
+        assert_eq!(across.distance(&upright), -4.0);
+        assert_eq!(
+            Shape::disc(at(1.0, 0.0), 2.0).distance(&Shape::disc(at(1.0, 0.0), 3.0)),
+            -5.0
+        );
+        assert_eq!(plate.distance(&Shape::disc(at(8.0, 0.0), 1.0)), 2.0);
+        assert_eq!(plate.distance(&Shape::disc(at(8.0, 8.0), 1.0)), 4.0);
+    }
+
+    #[test]
+    fn a_pin_in_its_hole_has_the_air_that_is_left() {
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        let still = at(0.0, 0.0);
+        let slot = Shape::bar(at(0.0, 0.0), at(5.0, 0.0), 1.6);
+        let pin = |x: f64, y: f64| Shape::disc(at(x, y), 1.5).within(&slot, still);
+        near(pin(5.0, 0.0), 0.1);
+        near(pin(2.0, 0.05), 0.05);
+        near(pin(6.0, 0.0), -0.9);
+        let bore = Shape::rectangle(at(0.0, 0.0), at(50.0, 6.4), 0.0);
+        let rod = Shape::rectangle(at(1.0, 0.0), at(40.0, 6.0), 1.0);
+        near(rod.within(&bore, still), 0.2);
+        // A way along the bore costs nothing until the end, one across it all.
+        near(rod.within(&bore, at(3.0, 0.1)), 0.1);
+        near(rod.within(&bore, at(3.9, 0.0)), 0.1);
+        assert!(bore.within(&rod, still) < 0.0);
+    }
+
+    #[test]
+    fn a_hull_drops_what_lies_within_and_turns_counter_clockwise() {
+        let hull = Shape::hull(
+            &[
+                at(0.0, 0.0),
+                at(1.0, 1.0),
+                at(2.0, 0.0),
+                at(1.0, 0.2),
+                at(1.0, 0.0),
+            ],
+            0.0,
+        );
+        assert_eq!(hull.points, [at(0.0, 0.0), at(2.0, 0.0), at(1.0, 1.0)]);
+        assert_eq!(
+            Shape::hull(&[at(1.0, 2.0); 3], 1.0),
+            Shape::disc(at(1.0, 2.0), 1.0)
+        );
+        let bar = Shape::hull(&[at(0.0, 0.0), at(4.0, 0.0), at(2.0, 0.0)], 1.0);
+        assert_eq!(bar, Shape::bar(at(0.0, 0.0), at(4.0, 0.0), 1.0));
+    }
+}

@@ -1,0 +1,344 @@
+//! Whether every screw can be put in and turned in the order of the guide.
+//!
+//! A screw is pushed in along its axis from the side of its head, so the space above its
+//! head must be free, as long as the screw and as wide as its head. A hex key holds the
+//! head while the nut is turned, so there must also be room for a [`KEY`] above the head.
+//! A socket goes over the nut and needs the room of a [`SOCKET`]. A nut that is sunk into
+//! a part is pushed in with a finger, and holds itself, as a hexagonal head does.
+//!
+//! What is in place when a screw is turned: everything of the stages before, and all
+//! of its own stage but the screw and its nut, so within a stage hands may go in any
+//! order. On the bench it is only what the step has added to the same servo's link or
+//! leg. A screw whose nut comes in a later step is pushed in at its own stage, and
+//! turned when the nut comes.
+//!
+//! The servos stand at neutral. If a screw cannot be reached then, the nearest other pose
+//! that the guard accepts is searched, and the guide names it.
+
+use std::fmt;
+
+use lizard_kinematics::{Pose, Solution, Vector};
+
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::{Body, Kind};
+use crate::layers::shape::Shape;
+use crate::order::steps::{Step, Where};
+
+/// Radius of a screwdriver or hex key, and its length above the head, mm.
+pub const KEY: [f64; 2] = [2.0, 30.0];
+/// Wall of a socket around the nut, and its length beyond it, mm.
+pub const SOCKET: [f64; 2] = [1.0, 10.0];
+/// How far servos are turned to look for a pose, deg.
+const TURNS: [f64; 12] = [
+    5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
+];
+/// Angles of each servo at which poses are looked for, where it is not enough to turn
+/// one.
+const STEPS: u32 = 9;
+
+/// What is done with a screw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Act {
+    /// It is pushed in along its axis.
+    Push,
+    /// It is turned, or held, at its head.
+    Turn,
+    /// Its nut is pushed in or turned.
+    Nut,
+}
+
+/// A screw that something is in the way of.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{screw} {act} at step {step} of the guide: {by} is in the way")]
+pub struct Blocked {
+    /// The step of the guide, from 1.
+    pub step: usize,
+    /// Which screw.
+    pub screw: String,
+    /// What cannot be done with it.
+    pub act: Act,
+    /// What is in the way.
+    pub by: String,
+}
+
+impl fmt::Display for Act {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Push => "cannot be pushed in",
+            Self::Turn => "cannot be turned",
+            Self::Nut => "cannot be given its nut",
+        })
+    }
+}
+
+/// A pose that servos are turned to, so that some screws can be reached.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aside {
+    /// The step of the guide, from 1.
+    pub step: usize,
+    /// The screws that cannot be reached at neutral.
+    pub screws: Vec<String>,
+    /// Angles, deg, servo order.
+    pub pose: [f64; 4],
+}
+
+/// Room that has to be free: upright walls around a shape, chassis frame.
+struct Room {
+    shape: Shape,
+    z: [f64; 2],
+}
+
+/// A screw as it stands in the robot.
+struct Axis {
+    at: Vector,
+    /// Radius of its head.
+    radius: f64,
+    length: f64,
+    /// Where the head ends.
+    end: f64,
+    /// 1 where the head is above, else -1.
+    up: f64,
+}
+
+impl Axis {
+    fn room(&self, radius: f64, from: f64, by: f64) -> Room {
+        let to = from + by;
+        Room {
+            shape: Shape::disc(self.at, radius),
+            z: [from.min(to), from.max(to)],
+        }
+    }
+}
+
+/// The robot at a pose while it is put together.
+struct Bench<'a> {
+    assembly: &'a Assembly,
+    pose: &'a Solution,
+}
+
+impl Bench<'_> {
+    /// A screw's axis; of other bodies `None`.
+    fn axis(&self, body: &Body) -> Option<Axis> {
+        /// Of a servo's own screws, mm.
+        const SERVO_SCREW: f64 = 8.0;
+        let length = match body.kind {
+            Kind::Screw(length) | Kind::HexScrew(length) => length,
+            Kind::ServoScrew => SERVO_SCREW,
+            _ => return None,
+        };
+        let by_width = |a: &usize, b: &usize| {
+            let width = |i: usize| body.prisms[i].add[0].width();
+            width(*a).total_cmp(&width(*b))
+        };
+        let head = (0..body.prisms.len()).max_by(by_width)?;
+        let above = head + 1 == body.prisms.len();
+        let prism = &body.prisms[head];
+        let place = self.assembly.place(body.mount, self.pose);
+        Some(Axis {
+            at: place.map(prism.add[0].middle()),
+            radius: prism.add[0].width() / 2.0,
+            length,
+            end: prism.z[usize::from(above)],
+            up: if above { 1.0 } else { -1.0 },
+        })
+    }
+
+    /// Whether a body lies in a room.
+    fn fills(&self, body: &Body, room: &Room) -> bool {
+        /// What touches is not in the way, mm.
+        const TOUCH: f64 = 1e-6;
+        let place = self.assembly.place(body.mount, self.pose);
+        let [low, high] = room.z;
+        let beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
+        let mut prisms = body.prisms.iter().filter(|prism| !beside(prism.z));
+        prisms.any(|prism| {
+            let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
+            let holds = |hole: &Shape| {
+                let air = room.shape.within(&hole.placed(&place), Vector::default());
+                air > -TOUCH
+            };
+            prism.add.iter().any(meets) && !prism.cut.iter().any(holds)
+        })
+    }
+
+    /// The room that a nut needs on its screw.
+    fn nut(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> Room {
+        let place = self.assembly.place(nut.mount, self.pose);
+        let flats = nut.prisms[0].add[0].placed(&place);
+        let corner = (flats.points[0] - axis.at).length();
+        // The face that bears, and the other one.
+        let [low, high] = nut.z();
+        let (bears, end) = match axis.up > 0.0 {
+            true => (high, low),
+            false => (low, high),
+        };
+        let sunk = around.iter().any(|body| {
+            let pockets = body.prisms.iter().flat_map(|prism| &prism.cut);
+            let mut pockets =
+                pockets.filter(|hole| body.mount == nut.mount && hole.points.len() == 6);
+            pockets.any(|hole| flats.within(&hole.placed(&place), Vector::default()) > 0.0)
+        });
+        let away = -axis.up * SOCKET[1];
+        match sunk {
+            true => Room {
+                shape: flats,
+                ..axis.room(0.0, end, away)
+            },
+            false => axis.room(corner + SOCKET[0], bears, end - bears + away),
+        }
+    }
+
+    /// What cannot be done with a screw when some bodies are `new`.
+    fn ask(&self, screw: &Body, new: &[&Body], around: &[&Body]) -> Vec<(Act, String)> {
+        let Some(axis) = self.axis(screw) else {
+            return Vec::new();
+        };
+        let nut_name = screw.name.replacen("screw", "nut", 1);
+        let nut = self
+            .assembly
+            .body(&nut_name)
+            .filter(|nut| nut.kind == Kind::Nut);
+        let own = |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
+        let is_in = |list: &[&Body], body: &Body| list.iter().any(|other| other.name == body.name);
+        let new_nut = nut.filter(|nut| is_in(new, nut));
+        let complete = is_in(around, screw) && nut.is_none_or(|nut| is_in(around, nut));
+        let is_new = is_in(new, screw);
+        let others: Vec<&Body> = around
+            .iter()
+            .filter(|body| !own(&body.name))
+            .copied()
+            .collect();
+        let mut rooms = Vec::new();
+        if is_new {
+            let way = axis.room(axis.radius, axis.end, axis.up * axis.length);
+            rooms.push((Act::Push, way));
+        }
+        // A hexagonal head is held by its pocket.
+        let turns = !matches!(screw.kind, Kind::HexScrew(_));
+        if turns && complete && (is_new || new_nut.is_some()) {
+            rooms.push((Act::Turn, axis.room(KEY[0], axis.end, axis.up * KEY[1])));
+        }
+        if let Some(nut) = new_nut {
+            rooms.push((Act::Nut, self.nut(nut, &axis, &others)));
+        }
+        let blocked = |(act, room): (Act, Room)| {
+            let by = others.iter().find(|body| self.fills(body, &room))?;
+            Some((act, by.name.clone()))
+        };
+        rooms.into_iter().filter_map(blocked).collect()
+    }
+}
+
+impl Assembly {
+    /// The screws that cannot be put in or turned in the order of some steps while the
+    /// servos stand at a pose.
+    #[must_use]
+    pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<Blocked> {
+        let bench = Bench {
+            assembly: self,
+            pose,
+        };
+        let mut found = Vec::new();
+        let mut before: Vec<&Body> = Vec::new();
+        for (number, step) in (1..).zip(steps) {
+            let begin = before.len();
+            for stage in &step.stages {
+                let known = |body: &&Body| before.iter().any(|old| old.name == body.name);
+                let bodies = self.bodies().iter();
+                let new: Vec<_> = bodies
+                    .filter(|body| (stage.adds)(body) && !known(body))
+                    .collect();
+                before.extend(&new);
+                for screw in self.bodies() {
+                    let near = |body: &&&Body| match stage.at {
+                        Where::Robot => true,
+                        Where::Bench => body.mount.servos() == screw.mount.servos(),
+                    };
+                    let from = match stage.at {
+                        Where::Robot => 0,
+                        Where::Bench => begin,
+                    };
+                    let around: Vec<_> = before[from..].iter().filter(near).copied().collect();
+                    let blocked = bench.ask(screw, &new, &around);
+                    found.extend(blocked.into_iter().map(|(act, by)| Blocked {
+                        step: number,
+                        screw: screw.name.clone(),
+                        act,
+                        by,
+                    }));
+                }
+            }
+        }
+        found
+    }
+
+    /// The poses that servos have to be turned to in some steps, so that every screw
+    /// can be reached; none where all can be at neutral.
+    ///
+    /// # Errors
+    /// A screw that cannot be reached at any pose that was tried.
+    pub fn asides(&self, steps: &[Step]) -> Result<Vec<Aside>, Blocked> {
+        let mut asides: Vec<Aside> = Vec::new();
+        let neutral = self.robot().neutral();
+        let Ok(solution) = self.robot().lizard().solve(&neutral) else {
+            return Ok(asides);
+        };
+        let mut left = self.blocked(steps, &solution);
+        if left.is_empty() {
+            return Ok(asides);
+        }
+        for pose in self.poses_near(neutral) {
+            let still = self.blocked(steps, &pose);
+            let reached = |of: &Blocked| {
+                let same = |other: &Blocked| (other.step, &other.screw) == (of.step, &of.screw);
+                !still.iter().any(same)
+            };
+            for blocked in left.extract_if(.., |of| reached(of)) {
+                let angles: [f64; 4] = pose.pose.into();
+                let known = asides
+                    .iter_mut()
+                    .find(|aside| aside.step == blocked.step && aside.pose == angles);
+                match known {
+                    Some(aside) if aside.screws.contains(&blocked.screw) => {}
+                    Some(aside) => aside.screws.push(blocked.screw),
+                    None => asides.push(Aside {
+                        step: blocked.step,
+                        screws: vec![blocked.screw],
+                        pose: angles,
+                    }),
+                }
+            }
+            if left.is_empty() {
+                asides.sort_by_key(|aside| aside.step);
+                return Ok(asides);
+            }
+        }
+        Err(left.swap_remove(0))
+    }
+
+    /// Poses that the guard accepts, with one servo turned from neutral, by less first;
+    /// then others, the nearer first.
+    fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
+        let from: [f64; 4] = neutral.into();
+        let turned =
+            |turn: f64| (0..4).flat_map(move |servo| [turn, -turn].map(|turn| (servo, turn)));
+        let mut poses: Vec<_> = TURNS
+            .into_iter()
+            .flat_map(turned)
+            .filter_map(|(servo, turn)| {
+                let mut angles = from;
+                angles[servo] += turn;
+                self.robot().accepted(angles)
+            })
+            .collect();
+        let away = |solution: &Solution| {
+            let angles: [f64; 4] = solution.pose.into();
+            let turns = angles.iter().zip(from).map(|(a, b)| (a - b).abs());
+            turns.fold(0.0, f64::max)
+        };
+        let mut more: Vec<_> = self.poses(STEPS).collect();
+        more.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        poses.extend(more);
+        poses
+    }
+}

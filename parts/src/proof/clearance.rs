@@ -1,0 +1,135 @@
+//! Which parts come closest to each other, at some poses.
+//!
+//! Two parts meet only where they share a height, so pairs of layers are chosen once by
+//! height, and at each pose their shapes are measured from above. Holes are left out, so
+//! the true distance is never smaller than the one found here.
+
+use std::fmt;
+
+use lizard_kinematics::Solution;
+use serde::{Deserialize, Serialize};
+
+use crate::bodies::assembly::Assembly;
+use crate::layers::shape::Shape;
+
+/// The least distance found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Clearance {
+    /// One body.
+    pub first: String,
+    /// The other.
+    pub second: String,
+    /// Servo angles where it is least, deg, servo order.
+    pub pose: [f64; 4],
+    /// mm; below 0 they overlap.
+    pub mm: f64,
+}
+
+impl fmt::Display for Clearance {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self {
+            first,
+            second,
+            pose: [a, b, c, d],
+            mm,
+        } = self;
+        write!(f, "{first} and {second} ")?;
+        if *mm < 0.0 {
+            write!(f, "overlap by {:.2} mm", -mm)?;
+        } else {
+            write!(f, "are {mm:.2} mm apart")?;
+        }
+        write!(f, " at pose {a:.2} {b:.2} {c:.2} {d:.2}")
+    }
+}
+
+/// One layer's shapes and another's.
+struct Pair<'a> {
+    bodies: [usize; 2],
+    shapes: [&'a [Shape]; 2],
+}
+
+impl Assembly {
+    /// The nearest pairs at some poses, the nearest first, each pair of bodies once;
+    /// those that are `within` mm.
+    #[must_use]
+    pub fn nearest(
+        &self,
+        poses: impl IntoIterator<Item = Solution>,
+        within: f64,
+    ) -> Vec<Clearance> {
+        let bodies = self.bodies();
+        let mut pairs = Vec::new();
+        for (i, a) in bodies.iter().enumerate() {
+            for (j, b) in bodies.iter().enumerate().skip(i + 1) {
+                if self.meet(a, b) {
+                    continue;
+                }
+                for p in &a.prisms {
+                    for q in &b.prisms {
+                        if p.z[0] < q.z[1] && q.z[0] < p.z[1] {
+                            pairs.push(Pair {
+                                bodies: [i, j],
+                                shapes: [&p.add, &q.add],
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        let mut least: std::collections::BTreeMap<[usize; 2], ([f64; 4], f64)> = Default::default();
+        for pose in poses {
+            let places: Vec<_> = bodies
+                .iter()
+                .map(|body| self.place(body.mount, &pose))
+                .collect();
+            for pair in &pairs {
+                let [i, j] = pair.bodies;
+                for a in pair.shapes[0] {
+                    let middle = a.middle();
+                    let reach = a.farthest(middle);
+                    let middle = places[i].map(middle);
+                    for b in pair.shapes[1] {
+                        let other = b.middle();
+                        let more = b.farthest(other);
+                        let apart = (places[j].map(other) - middle).length() - reach - more;
+                        let known = least.get(&pair.bodies).map_or(within, |known| known.1);
+                        if apart >= known {
+                            continue;
+                        }
+                        let mm = a.placed(&places[i]).distance(&b.placed(&places[j]));
+                        if mm < known {
+                            least.insert(pair.bodies, (pose.pose.into(), mm));
+                        }
+                    }
+                }
+            }
+        }
+        let mut found: Vec<_> = least
+            .into_iter()
+            .map(|([i, j], (pose, mm))| Clearance {
+                first: bodies[i].name.clone(),
+                second: bodies[j].name.clone(),
+                pose,
+                mm,
+            })
+            .collect();
+        found.sort_by(|a, b| a.mm.total_cmp(&b.mm));
+        found
+    }
+
+    /// Poses that the guard accepts and the servos reach, on a grid of `steps` angles
+    /// of each servo's travel.
+    pub fn poses(&self, steps: u32) -> impl Iterator<Item = Solution> + '_ {
+        let robot = self.robot();
+        let angle = move |servo: usize, step: u32| {
+            let servo = &robot.servos()[servo];
+            let (low, high) = servo.travel();
+            servo.neutral + low + (high - low) * f64::from(step) / f64::from(steps - 1)
+        };
+        (0..steps.pow(4)).filter_map(move |index| {
+            let digit = |place: u32| index / steps.pow(place) % steps;
+            robot.accepted([0, 1, 2, 3].map(|i| angle(i as usize, digit(i))))
+        })
+    }
+}
