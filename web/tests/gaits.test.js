@@ -72,6 +72,26 @@ test('what would break a limit is refused, and a button has the nearest value th
   await button.waitFor();
 });
 
+test('a number out of its range is marked and not taken, and is gone when it is left', async () => {
+  const page = await opened();
+  const table = await text(page, 'table');
+  for (const [input, wrong, own] of [
+    [page.locator('#gait-amplitude'), '61', '20'],
+    [page.locator('#gait-period'), '0.05', '1'],
+    [page.getByLabel('LF starts at'), '1.5', '0.25'],
+    [page.getByLabel('RH share'), '-3', '1'],
+  ]) {
+    await input.fill(wrong);
+    assert.equal(await input.getAttribute('aria-invalid'), 'true', wrong);
+    await page.keyboard.press('Tab');
+    assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [own, null]);
+  }
+  // Whatever was asked of the worker is answered by now, in its order.
+  await page.locator('#gait-name').fill('other');
+  await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.other]'));
+  assert.equal(await text(page, 'table'), table.replace('mine', 'other'));
+});
+
 test('a gait that is tried walks as far as was predicted, and stands in robot.toml', async () => {
   const page = await opened();
   const before = await text(page, 'way');

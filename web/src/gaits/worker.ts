@@ -1,6 +1,6 @@
-// The other end of Trials: the robot in WebAssembly once more, which tries gaits.
+// The worker behind a gait that is being made: the robot in WebAssembly once more, which tries gaits.
 import { Robot } from '../robot';
-import type { Answer, Question } from './trials';
+import type { Answer, Question } from './question';
 
 let robot: Promise<Robot>;
 /** The robot.toml that was read last. */

@@ -1,7 +1,7 @@
 // The bars and joints of a robot in its neutral pose, and what becomes of the lengths when a joint is dragged. Servos
 // keep their neutral angles: so the end of a crank goes along its crank, and what hangs on it follows.
 import type { Scene, Spot } from '../robot';
-import type { Edits } from './sketches';
+import type { Edits } from './question';
 
 /** A bar between two points: its key in robot.toml. */
 export interface Bar {

@@ -1,6 +1,6 @@
-// The other end of Sketches: the robot in WebAssembly once more, which takes other lengths.
+// The worker behind the drawing of the robot: the robot in WebAssembly once more, which takes other lengths.
 import { type Four, isRefused, type Refused, Robot } from '../robot';
-import type { Answer, Edits, Question } from './sketches';
+import type { Answer, Edits, Question } from './question';
 
 /** Lengths are whole halves of a mm. */
 const HALF = 0.5;

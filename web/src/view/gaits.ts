@@ -2,6 +2,7 @@
 import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { numberInput, putNumber, type Range } from './number';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -18,11 +19,13 @@ const SVG = 'http://www.w3.org/2000/svg';
 type Plain = 'period' | 'duty' | 'amplitude';
 
 /** Ranges of the numbers as robot.toml has them. */
-const NUMBERS: Record<Plain, { min: number; max: number; step: number }> = {
+const NUMBERS: Record<Plain, Range> = {
   period: { min: 0.1, max: 10, step: 0.01 },
   duty: { min: 0.05, max: 0.95, step: 0.005 },
   amplitude: { min: 0.5, max: 60, step: 0.1 },
 };
+/** The same of each leg's numbers. */
+const OF_LEGS = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
 
 const round = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
 const wrapped = (phase: number) => ((phase % 1) + 1) % 1;
@@ -53,9 +56,7 @@ export class GaitsView {
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
     this.held.addEventListener('change', () => this.change({ held: this.held.value === 'held' }));
     for (const plain of Object.keys(NUMBERS) as Plain[]) {
-      const input = element<HTMLInputElement>(`gait-${plain}`);
-      Object.assign(input, Object.fromEntries(Object.entries(NUMBERS[plain]).map(([name, value]) => [name, String(value)])));
-      input.addEventListener('input', () => Number.isFinite(input.valueAsNumber) && this.change({ [plain]: input.valueAsNumber }));
+      numberInput(element(`gait-${plain}`), NUMBERS[plain], (value) => value !== null && this.change({ [plain]: value }));
     }
     LEGS.forEach((_, leg) => this.leg(leg));
     element('gait-mirror').addEventListener('click', () => this.mirror());
@@ -135,9 +136,8 @@ export class GaitsView {
     head.textContent = LEGS[leg] ?? '';
     for (const [key, label, list] of [['start', 'starts at', this.start], ['gain', 'share', this.gain]] as const) {
       const input = row.appendChild(document.createElement('td')).appendChild(document.createElement('input'));
-      Object.assign(input, { type: 'number', step: key === 'start' ? '0.005' : '0.05', min: key === 'start' ? '0' : '-2', max: key === 'start' ? '1' : '2' });
       input.setAttribute('aria-label', `${LEGS[leg]} ${label}`);
-      input.addEventListener('input', () => Number.isFinite(input.valueAsNumber) && this.setLeg(key, leg, input.valueAsNumber));
+      numberInput(input, OF_LEGS[key], (value) => value !== null && this.setLeg(key, leg, value));
       list.push(input);
     }
   }
@@ -169,11 +169,8 @@ export class GaitsView {
   private show(): void {
     const { gait } = this;
     if (!gait) return;
-    const put = (input: HTMLInputElement, value: number) => {
-      // What is being typed is not written over.
-      if (document.activeElement !== input) input.value = String(round(value, 0.001));
-    };
-    for (const plain of Object.keys(NUMBERS) as Plain[]) put(element<HTMLInputElement>(`gait-${plain}`), gait[plain]);
+    const put = (input: HTMLInputElement, value: number) => putNumber(input, round(value, 0.001));
+    for (const plain of Object.keys(NUMBERS) as Plain[]) put(element(`gait-${plain}`), gait[plain]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.name) this.name.value = gait.name;
     this.held.value = gait.held ? 'held' : 'wave';

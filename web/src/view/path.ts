@@ -2,6 +2,7 @@
 import type { Drawn, End, Instead, Room } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { numberInput, putNumber, type Range } from './number';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -26,7 +27,7 @@ const SHAPES: Record<string, (turn: number) => Spot> = {
 };
 
 type Plain = 'period' | 'size' | 'terms';
-const NUMBERS: Record<Plain, { min: number; max: number; step: number }> = {
+const NUMBERS: Record<Plain, Range> = {
   period: { min: 0.2, max: 20, step: 0.1 },
   size: { min: 5, max: 200, step: 1 },
   terms: { min: 1, max: 16, step: 1 },
@@ -64,12 +65,8 @@ export class PathView {
     this.shape.addEventListener('change', () => this.begin());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
     for (const plain of Object.keys(NUMBERS) as Plain[]) {
-      const input = element<HTMLInputElement>(`path-${plain}`);
-      Object.assign(input, Object.fromEntries(Object.entries(NUMBERS[plain]).map(([name, value]) => [name, String(value)])));
-      input.addEventListener('input', () => {
-        const { min, max } = NUMBERS[plain];
-        const value = input.valueAsNumber;
-        if (!(value >= min && value <= max)) return;
+      numberInput(element(`path-${plain}`), NUMBERS[plain], (value) => {
+        if (value === null) return;
         this.change({ [plain]: plain === 'size' ? value / 100 : plain === 'terms' ? Math.round(value) : value });
       });
     }
@@ -157,11 +154,7 @@ export class PathView {
 
   private show(): void {
     const { drawn } = this;
-    const put = (name: Plain, value: number) => {
-      const input = element<HTMLInputElement>(`path-${name}`);
-      // What is being typed is not written over.
-      if (document.activeElement !== input) input.value = String(Number(value.toFixed(2)));
-    };
+    const put = (name: Plain, value: number) => putNumber(element(`path-${name}`), Number(value.toFixed(2)));
     put('period', drawn.period);
     put('size', drawn.size * 100);
     put('terms', drawn.terms);

@@ -1,8 +1,9 @@
 // The drawing of the robot on which joints are dragged: lengths follow, and what cannot walk is refused while one drags.
+import { Latest } from '../latest';
 import type { Length, Scene, Spot } from '../robot';
 import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
-import { type Answer, type Edits, Sketches } from '../sketch/sketches';
+import type { Answer, Edits, Question } from '../sketch/question';
 import { element } from './canvas';
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -18,7 +19,7 @@ export class Sketch {
   private readonly alike = element<HTMLInputElement>('alike');
   private readonly drawnBars = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
-  private sketches: Sketches | null = null;
+  private sketches: Latest<Question, Answer> | null = null;
   private toml = '';
   /** What is dragged: the joint as it was when it was taken. */
   private held: Joint | null = null;
@@ -39,7 +40,7 @@ export class Sketch {
     if (toml === this.toml) return;
     this.toml = toml;
     this.held = null;
-    this.sketches ??= new Sketches(this.module, (answer) => this.answered(answer));
+    this.sketches ??= new Latest(new Worker(new URL('../sketch/worker.ts', import.meta.url), { type: 'module' }), this.module, (answer) => this.answered(answer));
     this.sketches.ask({ toml, edits: [], isLast: false });
   }
 

@@ -1,6 +1,7 @@
 // What becomes of a gait that is being made: its numbers, what would do in its place, and the buttons that use it.
-import { Trials } from '../gaits/trials';
+import type { Answer, Question } from '../gaits/question';
 import { takeGait, tryGait } from '../gaits/try';
+import { Latest } from '../latest';
 import { type Instead, isRefused, type Made, type NoTrial, type Trial } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -25,7 +26,7 @@ const OFFERS: Record<Instead, (value: number) => string> = {
 };
 
 export class TrialView {
-  private trials: Trials | null = null;
+  private trials: Latest<Question, Answer> | null = null;
   private trial: Trial | null = null;
 
   constructor(
@@ -45,7 +46,7 @@ export class TrialView {
     const { toml, floor, servos } = this.session();
     const made = this.maker.made();
     if (!made || toml === '') return;
-    this.trials ??= new Trials(this.module, ({ made, trial }) => this.answered(made, trial));
+    this.trials ??= new Latest(new Worker(new URL('../gaits/worker.ts', import.meta.url), { type: 'module' }), this.module, ({ made, trial }: Answer) => this.answered(made, trial));
     this.trials.ask({ toml, floor, servos, made });
   }
 
