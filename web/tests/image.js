@@ -1,23 +1,12 @@
 // Images of robots as the page makes them, made here from the files that it is served with.
-import { readFile } from 'node:fs/promises';
-
 import { load } from '../../judge/src/hex.js';
-import { DIST } from './browser.js';
-
-const file = (name, encoding) => readFile(new URL(`files/${name}`, `file://${DIST}`), encoding);
+import { file, robot } from './wasm.js';
 
 /** What flash begins with for the robot of a file of the page. */
 export async function imageOf(name) {
-  const { instance } = await WebAssembly.instantiate(await file('lizard.wasm'), {});
-  const { memory, lizard_input, lizard_read, lizard_section, lizard_output, lizard_output_length } = instance.exports;
-  const said = () => new Uint8Array(memory.buffer, lizard_output(), lizard_output_length()).slice();
-  const toml = await file(`${name}.toml`);
-  const at = lizard_input(toml.length);
-  new Uint8Array(memory.buffer).set(toml, at);
-  lizard_read();
-  const { start } = JSON.parse(new TextDecoder().decode(said()));
-  lizard_section();
-  const section = said();
+  const { call, said } = await robot();
+  const { start } = said('lizard_read', await file(`${name}.toml`, 'utf8'));
+  const section = call('lizard_section');
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   load(await file('code.hex', 'utf8'), flash);
   flash.set(section, start);
