@@ -203,6 +203,30 @@ export interface Trial extends Outlook {
   servo: string;
   /** deg/s */
   speed: number;
+  /** s */
+  period: number;
+}
+
+/** What is wanted of a search for a faster gait. */
+export interface Wish {
+  /** The gait that is to be surpassed. */
+  bars: Bars;
+  /** How fast a servo may turn, deg/s; null for as fast as in that gait. */
+  rate: number | null;
+  /** As `lizard tune --rounds` and `--seed` have them. */
+  rounds: number;
+  seed: number;
+}
+
+/** A gait that was found, beside the one that was to be surpassed. */
+export interface Found {
+  bars: Bars;
+  /** On random robots and floors that the search has not seen. */
+  comparison: { unit: string; rate: number; robots: number; faster: number };
+  /** Whether it surpasses the other one. */
+  better: boolean;
+  /** By what share, where 5 % of the robots are slower. */
+  gain: number;
 }
 
 /** A gait whose head or tail goes round a line that was drawn. */
@@ -261,6 +285,9 @@ interface Exports {
   lizard_map(end: number): void;
   lizard_bars(gait: number): void;
   lizard_trial(): void;
+  lizard_faster(): void;
+  lizard_faster_step(): void;
+  lizard_faster_found(robots: number): void;
   lizard_put_gait(): void;
   lizard_trial_drawn(): void;
   lizard_put_drawn(): void;
@@ -383,6 +410,25 @@ export class Robot {
     this.give(`${JSON.stringify(made)}\n${toml}`);
     if ('points' in made) this.wasm.lizard_trial_drawn();
     else this.wasm.lizard_trial();
+    return this.answer();
+  }
+
+  /** Begins to search a faster gait for the robot of a robot.toml that was read: how many it will try, at which deg/s. */
+  makeFaster(toml: string, wish: Wish): { all: number; rate: number } | Refused {
+    this.give(`${JSON.stringify(wish)}\n${toml}`);
+    this.wasm.lizard_faster();
+    return this.answer();
+  }
+
+  /** Tries one more gait; `best` is the score of the best so far. */
+  fasterStep(): { done: number; best: number | null } {
+    this.wasm.lizard_faster_step();
+    return this.answer();
+  }
+
+  /** The best so far, compared on so many random robots; null as long as no gait was one that the limits allow. */
+  fasterFound(robots: number): Found | null {
+    this.wasm.lizard_faster_found(robots);
     return this.answer();
   }
 

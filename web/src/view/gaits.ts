@@ -2,6 +2,7 @@
 import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { FasterView } from './faster';
 import { numberInput, putNumber, type Range } from './number';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
@@ -41,6 +42,7 @@ export class GaitsView {
   private readonly bars: SVGPathElement[] = [];
   private readonly ends: SVGCircleElement[] = [];
   private readonly trial: TrialView;
+  private readonly faster: FasterView;
   private gait: Bars | null = null;
   private toml = '';
 
@@ -51,6 +53,7 @@ export class GaitsView {
     writer: Writer,
   ) {
     this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (what, value) => this.change({ [what]: value }) });
+    this.faster = new FasterView(module, session, { gait: () => this.gait, take: (gait) => this.change(gait) });
     this.panel.addEventListener('toggle', () => this.take());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
@@ -65,6 +68,7 @@ export class GaitsView {
 
   /** Takes the session's robot, if the panel is open; a gait that is being made stays. */
   take(): void {
+    this.faster.follow();
     if (!this.panel.open) return;
     const { description, toml } = this.session();
     if (toml === this.toml) return;

@@ -19,6 +19,19 @@ export interface Maker {
 
 const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
+/** What a gait comes to, as it is written; the speed as its unit has it, deg/s for a turn on the spot. */
+export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
+  const [way, sign] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
+  return {
+    way: number(forward, ' mm'),
+    speed: way === null ? '–' : number(way / period, sign),
+    turn: number(turn, '°'),
+    least: `${least.toFixed(3)} of ${limit} (${margin.replaceAll('_', ' ')})`,
+    fastest: `${servo}, ${speed.toFixed(0)} °/s`,
+    cycle: `${period} s`,
+  };
+}
+
 const OFFERS: Record<Instead, (value: number) => string> = {
   amplitude: (value) => `Amplitude ${value}° would do`,
   size: (value) => `A size of ${(100 * value).toFixed(0)} % would do`,
@@ -46,7 +59,7 @@ export class TrialView {
     const { toml, floor, servos } = this.session();
     const made = this.maker.made();
     if (!made || toml === '') return;
-    this.trials ??= new Latest(new Worker(new URL('../gaits/worker.ts', import.meta.url), { type: 'module' }), this.module, ({ made, trial }: Answer) => this.answered(made, trial));
+    this.trials ??= new Latest(new Worker(new URL('../gaits/worker.ts', import.meta.url), { type: 'module' }), this.module, ({ trial }: Answer) => this.answered(trial));
     this.trials.ask({ toml, floor, servos, made });
   }
 
@@ -58,17 +71,14 @@ export class TrialView {
     return element<E>(`${this.maker.prefix}-${name}`);
   }
 
-  private answered(made: Made, trial: Trial | NoTrial | null): void {
+  private answered(trial: Trial | NoTrial | null): void {
     const refused = trial && isRefused(trial) ? trial : null;
     const well = trial && !isRefused(trial) ? trial : null;
     this.trial = well;
     for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !well;
     const put = (name: string, text: string) => (this.element(name).textContent = text);
-    put('way', well ? number(well.forward, ' mm') : '–');
-    put('speed', well?.forward != null ? number(well.forward / made.period, ' mm/s') : '–');
-    put('turn', well ? number(well.turn, '°') : '–');
-    put('least', well ? `${well.least.toFixed(3)} of ${well.limit} (${well.margin.replaceAll('_', ' ')})` : '–');
-    put('fastest', well ? `${well.servo}, ${well.speed.toFixed(0)} °/s` : '–');
+    const known = well && figures(well);
+    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) put(name, known?.[name] ?? '–');
     put('table', well?.table ?? '');
     this.element('no').hidden = refused === null;
     put('refusal', refused?.refused ?? '');

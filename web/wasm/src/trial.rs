@@ -173,6 +173,8 @@ pub struct Trial {
     pub servo: &'static str,
     /// How fast, deg/s.
     pub speed: f64,
+    /// Its cycle, s.
+    pub period: f64,
 }
 
 /// A value that would do in place of the one that was wanted.
@@ -284,6 +286,7 @@ pub(crate) fn tried(rest: &str, table: &str, twin: &Twin) -> Result<Trial, Refus
         limit,
         servo: NAMES[audit.peak.servo],
         speed: audit.peak.speed,
+        period: gait.period(),
     })
 }
 

@@ -1,0 +1,49 @@
+// The other end of FasterSearch: the robot in WebAssembly once more, which searches gait by gait.
+import { isRefused, Robot, type Trial } from '../robot';
+import { sentence } from '../trouble';
+import type { Answer, Best, Question } from './faster';
+
+/** Gaits after which the best so far is looked at: a population of the search. */
+const LOOK = 20;
+/** Random robots for a look, and for the end; the end has as many as `lizard tune`. */
+const ROBOTS = { look: 20, end: 200 };
+
+let isStopped = false;
+
+const say = (answer: Answer) => postMessage(answer);
+/** What has come meanwhile is heard. */
+const turn = () => new Promise((next) => setTimeout(next));
+
+addEventListener('message', ({ data }: MessageEvent<Question | 'stop'>) => {
+  if (data === 'stop') isStopped = true;
+  else void search(data).catch((error: unknown) => say({ of: 'end', refused: sentence(error) }));
+});
+
+async function search({ module, toml, floor, servos, wish }: Question): Promise<void> {
+  const page = await Robot.load(module);
+  page.read(toml);
+  page.setFloor(floor);
+  page.setServos(servos);
+  const begun = page.makeFaster(toml, wish);
+  if (isRefused(begun)) return say({ of: 'end', refused: begun.refused });
+  say({ of: 'begun', ...begun, before: page.trial(toml, wish.bars) as Trial });
+  const best = (robots: number): Best | null => {
+    const found = page.fasterFound(robots);
+    // What the search has found is within the robot's limits.
+    return found && { ...found, trial: page.trial(toml, found.bars) as Trial };
+  };
+  let shown = -Infinity;
+  let done = 0;
+  while (done < begun.all) {
+    await turn();
+    if (isStopped) break;
+    const tried = page.fasterStep();
+    done = tried.done;
+    say({ of: 'tried', done });
+    if (done % LOOK !== 0 || done === begun.all || tried.best === null || tried.best <= shown) continue;
+    shown = tried.best;
+    const now = best(ROBOTS.look);
+    if (now) say({ of: 'best', best: now });
+  }
+  say({ of: 'end', best: best(ROBOTS.end), done });
+}

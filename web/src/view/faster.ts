@@ -1,0 +1,147 @@
+// "Make it faster": searches a gait that walks faster than the one that is being made, which a person can then take.
+import { type Answer, type Best, FasterSearch } from '../gaits/faster';
+import type { Bars, Trial } from '../robot';
+import type { Session } from '../session';
+import { element } from './canvas';
+import { numberInput } from './number';
+import { figures } from './trial';
+
+/** The gait on the screen. */
+export interface Edited {
+  gait(): Bars | null;
+  take(gait: Bars): void;
+}
+
+const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Take this gait', back: 'Back to the gait before' };
+/** The rows of the comparison. */
+const ROWS = { speed: 'speed', way: 'way of a cycle', turn: 'turn of a cycle', least: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
+
+export class FasterView {
+  private readonly start = element<HTMLButtonElement>('faster-start');
+  private readonly takeIt = element<HTMLButtonElement>('faster-take');
+  private readonly bar = element<HTMLProgressElement>('faster-progress');
+  private readonly said = element('faster-said');
+  private readonly result = element('faster-result');
+  private readonly numbers = { rate: null as number | null, rounds: 5, seed: 1 };
+  private search: FasterSearch | null = null;
+  private before: Trial | null = null;
+  private best: Best | null = null;
+  /** The gait that the found one has taken the place of. */
+  private replaced: Bars | null = null;
+  private toml = '';
+  private all = 0;
+
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly session: () => Session,
+    private readonly edited: Edited,
+  ) {
+    const { numbers } = this;
+    numberInput(element('faster-rate'), { min: 10, max: 1000, step: 1 }, (value) => (numbers.rate = value));
+    numberInput(element('faster-rounds'), { min: 1, max: 200, step: 1 }, (value) => (numbers.rounds = Math.round(value ?? 5)));
+    numberInput(element('faster-seed'), { min: 0, max: 1e9, step: 1 }, (value) => (numbers.seed = Math.round(value ?? 1)));
+    this.start.addEventListener('click', () => (this.search ? this.search.stop() : this.begin()));
+    this.takeIt.addEventListener('click', () => this.take());
+  }
+
+  /** Looks whether the robot is another one: then what was searched for the one of before is of no use. */
+  follow(): void {
+    if (this.toml === '' || this.session().toml === this.toml) return;
+    this.toml = '';
+    this.result.hidden = true;
+    if (!this.search) return this.say('');
+    this.search.drop();
+    this.over();
+    this.say('The robot has changed, so the search for the one of before has ended.');
+  }
+
+  private begin(): void {
+    const bars = this.edited.gait();
+    if (!bars) return this.say('There is no gait to begin with.');
+    const { toml, floor, servos } = this.session();
+    this.toml = toml;
+    this.before = this.best = null;
+    this.result.hidden = true;
+    this.start.textContent = WORDS.stop;
+    this.bar.removeAttribute('value');
+    this.bar.hidden = false;
+    this.say('Looking for the widest stride that the limits allow…');
+    this.search = new FasterSearch({ module: this.module, toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.heard(answer));
+  }
+
+  private heard(answer: Answer): void {
+    switch (answer.of) {
+      case 'begun':
+        this.before = answer.before;
+        this.all = this.bar.max = answer.all;
+        this.bar.value = 0;
+        return this.say(`Trying ${answer.all} gaits whose servos turn at most ${answer.rate.toFixed(0)} °/s…`);
+      case 'tried':
+        this.bar.value = answer.done;
+        return;
+      case 'best':
+        if (answer.best.better) this.show(answer.best);
+        return this.say(answer.best.better ? `So far ${percent(answer.best)} faster.` : 'None of the gaits so far is faster.');
+      case 'end':
+        this.ended(answer);
+    }
+  }
+
+  private ended(answer: Answer & { of: 'end' }): void {
+    this.over();
+    if ('refused' in answer) return this.say(`This gait cannot be made faster: ${answer.refused}.`);
+    const { best, done } = answer;
+    const tried = done < this.all ? `Stopped after ${done} of ${this.all} gaits. ` : '';
+    if (best?.better) {
+      this.show(best);
+      const { comparison } = best;
+      return this.say(`${tried}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors, and ${percent(best)} faster where only 5 % are slower. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
+    }
+    this.result.hidden = true;
+    if (done === 0) return this.say(`${tried}Nothing was tried yet.`);
+    this.say(`${tried}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
+  }
+
+  /** The search is over: the button begins another one. */
+  private over(): void {
+    this.search = null;
+    this.bar.hidden = true;
+    this.start.textContent = WORDS.start;
+  }
+
+  private show(best: Best): void {
+    const { before } = this;
+    if (!before) return;
+    this.best = best;
+    const columns = [before, best.trial].map((trial) => figures(trial, best.comparison.unit));
+    element('faster-rows').replaceChildren(
+      ...Object.entries(ROWS).map(([row, words]) => {
+        const line = document.createElement('tr');
+        const head = line.appendChild(document.createElement('th'));
+        head.scope = 'row';
+        head.textContent = words;
+        for (const column of columns) line.appendChild(document.createElement('td')).textContent = column[row as keyof typeof ROWS];
+        return line;
+      }),
+    );
+    this.replaced = null;
+    this.takeIt.textContent = WORDS.take;
+    this.result.hidden = false;
+  }
+
+  /** Puts the gait that was found on the screen, or the one of before back. */
+  private take(): void {
+    const now = this.edited.gait();
+    if (!now || !this.best) return;
+    const next = this.replaced ?? this.best.bars;
+    this.replaced = this.replaced ? null : now;
+    this.takeIt.textContent = this.replaced ? WORDS.back : WORDS.take;
+    this.edited.take({ ...next, name: now.name });
+  }
+
+  private say(text: string): void {
+    if (this.said.textContent !== text) this.said.textContent = text;
+  }
+}
+
+const percent = ({ gain }: Best) => `${(100 * gain).toFixed(0)} %`;

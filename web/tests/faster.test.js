@@ -1,0 +1,151 @@
+// "Make it faster": the page finds the gait that `lizard tune` finds, can be stopped, and says what cannot be.
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { createRequire } from 'node:module';
+import { join, resolve } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { promisify } from 'node:util';
+
+import { advance, close, complaints, open, standing, tidy, within } from './browser.js';
+
+const ROOT = new URL('../../', import.meta.url).pathname;
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const text = (page, id) => page.locator(`#${id}`).innerText();
+const predicted = (page) => page.waitForFunction(() => /mm$|undecided/.test(document.querySelector('#gait-way').textContent));
+
+/** The gait editor with a gait of the robot in it, and a search of so many rounds set. */
+async function opened({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
+  const page = await standing(options);
+  await page.locator('#gait-editor summary').click();
+  await predicted(page);
+  await page.locator('#gait-from').selectOption({ label: gait });
+  await page.getByLabel('Servos at most').fill(String(rate));
+  await page.getByLabel('Rounds of 40 gaits').fill(String(rounds));
+  await page.getByLabel('Seed of the random numbers').fill(String(seed));
+  return page;
+}
+
+const start = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
+const ended = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
+/** Waits until so many gaits have been tried. */
+const tried = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
+
+test('it finds the gait that lizard tune finds with the same seed, which is tried and undone', async () => {
+  const page = await opened();
+  const words = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
+  const [{ stdout }] = await Promise.all([
+    within('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), words)),
+    start(page).then(() => ended(page)),
+  ]);
+  const known = JSON.parse(stdout);
+  const gain = Math.round(100 * (known.tuned.speeds[0] / known.gait.speeds[0] - 1));
+  assert.equal(
+    await text(page, 'faster-said'),
+    `Faster on ${known.faster} of 200 random robots and floors, and ${gain} % faster where only 5 % are slower. No servo turns faster than ${known.rate.toFixed(0)} °/s.`,
+  );
+  const before = await text(page, 'gait-table');
+  const way = await text(page, 'gait-way');
+  const rows = () => page.locator('#faster-rows tr').allInnerTexts();
+  const [, ways] = (await rows()).map((row) => row.split('\t'));
+  assert.deepEqual(ways.slice(0, 2), ['way of a cycle', way]);
+  await page.getByRole('button', { name: 'Take this gait' }).click();
+  await page.waitForFunction((before) => document.querySelector('#gait-table').textContent !== before, before);
+  assert.equal(await text(page, 'gait-table'), known.fragment);
+  assert.equal(await text(page, 'gait-way'), ways[2]);
+  // Back, and again.
+  await page.getByRole('button', { name: 'Back to the gait before' }).click();
+  await page.waitForFunction((before) => document.querySelector('#gait-table').textContent === before, before);
+  await page.getByRole('button', { name: 'Take this gait' }).click();
+  await page.waitForFunction((fragment) => document.querySelector('#gait-table').textContent === fragment, known.fragment);
+  await page.locator('#gait-try').click();
+  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
+  await advance(page, 3000);
+  await page.waitForFunction(() => window.lizard.gait === 'mine');
+  assert.ok((await page.evaluate(() => window.lizard.toml)).includes(known.fragment));
+  await page.locator('#robot-editor summary').click();
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => !window.lizard.toml.includes('[gait.mine]'));
+});
+
+test('stopped midway it has the best so far, and the page can search again', async () => {
+  const page = await opened({ rounds: 200 });
+  await start(page);
+  await tried(page, 21);
+  await page.getByRole('button', { name: 'Stop the search' }).click();
+  await ended(page);
+  const said = await text(page, 'faster-said');
+  const [, done] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(said) ?? assert.fail(said);
+  assert.ok(Number(done) >= 21 && Number(done) < 8040, said);
+  assert.ok(await page.locator('#faster-progress').isHidden());
+  await page.getByRole('button', { name: 'Take this gait' }).click();
+  await page.waitForFunction(() => Number(document.querySelector('#gait-amplitude').value) > 20);
+  // From the gait that was taken.
+  await start(page);
+  await tried(page, 1);
+  assert.ok(await page.locator('#faster-result').isHidden());
+  await page.getByRole('button', { name: 'Stop the search' }).click();
+  await ended(page);
+});
+
+test('a robot that is changed midway ends the search of the one of before', async () => {
+  const page = await opened({ rounds: 200 });
+  await start(page);
+  await tried(page, 1);
+  await page.locator('.lengths summary').click();
+  await page.locator('#lengths input[name="links.l12"]').fill('46');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
+  await ended(page);
+  assert.equal(await text(page, 'faster-said'), 'The robot has changed, so the search for the one of before has ended.');
+  assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
+});
+
+test('a gait that cannot be made faster says so', async () => {
+  // So slow a servo has no time for a better stride than the one that `left` has.
+  const page = await opened({ gait: 'left', rate: 200, seed: 1 });
+  await start(page);
+  await ended(page);
+  assert.equal(await text(page, 'faster-said'), 'No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.');
+  assert.ok(await page.locator('#faster-result').isHidden());
+});
+
+test('what cannot be searched is refused in a sentence, and a number out of range is not taken', async () => {
+  const page = await opened({ gait: 'arc-left' });
+  await start(page);
+  await ended(page);
+  assert.match(await text(page, 'faster-said'), /^This gait cannot be made faster: the gait `mine` goes ahead and turns; /);
+  await page.locator('#gait-from').selectOption({ label: 'walk' });
+  const rate = page.getByLabel('Servos at most');
+  await rate.fill('900');
+  await start(page);
+  await page.waitForFunction(() => document.querySelector('#faster-said').textContent.includes('900'));
+  assert.equal(await text(page, 'faster-said'), 'This gait cannot be made faster: servos of at most 900: from 10 to 310 deg/s, which is limits.gait_slew in robot.toml.');
+  await rate.fill('5');
+  assert.equal(await rate.getAttribute('aria-invalid'), 'true');
+  await page.keyboard.press('Tab');
+  assert.equal(await rate.inputValue(), '900', 'the last one that was taken');
+});
+
+test('it is used by the keyboard alone, fits a phone, and axe-core finds nothing in what it shows', async () => {
+  const page = await opened({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
+  await page.getByLabel('Seed of the random numbers').focus();
+  await page.keyboard.press('Tab');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start');
+  await page.keyboard.press('Enter');
+  await page.locator('#faster-result').waitFor();
+  const { wide, seen } = await page.evaluate(() => ({ wide: document.documentElement.scrollWidth, seen: document.documentElement.clientWidth }));
+  assert.ok(wide <= seen, `${wide} of ${seen} pixels`);
+  await page.addScriptTag({ path: createRequire(import.meta.url).resolve('axe-core/axe.min.js') });
+  const { violations } = await page.evaluate(() => window.axe.run('.faster', { resultTypes: ['violations'] }));
+  assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`), []);
+  await page.keyboard.press('Enter');
+  await ended(page);
+  assert.match(await text(page, 'faster-said'), /^Stopped after /);
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start', 'the focus stays');
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
