@@ -17,10 +17,12 @@ export function banner(line: string): Banner | null {
 
 export interface Status {
   gait: string;
-  pose: Four<number>;
+  /** Null without a robot in the flash. */
+  pose: Four<number> | null;
   /** Since its reset. */
   frames: number;
-  margin: number;
+  /** Null without a robot in the flash. */
+  margin: number | null;
   guard: string;
   fault: string;
   late: number;
@@ -41,13 +43,13 @@ export function status(line: string): Status | null {
   if (!line.startsWith('ok gait=')) return null;
   const pairs = new Map(line.slice(3).split(' ').map((pair) => pair.split('=') as [string, string]));
   const pose = four(pairs.get('pose'));
-  if (!pose) return null;
+  if (!pose && pairs.get('fault') !== 'robot') return null;
   const number = (key: string): number | null => (pairs.has(key) ? parseFloat(pairs.get(key)!) : null);
   return {
     gait: pairs.get('gait') ?? '',
     pose,
     frames: number('frames') ?? 0,
-    margin: number('margin') ?? 0,
+    margin: number('margin'),
     guard: pairs.get('guard') ?? '',
     fault: pairs.get('fault') ?? 'none',
     late: number('late') ?? 0,

@@ -65,7 +65,13 @@ where
             digits::ascii(out, line.text().iter().copied())?;
         }
         Answer::Status => {
-            status(out, control.motion())?;
+            // No robot has no pose and no margin, and nothing moves it.
+            if control.motion().robot().is_none() {
+                Text::OkGait.print(out)?;
+                Text::Rest.print(out)?;
+            } else {
+                status(out, control.motion())?;
+            }
             return Ok(Some(Answer::Health));
         }
         Answer::Health => health(out, control, counters)?,
@@ -160,7 +166,12 @@ where
     Text::StatusReset.print(out)?;
     control.cause().word().print(out)?;
     digits::count(out, Text::StatusResets, control.restarts().into())?;
-    let supplies = control.motion().robot().supplies();
+    let robot = control.motion().robot();
+    // Only a robot says by which reference a voltage is to be computed.
+    if robot.is_none() {
+        return Ok(());
+    }
+    let supplies = robot.supplies();
     let reading = control.safety().supply().reading();
     let board = Voltage::of_board(reading, &supplies);
     digits::field(out, Text::StatusVcc, board.hundredths())?;

@@ -1,16 +1,19 @@
 //! The answer to `status`, read and shortened to what fits in a line of a terminal.
 
+/// The fault of a board without a usable robot in its flash.
+const NO_ROBOT: &str = "robot";
+
 /// The state that a robot reports.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
     /// A gait with dashes for blanks, or pose, stop, rest.
     pub gait: String,
-    /// Servo angles, degrees, chassis frame.
-    pub pose: [f64; 4],
+    /// Servo angles, degrees, chassis frame; none without a robot in the flash.
+    pub pose: Option<[f64; 4]>,
     /// Frames since power-on.
     pub frames: u64,
-    /// The smallest margin.
-    pub margin: f64,
+    /// The smallest margin; none without a robot in the flash.
+    pub margin: Option<f64>,
     /// Whether the guard holds the robot.
     pub held: bool,
     /// The fault's name, if there is one.
@@ -39,11 +42,17 @@ impl Status {
                 .map(|(_, value)| value)
         };
         let volts = |key: &str| value(key)?.parse().ok();
+        let pose = value("pose").and_then(angles);
+        let margin = volts("margin");
+        let is_whole = pose.is_some() && margin.is_some();
+        if !is_whole && value("fault") != Some(NO_ROBOT) {
+            return None;
+        }
         Some(Self {
             gait: value("gait")?.to_owned(),
-            pose: angles(value("pose")?)?,
+            pose,
             frames: value("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
-            margin: value("margin")?.parse().ok()?,
+            margin,
             held: value("guard") == Some("held"),
             fault: value("fault")
                 .filter(|name| *name != "none")
@@ -64,11 +73,13 @@ impl Status {
     /// The line at the bottom of the console.
     #[must_use]
     pub fn line(&self) -> String {
-        let [a1, a2, a3, a4] = self.pose;
-        let mut line = format!(
-            "{}  A1..A4 {a1:.1} {a2:.1} {a3:.1} {a4:.1}  margin {:.2}",
-            self.gait, self.margin
-        );
+        let mut line = self.gait.clone();
+        if let Some([a1, a2, a3, a4]) = self.pose {
+            line += &format!("  A1..A4 {a1:.1} {a2:.1} {a3:.1} {a4:.1}");
+        }
+        if let Some(margin) = self.margin {
+            line += &format!("  margin {margin:.2}");
+        }
         if let Some(vcc) = self.vcc {
             line += &format!("  {vcc:.2} V");
         }
@@ -123,6 +134,14 @@ mod tests {
         let held = WALKS.replace("clear", "held");
         let line = Status::parse(&held).expect("it is a status").line();
         assert!(line.contains("HELD by the guard"), "{line}");
+    }
+
+    #[test]
+    fn a_board_without_a_robot_has_no_pose_and_says_why() {
+        let line = "ok gait=rest fault=robot reset=power resets=0";
+        let status = Status::parse(line).expect("it is a status");
+        assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
+        assert_eq!(status.line(), "rest  FAULT robot");
     }
 
     #[test]

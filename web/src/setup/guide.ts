@@ -262,11 +262,12 @@ async function settle(session: Session, wanted: Four<number> | null = null): Pro
   for (let waited = 0; ; waited += LOOK) {
     const answer = await session.ask(WORDS.status, true);
     const now = answer && status(answer.text);
-    if (!now || session.link !== link) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
-    const pose = now.pose.join();
+    const here = now?.pose;
+    if (!now || !here || session.link !== link) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
+    const pose = here.join();
     if (still?.pose !== pose) still = { frames: now.frames, pose };
-    else if (now.frames - still.frames >= STILL && isThere(now.pose)) return now.pose;
-    if (waited >= MOTION) return now.pose;
+    else if (now.frames - still.frames >= STILL && isThere(here)) return here;
+    if (waited >= MOTION) return here;
     await link.wait(LOOK);
   }
 }

@@ -36,7 +36,7 @@ export class Health {
     const shown: Record<string, string> = {
       fault: status.fault,
       guard: status.guard,
-      margin: status.margin.toFixed(3),
+      margin: status.margin === null ? '–' : status.margin.toFixed(3),
       vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
       'late edges': String(status.late),
       'bytes lost': String(status.lost),

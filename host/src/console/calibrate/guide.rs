@@ -566,19 +566,20 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let mut last: Option<Status> = None;
     loop {
         let reply = link.tell("status")?;
-        let Some(now) = Status::parse(&reply.answer) else {
+        let now = Status::parse(&reply.answer);
+        let Some((now, pose)) = now.and_then(|now| now.pose.map(|pose| (now, pose))) else {
             return Err(LinkError::Unclear {
                 line: "status".to_owned(),
                 answer: reply.answer,
             });
         };
-        let (frames, pose) = (now.frames, now.pose);
+        let frames = now.frames;
         let since = last
             .as_ref()
             .and_then(|last| frames.checked_sub(last.frames));
         match since {
             Some(0..STILL) if Instant::now() < end => {}
-            Some(_) if last.is_some_and(|last| last.pose == pose) => return Ok(pose),
+            Some(_) if last.is_some_and(|last| last.pose == Some(pose)) => return Ok(pose),
             _ if Instant::now() >= end => return Ok(pose),
             _ => last = Some(now),
         }

@@ -35,11 +35,11 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
             _ => None,
         })
         .collect();
-    let least = statuses
+    let margins = statuses
         .iter()
-        .min_by(|a, b| a.1.margin.total_cmp(&b.1.margin));
-    if let Some((ms, status)) = least {
-        let (margin, seconds) = (status.margin, *ms as f64 / 1000.0);
+        .filter_map(|(ms, status)| Some((ms, status.margin?)));
+    if let Some((ms, margin)) = margins.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        let seconds = *ms as f64 / 1000.0;
         writeln!(
             out,
             "margin      smallest {margin:.3}, at {seconds:.1} s, of {} looks",
