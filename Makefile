@@ -228,7 +228,7 @@ TESTS ?= --workspace
 # Also what is not committed, so that it can be tried before.
 .package:
 	@rm -f host/target/package/*.crate
-	@cd host && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics
+	@cd host && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
 	@cd host && for package in target/package/*.crate; do echo "$$package"; done
 
 # The code is the same for every robot: see firmware/README.md.

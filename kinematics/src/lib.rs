@@ -9,34 +9,36 @@
 //! # Where the joints are, and back
 //!
 //! ```
-//! use lizard_kinematics::{End, Leg, Lizard, Vector};
+//! use lizard_kinematics::{End, Infeasible, Leg, Lizard, Vector};
 //!
-//! // The paper's robot: l0 to l19 in mm, then the parallelogram of a leg.
-//! let (crank, coupler, arm, body) = (30.0, 50.0, 45.0, 135.0);
-//! let head = [20.0, crank, coupler, coupler, crank];
-//! let side = [body, crank, arm, arm, crank];
-//! let links: [f64; 20] = [head, head, side, side].concat().try_into().unwrap();
-//! let leg = Leg { ground: 50.0, crank: 45.0, coupler: 50.0, follower: 45.0 };
-//! let lizard = Lizard { links: links.into(), leg };
+//! fn main() -> Result<(), Infeasible> {
+//!     // The paper's robot: l0 to l19 in mm, then the parallelogram of a leg.
+//!     let (crank, coupler, arm, body) = (30.0, 50.0, 45.0, 135.0);
+//!     let head = [20.0, crank, coupler, coupler, crank];
+//!     let side = [body, crank, arm, arm, crank];
+//!     let links: [f64; 20] = [head, head, side, side].concat().try_into().unwrap();
+//!     let leg = Leg { ground: 50.0, crank: 45.0, coupler: 50.0, follower: 45.0 };
+//!     let lizard = Lizard { links: links.into(), leg };
 //!
-//! // Forward: four servo angles, degrees, A1 to A4.
-//! let solution = lizard.solve(&[130.0, 45.0, 320.0, 222.0].into())?;
-//! let point = solution.head_point();
-//! println!("head at {:.2}, {:.2} mm; left slider at {:.2} mm", point.x, point.y, solution.left.s);
+//!     // Forward: four servo angles, degrees, A1 to A4.
+//!     let solution = lizard.solve(&[130.0, 45.0, 320.0, 222.0].into())?;
+//!     let point = solution.head_point();
+//!     println!("head at {:.2}, {:.2} mm; left slider at {:.2} mm", point.x, point.y, solution.left.s);
 //!
-//! // How far it is from a singularity: 1 is the farthest, 0 is there.
-//! let (check, margin) = solution.margins.min();
-//! assert!(margin > 0.3, "{check} has only {margin}");
+//!     // How far it is from a singularity: 1 is the farthest, 0 is there.
+//!     let (check, margin) = solution.margins.min();
+//!     assert!(margin > 0.3, "{check} has only {margin}");
 //!
-//! // Back, in the head's own frame: the two servo angles that put its point there.
-//! let [theta1, theta4] = lizard.point_angles(End::Head, lizard.to_end(End::Head, point))?;
-//! assert!((theta1 - 130.0).abs() < 1e-9 && (theta4 - 45.0).abs() < 1e-9);
+//!     // Back, in the head's own frame: the two servo angles that put its point there.
+//!     let [theta1, theta4] = lizard.point_angles(End::Head, lizard.to_end(End::Head, point))?;
+//!     assert!((theta1 - 130.0).abs() < 1e-9 && (theta4 - 45.0).abs() < 1e-9);
 //!
-//! // What no linkage can do is an error that names the place.
-//! let error = lizard.point_angles(End::Head, Vector::new(0.0, 500.0)).unwrap_err();
-//! let sentence = "head: the point is 500.100 mm from the left shaft, which reaches 20.000 to 80.000 mm";
-//! assert_eq!(error.to_string(), sentence);
-//! # Ok::<(), lizard_kinematics::Infeasible>(())
+//!     // What no linkage can do is an error that names the place.
+//!     let error = lizard.point_angles(End::Head, Vector::new(0.0, 500.0)).unwrap_err();
+//!     let sentence = "head: the point is 500.100 mm from the left shaft, which reaches 20.000 to 80.000 mm";
+//!     assert_eq!(error.to_string(), sentence);
+//!     Ok(())
+//! }
 //! ```
 //!
 //! # Conventions
