@@ -65,13 +65,7 @@ where
             digits::ascii(out, line.text().iter().copied())?;
         }
         Answer::Status => {
-            // No robot has no pose and no margin, and nothing moves it.
-            if control.motion().robot().is_none() {
-                Text::OkGait.print(out)?;
-                Text::Rest.print(out)?;
-            } else {
-                status(out, control.motion())?;
-            }
+            status(out, control.motion())?;
             return Ok(Some(Answer::Health));
         }
         Answer::Health => health(out, control, counters)?,
@@ -133,6 +127,10 @@ where
         Activity::Pose => Text::Pose.print(out)?,
         Activity::Stop => Text::Stop.print(out)?,
         Activity::Rest => Text::Rest.print(out)?,
+    }
+    // What is no robot rests, and has no pose and no margin.
+    if robot.is_none() {
+        return Ok(());
     }
     Text::StatusPhase.print(out)?;
     digits::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
