@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn a_board_without_a_robot_has_no_pose_and_says_why() {
-        let line = "ok gait=rest fault=robot reset=power resets=0";
+        let line = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
         let status = Status::parse(line).expect("it is a status");
         assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
         assert_eq!(status.line(), "rest  FAULT robot");
