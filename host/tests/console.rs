@@ -324,10 +324,11 @@ fn a_kept_session_is_drawn_and_summed_up() {
     );
     assert!(out.contains("trouble     none\n"), "{out}");
     let picture = fs::read_to_string(here.join("a.svg")).expect("it was drawn");
-    assert_eq!(
-        picture.matches("<polyline").count(),
-        4,
-        "a curve for each servo"
+    // A machine that pauses for a second breaks all four curves.
+    let curves = picture.matches("<polyline").count();
+    assert!(
+        curves >= 4 && curves.is_multiple_of(4),
+        "{curves}: a curve for each servo"
     );
 
     let (_, error, code) = run(here, &["record", "a.jsonl", "--sim"], "");
