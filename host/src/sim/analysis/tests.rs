@@ -3,7 +3,7 @@
 use super::*;
 
 fn robot() -> Robot {
-    Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+    Robot::parse(include_str!("../../../../robots/paper.toml")).expect("paper.toml is right")
 }
 
 /// The frames that servos of `angles(seconds)` would get, from second 1 on.
