@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .install .release .release-test .parallel-test .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -81,6 +81,8 @@ docs: ## write the generated pages and pictures; build the book of docs/ in out/
 	$(call prepared,.docs)
 install: ## the program, its manual pages and completions, into PREFIX=~/.local
 	$(call prepared,.install)
+docs-check: ## whether the figures in the book that take long to compute are current
+	$(call prepared,.docs-check)
 release: ## build all files of a release from the current commit, in dist/; takes a while
 	$(call prepared,.release)
 release-test: ## build a release twice, in different folders; compare the bytes, and try each file
@@ -221,10 +223,15 @@ TESTS ?= --workspace
 	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
 	@$(LIZARD) charts docs/charts --svg-only
 	@cd host && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --quiet
+	@BLESS_GAITS=1 $(MAKE) .docs-check
 	@scripts/walk-through $(LIZARD)
 	@scripts/setup-book
 	@mkdocs build --strict --quiet
 	@echo "the book: out/book/index.html"
+
+# Tests that `make test` leaves out; BLESS_GAITS=1 writes the pages.
+.docs-check:
+	@cd host && $(CARGO) test --workspace --quiet --test robot -- docs:: --ignored
 
 # Also what is not committed, so that it can be tried before.
 .package:

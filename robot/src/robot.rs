@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
 use lizard_avr::Region;
+use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
 use lizard_core::gait::{Gait, MOST_WAVES};
 use lizard_core::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};

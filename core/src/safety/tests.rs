@@ -112,12 +112,13 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
 
 #[test]
 fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner() {
+    let supplies = supplies();
     for deadman in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = without_boot();
         for _ in 0..10 {
             safety.line_came();
             let mut frames = 0;
-            while safety.frame(&WELL, &supplies(), State::Walking, deadman) == Reaction::None {
+            while safety.frame(&WELL, &supplies, State::Walking, deadman) == Reaction::None {
                 frames += 1;
             }
             // A line may come just before a frame: this many milliseconds have passed since,
@@ -136,13 +137,14 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
 #[test]
 fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
     let mut safety = without_boot();
+    let supplies = supplies();
     for _ in 0..5000 {
         for (state, deadman) in [
             (State::Walking, 0),
             (State::Still, 20),
             (State::Resting, 20),
         ] {
-            let reaction = safety.frame(&WELL, &supplies(), state, deadman);
+            let reaction = safety.frame(&WELL, &supplies, state, deadman);
             assert_eq!(reaction, Reaction::None);
         }
     }

@@ -244,7 +244,10 @@ fn is_no_robot(damage: &Damage) {
     let (notes, status) = bench.ask("status");
     assert!(notes.is_empty(), "{notes:?}");
     // Neither a pose nor a margin nor a voltage: without a robot they would be nonsense.
-    assert_eq!(status, "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0");
+    assert_eq!(
+        status,
+        "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
+    );
     let unasked = bench
         .lines()
         .iter()

@@ -82,6 +82,10 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
             for percent in [100.0, 20.0] {
+                // A pace is no different for one random robot than for the next.
+                if percent < 100.0 && named.name.starts_with("random") {
+                    continue;
+                }
                 let Some(travel) = travel(named, gait, percent) else {
                     continue;
                 };

@@ -13,8 +13,8 @@ use crate::file::Problem;
 use crate::gaits::Gait;
 use crate::measures::Measures;
 use crate::measures::servo::NAMES;
-use crate::tables::accuracy::{self, ALL_PHASES};
 use crate::tables::TabledGait;
+use crate::tables::accuracy::{self, ALL_PHASES};
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
 /// Evenly spaced phases that are checked besides the tables' own samples.

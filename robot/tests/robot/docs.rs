@@ -21,6 +21,7 @@ fn filled(page: &str, marker: &str, text: &str) -> String {
 }
 
 #[test]
+#[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_gaits_shows_what_the_commands_print() {
     let page = std::fs::read_to_string(PAGE).expect(PAGE);
     let mut now = filled(
@@ -78,6 +79,7 @@ fn slotted(name: &str, of: fn(lizard_robot::Travel) -> f64) -> String {
 const STOPS: f64 = 1.0;
 
 #[test]
+#[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_the_twin_shows_what_springs_cost() {
     let page = std::fs::read_to_string(TWIN).expect(TWIN);
     let ground = paper().ground();
