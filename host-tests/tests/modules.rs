@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "contact",
     "core",
     "kinematics",
     "linker",
     "parts",
     "robot",
+    "tune",
     "twin",
 ];
 
