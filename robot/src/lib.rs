@@ -47,4 +47,4 @@ pub use reports::{
 };
 pub use robot::Robot;
 pub use tables::{CellMaps, CoreRobot, TableError, flash};
-pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
+pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

@@ -49,6 +49,8 @@ export interface Description {
   rail: [number, number] | null;
   floor: Floor;
   models: ServoModel[];
+  /** Frames without motion after which it stands still. */
+  still: number;
   /** The words of the console. */
   words: string[];
 }

@@ -15,11 +15,6 @@ const SPANS = [20, -20, 15, -15, 10, -10];
 /** The longest wait for a motion to end, ms, and the time between two looks. */
 const MOTION = 5000;
 const LOOK = 60;
-/**
- * Frames without motion after which the robot stands still: a motion begins so slowly that its first ones are not
- * seen in hundredths of a degree.
- */
-const STILL = 10;
 /** A pose is reached as near as this, deg. */
 const NEAR = 0.02;
 
@@ -266,7 +261,7 @@ async function settle(session: Session, wanted: Four<number> | null = null): Pro
     if (!now || !here || session.link !== link) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
     const pose = here.join();
     if (still?.pose !== pose) still = { frames: now.frames, pose };
-    else if (now.frames - still.frames >= STILL && isThere(here)) return here;
+    else if (now.frames - still.frames >= session.description.still && isThere(here)) return here;
     if (waited >= MOTION) return here;
     await link.wait(LOOK);
   }

@@ -6,7 +6,7 @@ use lizard_core::word::Word;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};
 use lizard_robot::{
-    CheckedGait, Ground, Plate, Prediction, Robot, Sprung, Travel, healthy_rail_mv,
+    CheckedGait, Ground, Plate, Prediction, Robot, STILL_FRAMES, Sprung, Travel, healthy_rail_mv,
 };
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
@@ -154,6 +154,8 @@ pub struct Description {
     pub floor: Floor,
     /// What its servos may be taken for.
     pub models: Vec<ModelEntry>,
+    /// Frames without motion after which it stands still.
+    pub still: u64,
     /// The words of the console, which the page's buttons send.
     pub words: Vec<String>,
 }
@@ -211,6 +213,7 @@ impl Description {
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot),
             models: SERVO_MODELS.map(ModelEntry::from).into(),
+            still: STILL_FRAMES,
             words: words(),
         }
     }

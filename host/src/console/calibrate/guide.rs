@@ -7,6 +7,8 @@
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 
+use lizard_robot::STILL_FRAMES;
+
 use super::super::calibration::Calibration;
 use super::super::link::{Link, LinkError};
 use super::super::status::Status;
@@ -21,9 +23,6 @@ const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest wait for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
-/// Frames without motion after which the robot stands still. The gait `stand` brakes for
-/// seven before another motion begins, and that one begins slowly.
-const STILL: u64 = 12;
 /// Between two looks at the robot.
 const LOOK: Duration = Duration::from_millis(25);
 
@@ -578,7 +577,7 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
             .as_ref()
             .and_then(|last| frames.checked_sub(last.frames));
         match since {
-            Some(0..STILL) if Instant::now() < end => {}
+            Some(0..STILL_FRAMES) if Instant::now() < end => {}
             Some(_) if last.is_some_and(|last| last.pose == Some(pose)) => return Ok(pose),
             _ if Instant::now() >= end => return Ok(pose),
             _ => last = Some(now),

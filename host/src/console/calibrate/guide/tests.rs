@@ -163,7 +163,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
         });
         let unseen = unseen.count() as u64;
         assert!(
-            unseen + 2 < STILL,
+            unseen + 2 < STILL_FRAMES,
             "{way} deg: {unseen} frames show nothing"
         );
     }
