@@ -1,9 +1,9 @@
-// The moving picture of README: the page, walking, a cycle of the gait. Writes pictures into the folder that is named;
-// scripts/page-picture makes one of them.
+// The moving picture of README: the page, walking, a cycle of the gait; and one of the gait editor, for docs/web.md. Writes
+// pictures into the folder that is named; scripts/page-picture makes files of them.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
-import { advance, close, open, standing } from './tests/browser.js';
+import { close, open, page } from './tests/browser.js';
 
 const [, , folder] = process.argv;
 /** A cycle of walk, after as many as it takes to be even; and pictures of one. */
@@ -11,15 +11,28 @@ const [CYCLE, BEFORE, PICTURES] = [1000, 3, 16];
 
 await mkdir(folder, { recursive: true });
 await open();
-const opened = await standing({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' });
+// Its clock is that of this script, so that all pictures are equally far apart and the view follows the robot.
+const opened = await page({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
+await opened.clock.runFor(3000);
 await opened.locator('#gaits button[data-command="walk"]').click();
 await opened.evaluate(() => {
   document.activeElement.blur();
   scrollTo(0, 0);
 });
-await advance(opened, BEFORE * CYCLE);
+// Every gait that moves has its prediction on its button.
+await opened.waitForFunction(() => [...document.querySelectorAll('#gaits button:not([data-command="stand"]) small')].every((way) => way.textContent !== ''));
+await opened.clock.runFor(BEFORE * CYCLE);
 for (let n = 0; n < PICTURES; n++) {
-  await advance(opened, CYCLE / PICTURES);
+  await opened.clock.runFor(CYCLE / PICTURES);
   await opened.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
 }
+// A short search, and what it found on the screen.
+await opened.setViewportSize({ width: 1240, height: 1000 });
+await opened.locator('#gait-editor summary').click();
+await opened.getByLabel('Rounds of 40 gaits').fill('1');
+await opened.getByRole('button', { name: 'Make it faster' }).click();
+await opened.waitForFunction(() => document.querySelector('#faster-said').textContent.startsWith('Faster on'));
+await opened.getByRole('button', { name: 'Take this gait' }).click();
+await opened.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
+await opened.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
 await close();
