@@ -61,7 +61,7 @@ fit: ## proof that no two parts meet at any pose that the guard accepts
 	$(call prepared,.fit)
 prove: ## compare the guard with floating point at every pose; a minute or two
 	$(call prepared,.prove)
-physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 stores the figures
+physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 stores the figures, ONE_IN=5 takes every fifth
 	$(call prepared,.physics)
 mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics
 	$(call prepared,.mutants)
@@ -194,7 +194,7 @@ TESTS ?= --workspace
 	@cd host && cargo build --workspace --bin lizard --quiet
 	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python physics/judge.py target/physics/walk.xml
-	@cd host && cargo run -p lizard-physics --features engines --quiet -- $(if $(WRITE),--write)
+	@cd host && cargo run -p lizard-physics --features engines --quiet -- $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
 # ONLY=serial.rs narrows it down.
 .mutants:
