@@ -396,8 +396,8 @@ impl Ink {
         let scale = room / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
         let x0 = MARGIN + side;
-        // Each colour is named once, and a point is tenths of a pixel from the one before:
-        // a third of the text.
+        // Each colour is named once, and a point is whole tenths of a pixel from the one
+        // before: a quarter of the text.
         let mut styles: Vec<(&str, bool)> = Vec::new();
         let mut paths = String::new();
         let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
@@ -414,9 +414,15 @@ impl Ink {
                 let mut begin = None;
                 for (x, y) in line {
                     let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
-                    let by = (to.0 - at.0, to.1 - at.1);
-                    let step = if begin.is_none() { "m" } else { "l" };
-                    let _ = write!(data, "{step}{} {}", tenth(by.0), tenth(by.1));
+                    let (x, y) = (to.0 - at.0, to.1 - at.1);
+                    // Behind the first point each pair is a line, and a minus separates.
+                    let _ = match (begin, x < 0) {
+                        (None, _) => write!(data, "m{x}"),
+                        (Some(_), _) if (x, y) == (0, 0) => continue,
+                        (Some(_), true) => write!(data, "{x}"),
+                        (Some(_), false) => write!(data, " {x}"),
+                    };
+                    let _ = write!(data, "{}{y}", if y < 0 { "" } else { " " });
                     begin.get_or_insert(to);
                     at = to;
                 }
@@ -431,7 +437,7 @@ impl Ink {
         );
         for (class, (colour, edge)) in styles.into_iter().enumerate() {
             // A wall's own colour as a hair line closes the seams between walls.
-            let (stroke, thick) = if edge { ("#333", 0.5) } else { (colour, 0.4) };
+            let (stroke, thick) = if edge { ("#333", 5) } else { (colour, 4) };
             let _ = writeln!(
                 text,
                 ".c{class}{{fill:{colour};stroke:{stroke};stroke-width:{thick}}}"
@@ -440,7 +446,7 @@ impl Ink {
         let _ = write!(
             text,
             "</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
-             <g fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
+             <g transform=\"scale(.1)\" fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
         );
         text.push_str("</g>\n");
         let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
@@ -503,12 +509,6 @@ fn write_column(
             label.text
         );
     }
-}
-
-/// A number of tenths, without a point where it needs none.
-fn tenth(tenths: i64) -> String {
-    let text = format!("{:.1}", tenths as f64 / 10.0);
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 /// All bodies in their places.
