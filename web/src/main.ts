@@ -152,6 +152,11 @@ async function start(): Promise<void> {
       log.came(line);
       setup.came(line);
     },
+    isUno: (from) =>
+      confirm(
+        `Is this board an Arduino UNO? By its USB chip it may also be a Nano, whose boot section begins at byte ${from} of the flash. ` +
+          'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
+      ),
     doing(gait) {
       drive.doing(gait);
       keep.doing(gait);

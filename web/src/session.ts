@@ -56,6 +56,8 @@ export interface Listener {
   speed(percent: number): void;
   /** Another end of the line. */
   link(link: Link): void;
+  /** Whether a person says that a board is a UNO, and not a Nano, which would be ruined by what is written from a byte on. */
+  isUno(from: number): boolean;
   /** What is wrong; null where that is so no more. */
   trouble(cause: Cause, sentence: string | null): void;
 }
@@ -67,6 +69,9 @@ export interface Measured {
   turn: number;
   lag: number;
 }
+
+/** Where a Nano's boot section begins: its high fuse is 0xDA. A UNO's begins 1.5 KB later. */
+const NANO_BOOT = 0x7800;
 
 const isBanner = (has: Has | undefined): has is Banner => typeof has === 'object' && has !== null;
 
@@ -431,6 +436,9 @@ export class Session {
 
   private async write(piece: Piece, progress: Progress, under: Piece | null): Promise<void> {
     const { link } = this;
+    if (piece.at + piece.bytes.length > NANO_BOOT && link.mayBeNano && !this.listener.isUno(NANO_BOOT)) {
+      throw new Unfit(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
+    }
     this.dialogue.end();
     this.there = undefined;
     this.watching = false;

@@ -5,7 +5,7 @@
  * `window.same` has the port open the board that it had before;
  * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
  * of the port; `window.garbage` has the board say bytes without a meaning. `window.pulses` has the last width of
- * each pin, us.
+ * each pin, us; `window.vendor` is the USB vendor of its chip.
  */
 export function fakeSerial() {
   let board;
@@ -55,6 +55,7 @@ export function fakeSerial() {
       board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
       port.timer = setInterval(() => board.run(16_000 * 2), 2);
     },
+    getInfo: () => ({ usbVendorId: window.vendor ?? 0x2341 }),
     async setSignals({ dataTerminalReady }) {
       if (dataTerminalReady && !window.awake) board.reset('external');
     },

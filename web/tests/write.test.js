@@ -173,3 +173,33 @@ test('a board that is unplugged while the firmware is written does nothing, and 
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));
+
+test('what would ruin a Nano is written only where a person says that the board is a UNO', async () => {
+  const opened = await connected('robot', 8000);
+  await opened.evaluate(() => (window.vendor = 0x1a86));
+  await opened.locator('#robot').selectOption('own-gaits');
+  await panel(opened);
+  const before = await flash(opened, 0, 0x7e00);
+  const asked = [];
+  let says = 'dismiss';
+  opened.on('dialog', (dialog) => {
+    asked.push(dialog.message());
+    void dialog[says]();
+  });
+  await robotAlone(opened);
+  await said(opened, /^not written: a Nano has 30720 bytes of flash before its boot section, and this takes 3\d{4}; gaits can be left out/);
+  assert.match(asked[0], /^Is this board an Arduino UNO\? By its USB chip it may also be a Nano/);
+  assert.deepEqual(await flash(opened, 0, 0x7e00), before, 'nothing was written');
+  says = 'accept';
+  await robotAlone(opened);
+  await said(opened, /^written and verified in [\d.]+ s$/);
+  const wanted = await section('own-gaits');
+  assert.deepEqual(await flash(opened, START, START + wanted.length), wanted);
+  assert.equal(asked.length, 2);
+  // A small robot does not reach so far, so nobody is asked.
+  await opened.locator('#robot').selectOption('robot');
+  await opened.clock.runFor(3000);
+  await robotAlone(opened);
+  await said(opened, /^written and verified in [\d.]+ s$/);
+  assert.equal(asked.length, 2);
+});

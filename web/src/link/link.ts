@@ -3,6 +3,8 @@
 export interface Link {
   /** What is at the other end, for people. */
   readonly name: string;
+  /** Whether its USB chip is one that an Arduino Nano may have, too. */
+  readonly mayBeNano?: boolean;
   /** Called with the bytes that come. */
   onBytes: (bytes: Uint8Array) => void;
   /** Called when the other end is gone. */

@@ -8,6 +8,7 @@ interface SerialPort {
   readonly writable: WritableStream<Uint8Array> | null;
   open(options: { baudRate: number; bufferSize?: number }): Promise<void>;
   close(): Promise<void>;
+  getInfo(): { usbVendorId?: number };
   setSignals(signals: { dataTerminalReady?: boolean; requestToSend?: boolean }): Promise<void>;
 }
 
@@ -16,6 +17,8 @@ interface Serial {
 }
 
 const BAUD = 115_200;
+/** The USB vendors arduino.cc and arduino.org: their chips are on UNOs, and on no Nano. */
+const ARDUINO = [0x2341, 0x2a03];
 /** Why no board can be connected. */
 export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
 /** How long the reset line is pulled, ms. */
@@ -41,6 +44,11 @@ export class PortLink implements Link {
   private closing = false;
 
   private constructor(private readonly port: SerialPort) {}
+
+  get mayBeNano(): boolean {
+    const { usbVendorId } = this.port.getInfo();
+    return usbVendorId !== undefined && !ARDUINO.includes(usbVendorId);
+  }
 
   /** Lets the user pick a port and opens it, which resets an UNO; null if the user picks none. Throws a sentence. */
   static async open(): Promise<PortLink | null> {
