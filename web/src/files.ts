@@ -28,6 +28,8 @@ export const files = {
   code: (): Promise<string> => text('files/code.hex'),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),
   wasm: (): Promise<WebAssembly.Module> => compiled('files/lizard.wasm'),
+  /** The same with the search of a gait, for who wants one. */
+  tune: (): Promise<WebAssembly.Module> => compiled('files/tune.wasm'),
   /** The parts, which only their panel asks for. */
   parts: (): Promise<WebAssembly.Module> => compiled('files/parts.wasm'),
 };

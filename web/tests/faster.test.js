@@ -36,11 +36,14 @@ const tried = (page, count) => page.waitForFunction((count) => document.querySel
 
 test('it finds the gait that lizard tune finds with the same seed, which is tried and undone', async () => {
   const page = await opened();
+  const loaded = [];
+  page.on('request', (request) => loaded.push(new URL(request.url()).pathname));
   const words = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
   const [{ stdout }] = await Promise.all([
     within('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), words)),
     start(page).then(() => ended(page)),
   ]);
+  assert.equal(loaded.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search comes when it is asked for');
   const known = JSON.parse(stdout);
   const gain = Math.round(100 * (known.tuned.speeds[0] / known.gait.speeds[0] - 1));
   assert.equal(

@@ -67,7 +67,7 @@ test('whoever opens the page loads no parts, and less than half a megabyte', asy
   const sum = sizes.reduce((a, b) => a + b, 0);
   assert.ok(names.includes('files/lizard.wasm'), names.join(' '));
   assert.ok(sum < FIRST_LOAD, `${sum} bytes`);
-  const early = names.filter((name) => /parts\.wasm|space|workshop|worker-.*parts/.test(name));
+  const early = names.filter((name) => /parts\.wasm|tune\.wasm|space|workshop|worker-.*parts/.test(name));
   assert.deepEqual(early, []);
   await page.locator('#parts summary').click();
   await page.getByText('Click a part for its name').waitFor();

@@ -1,5 +1,6 @@
 // A search for a gait that walks faster than one that is being made, in a worker of its own, which ends with it.
 import type { Bars, Floor, Found, Trial, Wish } from '../robot';
+import { sentence } from '../trouble';
 
 export interface Question {
   module: WebAssembly.Module;
@@ -25,9 +26,10 @@ export type Answer =
 export class FasterSearch {
   private readonly worker = new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' });
 
-  /** `hear` gets the answers up to the one of the end. */
+  /** `module` has the search; `hear` gets the answers up to the one of the end. */
   constructor(
-    readonly question: Question,
+    module: Promise<WebAssembly.Module>,
+    readonly question: Omit<Question, 'module'>,
     hear: (answer: Answer) => void,
   ) {
     this.worker.addEventListener('message', ({ data }: MessageEvent<Answer>) => {
@@ -38,7 +40,13 @@ export class FasterSearch {
       this.drop();
       hear({ of: 'end', refused: message || 'the worker could not be loaded' });
     });
-    this.worker.postMessage(question);
+    module.then(
+      (module) => this.worker.postMessage({ ...question, module } satisfies Question),
+      (error: unknown) => {
+        this.drop();
+        hear({ of: 'end', refused: sentence(error) });
+      },
+    );
   }
 
   /** The gait that is to be surpassed. */

@@ -1,4 +1,5 @@
 // "Make it faster": searches a gait that walks faster than the one that is being made, which a person can then take.
+import { files } from '../files';
 import { type Answer, type Best, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
 import type { Session } from '../session';
@@ -30,9 +31,10 @@ export class FasterView {
   private replaced: Bars | null = null;
   private toml = '';
   private all = 0;
+  /** What searches, as soon as somebody has wanted to. */
+  private module: Promise<WebAssembly.Module> | null = null;
 
   constructor(
-    private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
     private readonly edited: Edited,
   ) {
@@ -66,7 +68,10 @@ export class FasterView {
     this.bar.removeAttribute('value');
     this.bar.hidden = false;
     this.say('Looking for the widest stride that the limits allow…');
-    this.search = new FasterSearch({ module: this.module, toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.heard(answer));
+    this.module ??= files.tune();
+    // What did not come may come the next time.
+    this.module.catch(() => (this.module = null));
+    this.search = new FasterSearch(this.module, { toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.heard(answer));
   }
 
   private heard(answer: Answer): void {

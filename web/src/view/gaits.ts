@@ -53,7 +53,7 @@ export class GaitsView {
     writer: Writer,
   ) {
     this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (what, value) => this.change({ [what]: value }) });
-    this.faster = new FasterView(module, session, { gait: () => this.gait, take: (gait) => this.change(gait) });
+    this.faster = new FasterView(session, { gait: () => this.gait, take: (gait) => this.change(gait) });
     this.panel.addEventListener('toggle', () => this.take());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));

@@ -201,6 +201,7 @@ pub extern "C" fn lizard_put_drawn() {
 }
 
 /// [`Page::make_faster`]: the input is the wish as JSON on one line, and then the text of the robot.toml.
+#[cfg(feature = "tune")]
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_faster() {
     answer(|page, input| {
@@ -211,12 +212,14 @@ pub extern "C" fn lizard_faster() {
 }
 
 /// [`Faster::step`](crate::Faster::step) of the search that was begun.
+#[cfg(feature = "tune")]
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_faster_step() {
     answer(|page, _| Some(page.faster()?.step()));
 }
 
 /// [`Faster::found`](crate::Faster::found) of the search that was begun.
+#[cfg(feature = "tune")]
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_faster_found(robots: u32) {
     answer(|page, _| page.faster()?.found(robots as usize));

@@ -12,6 +12,7 @@ mod core_run;
 mod description;
 mod drawn;
 mod edit;
+#[cfg(feature = "tune")]
 mod faster;
 mod floor;
 mod map;
@@ -29,6 +30,7 @@ pub use description::{
 };
 pub use drawn::Drawn;
 pub use edit::{NoSuchLength, with_number};
+#[cfg(feature = "tune")]
 pub use faster::{Begun, Faster, Found, Progress, Wish};
 pub use floor::Floor;
 pub use map::{Curve, Map, MapPoint};

@@ -12,6 +12,7 @@ use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Outlook, SERVO_MODELS};
 use crate::drawn::Drawn;
 use crate::edit::{NoSuchLength, with_number, with_word, without};
+#[cfg(feature = "tune")]
 use crate::faster::{Begun, Faster, Wish};
 use crate::floor::Floor;
 use crate::map::Map;
@@ -79,6 +80,7 @@ pub struct Page {
     asked: [f64; 4],
     model: Option<ServoModel>,
     run: Option<CoreRun>,
+    #[cfg(feature = "tune")]
     faster: Option<Faster>,
 }
 
@@ -93,7 +95,10 @@ impl Page {
         let description = Description::of(&robot);
         self.asked = robot.neutral().into();
         self.run = None;
-        self.faster = None;
+        #[cfg(feature = "tune")]
+        {
+            self.faster = None;
+        }
         self.twin = Some(Twin::new(&robot, self.model.unwrap_or(ServoModel::SG90)));
         Ok(description)
     }
@@ -270,12 +275,14 @@ impl Page {
     ///
     /// # Errors
     /// Why there is nothing to search.
+    #[cfg(feature = "tune")]
     pub fn make_faster(&mut self, text: &str, wish: &Wish) -> Option<Result<Begun, Refused>> {
         let begun = Faster::begin(text, self.twin.as_ref()?.ground(), wish);
         Some(begun.map(|faster| self.faster.insert(faster).begun()))
     }
 
     /// The search that was begun last.
+    #[cfg(feature = "tune")]
     pub fn faster(&mut self) -> Option<&mut Faster> {
         self.faster.as_mut()
     }
