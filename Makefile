@@ -265,5 +265,6 @@ PREFIX ?= $(HOME)/.local
 	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@cd host && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
+	@cd host && cargo clippy -p lizard-web --no-default-features --quiet -- -D warnings
 	@cd host && RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 	@echo "lint: clean"
