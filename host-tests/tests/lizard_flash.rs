@@ -260,7 +260,7 @@ fn a_board_without_a_boot_loader_that_answers_is_explained() {
     let shell = lizard_flash(&desk, &[]);
     let screen = end(&mut desk, &shell);
     assert!(
-        screen.contains("no boot loader answers. Is it a UNO?"),
+        screen.contains("no boot loader answers. Is it a UNO or a Nano?"),
         "{screen}"
     );
     assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
