@@ -119,7 +119,7 @@ clean: ## remove everything that was built
 	@scripts/setup-flash
 	@scripts/setup-flash-test
 	@cd host && cargo build --workspace --bin lizard --quiet
-	@cd host && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test -p lizard-host-tests --features flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
+	@cd host && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test --workspace --features lizard-host-tests/flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web
@@ -169,7 +169,7 @@ TESTS ?= --workspace
 # FreeCAD and PrusaSlicer are large, so they are set up here alone.
 .parts-test:
 	@scripts/setup-parts
-	@cd host && cargo build -p lizard-host --no-default-features --features parts --quiet
+	@cd host && cargo build --workspace --bin lizard --quiet
 	@scripts/parts-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
@@ -190,11 +190,12 @@ TESTS ?= --workspace
 .physics: .firmware
 	@scripts/setup-physics
 	@cd host && cargo clippy -p lizard-physics --features engines --all-targets --quiet -- -D warnings
-	@cd host && cargo test -p lizard-physics --features engines --test rapier --quiet
+	@cd host && cargo test --workspace --features lizard-physics/engines --test rapier --quiet
 	@cd host && cargo build --workspace --bin lizard --quiet
 	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python physics/judge.py target/physics/walk.xml
-	@cd host && cargo run -p lizard-physics --features engines --quiet -- $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
+	@cd host && cargo build --workspace --features lizard-physics/engines --bin lizard-physics --quiet
+	@cd host && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
 # ONLY=serial.rs narrows it down.
 .mutants:

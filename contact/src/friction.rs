@@ -127,10 +127,23 @@ impl Pads {
             ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
+        let mut answers = [None, guess.map(|_| (size * SMALLEST, x, z))];
         for stage in first..=STAGES {
             let eps = size * SMALLEST.powf(f64::from(stage) / f64::from(STAGES));
+            let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
+            let mut here = around(x, z);
+            // Where a pad holds, its slide shrinks as the rounding does, so the answers of
+            // two stages tell the next one. A guess counts as the last stage's answer.
+            if let [Some((far, far_x, far_z)), Some((near, ..))] = answers {
+                let on = (near - eps) / (far - near);
+                let next_x: [f64; 3] = std::array::from_fn(|i| x[i] + on * (x[i] - far_x[i]));
+                let next_z: [f64; 4] = std::array::from_fn(|i| z[i] + on * (z[i] - far_z[i]));
+                let there = around(next_x, next_z);
+                if there.cost < here.cost {
+                    (x, z, here) = (next_x, next_z, there);
+                }
+            }
             for _ in 0..STEPS {
-                let here = self.expand(&scale.displacement(self, x, z), eps, &scale);
                 let steep = here.gradient.into_iter();
                 let steep = steep.chain(here.legs.map(|leg| leg.slope));
                 if steep.map(f64::abs).all(|g| g < BALANCED * size) {
@@ -148,21 +161,20 @@ impl Pads {
                     (x, z)
                 };
                 // Halve until the cost falls, as far as rounding lets one see.
-                let mut share = 1.0;
-                let falls = |share: f64| {
+                let least = here.cost * (1.0 + 1e-14);
+                let shares = std::iter::successors(Some(1.0), |share| Some(share / 2.0));
+                let mut points = shares.take_while(|&share| share > 1e-9).map(|share| {
                     let (x, z) = at(share);
-                    self.expand(&scale.displacement(self, x, z), eps, &scale)
-                        .cost
-                        <= here.cost * (1.0 + 1e-14) - 1e-4 * share * slope
-                };
-                while share > 1e-9 && !falls(share) {
-                    share /= 2.0;
-                }
-                if share <= 1e-9 {
+                    (share, x, z, around(x, z))
+                });
+                let next =
+                    points.find(|(share, _, _, there)| there.cost <= least - 1e-4 * share * slope);
+                let Some((_, to_x, to_z, there)) = next else {
                     break;
-                }
-                (x, z) = at(share);
+                };
+                (x, z, here) = (to_x, to_z, there);
             }
+            answers = [answers[1], Some((eps, x, z))];
         }
         scale.displacement(self, x, z)
     }

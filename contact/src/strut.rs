@@ -43,18 +43,15 @@ impl Strut {
         // From the leg's pivot to the servo's end of the strut.
         let far = [self.radius * cos - self.length, self.radius * sin];
         let between = wrap(arm - far[1].atan2(far[0]).to_degrees());
-        Stretch {
-            far: far[0].hypot(far[1]),
-            near: self.radius,
-            // A lag turns the leg's arm against the way forward.
-            angle: -FORWARD[leg] * between.to_radians(),
-        }
+        // A lag turns the leg's arm against the way forward.
+        let angle = -FORWARD[leg] * between.to_radians();
+        Stretch::new(far[0].hypot(far[1]), self.radius, angle)
     }
 
     /// The lever of its pull at the leg's pivot, mm, while the leg does not lag.
     #[must_use]
     pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
-        self.stretch(leg, sweep).lever(0.0).abs()
+        self.stretch(leg, sweep).lever().abs()
     }
 
     /// What the leg withstands before it lags at all, N mm.
@@ -69,7 +66,7 @@ impl Strut {
         let stretch = self.stretch(leg, sweep);
         let way = stretch.way(self.slot);
         let force = self.force + self.rate * self.slot;
-        let torque = force * stretch.lever(way.copysign(stretch.angle)).abs();
+        let torque = force * stretch.lever_after(way);
         (way.to_degrees(), torque)
     }
 
@@ -77,14 +74,14 @@ impl Strut {
     /// back.
     #[must_use]
     pub fn yields_forward(&self, leg: usize, sweep: f64) -> bool {
-        self.stretch(leg, sweep).lever(0.0) > 0.0
+        self.stretch(leg, sweep).lever() > 0.0
     }
 
     /// What a lag against the sweep's direction and along it costs, in `force` N.
     pub(crate) fn sides(&self, leg: usize, sweep: f64, force: f64) -> [Side; 2] {
         let stretch = self.stretch(leg, sweep);
         let side = Side::strut(stretch, self.force / force, self.rate / force, self.slot);
-        match stretch.lever(0.0) > 0.0 {
+        match stretch.lever() > 0.0 {
             true => [Side::Stop, side],
             false => [side, Side::Stop],
         }

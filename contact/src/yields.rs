@@ -50,11 +50,15 @@ pub(crate) enum Side {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
     /// Length of that line, mm.
-    pub far: f64,
+    far: f64,
     /// Length of the arm, mm.
-    pub near: f64,
+    near: f64,
     /// Between both while the leg does not lag, rad; a lag adds to it.
-    pub angle: f64,
+    angle: f64,
+    /// Sine and cosine of that angle without its sign.
+    sin_cos: (f64, f64),
+    /// Length of the strut while the leg does not lag, mm.
+    still: f64,
 }
 
 /// Energy, slope and curvature.
@@ -62,56 +66,82 @@ type Expansion = (f64, f64, f64);
 
 /// How far x is above 0, rounded off within `eps`.
 fn above(x: f64, eps: f64) -> Expansion {
-    let length = x.hypot(eps);
+    let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
         return (0.0, 0.5, 0.0);
     }
+    // Below 0 the sum of both would be a difference of nearly equal numbers.
+    let sum = match x > 0.0 {
+        true => x + length,
+        false => eps * eps / (length - x),
+    };
     let bend = eps / length;
-    (
-        (x + length) / 2.0,
-        (1.0 + x / length) / 2.0,
-        bend * bend / length / 2.0,
-    )
+    (sum / 2.0, sum / length / 2.0, bend * bend / length / 2.0)
 }
 
 impl Stretch {
-    /// Length of the strut at a lag, mm.
-    fn length(&self, lag: f64) -> f64 {
-        let Self { far, near, angle } = self;
-        (far * far + near * near - 2.0 * far * near * (angle + lag).cos()).sqrt()
+    /// Of a line and an arm (mm) with an angle between them, rad.
+    pub fn new(far: f64, near: f64, angle: f64) -> Self {
+        let sin_cos = angle.abs().sin_cos();
+        Self {
+            far,
+            near,
+            angle,
+            sin_cos,
+            still: (far * far + near * near - 2.0 * far * near * sin_cos.1).sqrt(),
+        }
     }
 
-    /// By how much the strut is longer for each radian more, mm: the lever of its pull.
-    pub fn lever(&self, lag: f64) -> f64 {
-        self.far * self.near * (self.angle + lag).sin() / self.length(lag)
+    /// By how much the strut is longer for each radian more, mm, while the leg does not
+    /// lag: the lever of its pull. It is negative where a lag makes the strut shorter.
+    pub fn lever(&self) -> f64 {
+        (self.far * self.near * self.sin_cos.0 / self.still).copysign(self.angle)
+    }
+
+    /// The same without its sign, at a lag in the direction in which the strut grows.
+    pub fn lever_after(&self, lag: f64) -> f64 {
+        self.at(lag).1
     }
 
     /// The lag at which the strut is longer by so much, rad, without its sign; infinite
     /// where it never is.
     pub fn way(&self, longer: f64) -> f64 {
-        let Self { far, near, angle } = self;
-        let length = self.length(0.0) + longer;
+        let Self { far, near, .. } = self;
+        let length = self.still + longer;
         let cos = (far * far + near * near - length * length) / (2.0 * far * near);
         match cos < -1.0 {
             true => f64::INFINITY,
-            false => cos.acos() - angle.abs(),
+            false => cos.acos() - self.angle.abs(),
         }
     }
 
+    /// After a lag in the direction in which the strut grows: by how much it is longer
+    /// (mm), its lever (mm for each radian), and how much that has grown for each radian.
+    ///
+    /// Lags are often a hundred-thousandth of a radian. The difference of two lengths
+    /// would then be mostly rounding, and Newton's method would look for a minimum in it.
+    fn at(&self, lag: f64) -> (f64, f64, f64) {
+        let (product, (sin, cos)) = (self.far * self.near, self.sin_cos);
+        let (half_sin, half_cos) = (lag / 2.0).sin_cos();
+        let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
+        let more = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
+        let length = (self.still * self.still + more).sqrt();
+        let lever = product * (sin * lag_cos + cos * lag_sin) / length;
+        let grows = (product * (cos * lag_cos - sin * lag_sin) - lever * lever) / length;
+        (more / (length + self.still), lever, grows)
+    }
+
     /// What a spring takes that pulls the strut together with `force` and `rate`, where
-    /// `lag` is counted in the direction in which it grows.
-    fn energy(&self, lag: f64, force: f64, rate: f64) -> Expansion {
-        let lag = lag.copysign(self.angle);
-        let length = self.length(lag);
-        let (longer, lever) = (length - self.length(0.0), self.lever(lag));
-        let turns = (self.far * self.near * (self.angle + lag).cos() - lever * lever) / length;
+    /// `lag` is counted in the direction in which it grows; less `preload * lag`.
+    fn energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
+        let (longer, lever, grows) = self.at(lag);
         let pull = force + rate * longer;
         (
-            force * longer + rate * longer * longer / 2.0,
-            pull * lever.abs(),
+            force * longer - preload * lag + rate * longer * longer / 2.0,
+            pull * lever - preload,
             // A lever that shrinks faster than the pull grows would bend the cost the
             // other way, which Newton's method takes for flat.
-            (rate * lever * lever + pull * turns).max(0.0),
+            (rate * lever * lever + pull * grows).max(0.0),
         )
     }
 }
@@ -132,10 +162,10 @@ impl Side {
         let (far, slope, bend) = above(beyond, eps);
         let kink = |height: f64| (height * far, height * slope, height * bend);
         let sum = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
-        let x = beyond.max(0.0);
         match *self {
             Self::Stop => kink(stop),
             Self::Spring { preload, rate } => {
+                let x = beyond.max(0.0);
                 let curvature = if beyond > 0.0 { rate } else { 0.0 };
                 sum(kink(preload), (rate * x * x / 2.0, rate * x, curvature))
             }
@@ -146,10 +176,11 @@ impl Side {
                 way,
             } => {
                 // The kink holds the preload; the rest begins smoothly.
-                let preload = force * stretch.lever(0.0).abs();
-                let (energy, torque, curvature) = stretch.energy(x, force, rate);
-                let curvature = if beyond > 0.0 { curvature } else { 0.0 };
-                let rest = (energy - preload * x, torque - preload, curvature);
+                let preload = force * stretch.lever().abs();
+                let rest = match beyond > 0.0 {
+                    true => stretch.energy(beyond, force, rate, preload),
+                    false => (0.0, 0.0, 0.0),
+                };
                 let (past, slope, bend) = above(beyond - way, eps);
                 let end = match way.is_finite() {
                     true => (stop * past, stop * slope, stop * bend),
@@ -171,7 +202,7 @@ impl Side {
                 force,
                 rate,
                 ..
-            } => stretch.energy(beyond, force, rate).1,
+            } => stretch.energy(beyond, force, rate, 0.0).1,
         }
     }
 
@@ -249,11 +280,8 @@ mod tests {
     fn strut(angle: f64) -> Stretch {
         let (sin, cos) = f64::to_radians(angle).sin_cos();
         let far = [22.0 * cos - 30.2, 22.0 * sin];
-        Stretch {
-            far: f64::hypot(far[0], far[1]),
-            near: 22.0,
-            angle: f64::to_radians(angle) - f64::atan2(far[1], far[0]),
-        }
+        let between = f64::to_radians(angle) - f64::atan2(far[1], far[0]);
+        Stretch::new(f64::hypot(far[0], far[1]), 22.0, between)
     }
 
     fn assert_slopes(drive: Yield, lags: impl IntoIterator<Item = f64>) {
@@ -313,12 +341,27 @@ mod tests {
     #[test]
     fn a_strut_is_a_triangles_side() {
         let strut = strut(70.0);
-        assert!((strut.length(0.0) - 30.2).abs() < 1e-9, "parallel arms");
+        assert!((strut.still - 30.2).abs() < 1e-9, "parallel arms");
         // The arm's part square to the strut.
-        assert!((strut.lever(0.0).abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
+        assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
         let way = strut.way(5.0);
-        let longer = strut.length(way.copysign(strut.angle)) - 30.2;
+        let (longer, ..) = strut.at(way);
         assert!((longer - 5.0).abs() < 1e-9, "{longer}");
         assert_eq!(strut.way(50.0), f64::INFINITY);
+    }
+    #[test]
+    fn the_energy_of_a_hair_of_lag_is_no_rounding() {
+        let strut = strut(70.0);
+        for lag in [1e-12, 1e-9, 1e-6] {
+            // To first order a lever's way, and half of the next order is its growth.
+            let (longer, ..) = strut.at(lag);
+            let (_, lever, grows) = strut.at(0.0);
+            let series = lever * lag + grows * lag * lag / 2.0;
+            assert!((longer / series - 1.0).abs() < 1e-11, "{lag} {longer}");
+        }
+        // Far below a kink its rounding is eps^2 / 4 |x|, though 1e16 times less than x.
+        let (far, slope, _) = above(-0.5, 1e-9);
+        assert!((far / 5e-19 - 1.0).abs() < 1e-9, "{far}");
+        assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");
     }
 }

@@ -72,7 +72,9 @@ const Q10: f64 = 1.0 / 1024.0;
 /// it is at most .077; over `s` at `R / 1024`, where it is at most .063, because that
 /// table is read there only if `N < R / 2048`. Nor is the rise above 32, the largest that
 /// an entry holds: a step that begins there ends at `17/16 R / 1024`, where the sine is at
-/// most .065. What is read in it is too small, never too large.
+/// most .065. What is read in it is too small. Of couplers that differ by little, the
+/// table over `s` keeps its largest rise below the peak, which is too large there; the
+/// sine that it gives is at most .045, since the peak is below `2 N`.
 ///
 /// The true margin is then below a tenth: by 2. it is at most the root of `m'^2 + q`, and
 /// with the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most

@@ -219,11 +219,8 @@ proptest! {
         prop_assume!(swing.iter().flatten().any(|part| part.abs() > 1e-3));
         let (sin, cos) = arm.to_radians().sin_cos();
         let far = [22.0 * cos - 30.2, 22.0 * sin];
-        let stretch = Stretch {
-            far: far[0].hypot(far[1]),
-            near: 22.0,
-            angle: far[1].atan2(far[0]) - arm.to_radians(),
-        };
+        let angle = far[1].atan2(far[0]) - arm.to_radians();
+        let stretch = Stretch::new(far[0].hypot(far[1]), 22.0, angle);
         // The spring of the paper's size; one without a rate would pull less the
         // further it is stretched, where its lever shrinks.
         let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));

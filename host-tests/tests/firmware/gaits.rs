@@ -39,25 +39,21 @@ fn phase(gait: &CheckedGait, frames: usize) -> f64 {
     gait.phase(full / SECOND as f64)
 }
 
+/// The angles of a gait that begins now, frame by frame, deg.
+fn floating(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
+    (0..frames).map(|n| gait.angles(phase(gait, n))).collect()
+}
+
 /// The largest deviation of a servo from the gait that begins at frame `begin`.
-fn worst(gait: &CheckedGait, frames: &[[f64; 4]], begin: usize) -> f64 {
-    let off = |(n, angles): (usize, &[f64; 4])| {
-        let float = gait.angles(phase(gait, n));
-        (0..4)
-            .map(|i| (angles[i] - float[i]).abs())
-            .fold(0.0, f64::max)
-    };
-    frames[begin..]
-        .iter()
-        .enumerate()
-        .map(off)
-        .fold(0.0, f64::max)
+fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], begin: usize) -> f64 {
+    let pairs = frames[begin..].iter().flatten().zip(float.iter().flatten());
+    pairs.fold(0.0, |most, (is, meant)| (is - meant).abs().max(most))
 }
 
 /// The frame at which the gait begins: the one unknown of the comparison.
-fn begins(gait: &CheckedGait, frames: &[[f64; 4]]) -> usize {
+fn begins(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
     let by_worst =
-        |a: &usize, b: &usize| worst(gait, frames, *a).total_cmp(&worst(gait, frames, *b));
+        |a: &usize, b: &usize| worst(float, frames, *a).total_cmp(&worst(float, frames, *b));
     // The move to the first pose takes its time, and a cycle must follow.
     let last = frames.len() - (gait.period() * SECOND as f64) as usize - 10;
     let begin = (0..last).min_by(by_worst);
@@ -69,8 +65,9 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             let frames = decoded(gait, *fidelity);
-            let begin = begins(gait, &frames);
-            let off = worst(gait, &frames, begin);
+            let float = floating(gait, frames.len());
+            let begin = begins(gait, &float, &frames);
+            let off = worst(&float, &frames, begin);
             println!(
                 "{:<10} {} frames, max {off:.4} deg",
                 gait.name(),
@@ -83,7 +80,7 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
                 // The first frame of all has none before it.
                 let others = [Some(begin + 1), begin.checked_sub(1)];
                 for other in others.into_iter().flatten() {
-                    assert!(worst(gait, &frames, other) > off, "{}", gait.name());
+                    assert!(worst(&float, &frames, other) > off, "{}", gait.name());
                 }
             }
         }
@@ -103,7 +100,8 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         };
         compared.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
         let frames = decoded(gait, Fidelity::DataSheet);
-        let begin = begins(gait, &frames);
+        let float = floating(gait, frames.len());
+        let begin = begins(gait, &float, &frames);
         // From the first frame at full pace that begins a cycle, whole cycles: two
         // of those that are no whole number of frames.
         let cycles = if (gait.period() * SECOND as f64).fract() == 0.0 {
