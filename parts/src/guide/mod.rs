@@ -5,6 +5,7 @@
 
 pub(crate) mod corner;
 pub(crate) mod html;
+pub(crate) mod ink;
 pub(crate) mod legend;
 pub(crate) mod papers;
 pub(crate) mod picture;

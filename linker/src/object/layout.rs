@@ -1,0 +1,114 @@
+//! The order of an object's functions: which may move, and sections in the order found.
+
+use object::build::elf::{Section, SectionId};
+use object::elf;
+
+use super::Object;
+use crate::instruction::{runs_on, skips};
+use crate::order::{Call, Pieces};
+
+/// Bytes of the routines of `frames.S`, about; what is estimated by it is their distance.
+const ROUTINES_SIZE: u32 = 320;
+
+impl Object<'_> {
+    /// Puts the functions into an order in which calls are short, with the routines of
+    /// `frames.S` in their middle: what is to lie before those is named `.lowtext`, as the
+    /// linker's script has it, and the rest comes behind them if they are linked first. Nothing
+    /// is done if a piece of code might run on into the next, or branches to another.
+    pub(super) fn order(&mut self) -> i64 {
+        let functions = self.functions();
+        let may_move = |section: &Section| {
+            let Some(code) = self.code(section.id()) else {
+                return false;
+            };
+            let ends = match code.instructions.as_slice() {
+                [.., before, last] => !skips(before.code) && !runs_on(last.code),
+                [last] => !runs_on(last.code),
+                [] => true,
+            };
+            // A branch to another section has its limit.
+            let is_near = |reference: &Reference| {
+                let near = [elf::R_AVR_7_PCREL, elf::R_AVR_13_PCREL];
+                !near.contains(&reference.kind)
+                    || self.0.symbols.get(reference.symbol).section == Some(section.id())
+            };
+            ends && code.references.iter().all(is_near)
+        };
+        let is_code =
+            |section: &&Section| *section.name == *b".text" || section.name.starts_with(b".text.");
+        let codes = || self.0.sections.iter().filter(is_code);
+        if !codes().all(may_move) {
+            return 0;
+        }
+        // Functions; the routines, and what is left where it is behind them; other files.
+        let [middle, others] = [functions.len(), functions.len() + 1];
+        let piece = |section: SectionId| functions.iter().position(|other| *other == section);
+        let mut pieces = Pieces::default();
+        let is_long = |reference: &&Reference| reference.kind == elf::R_AVR_CALL;
+        for section in &functions {
+            // As if all calls in it were short.
+            let less = 2 * self.references(*section).iter().filter(is_long).count() as u64;
+            let size = self.0.sections.get(*section).sh_size - less;
+            pieces.sizes.push(size as u32);
+        }
+        let staying = codes().filter(|section| piece(section.id()).is_none());
+        let staying: u64 = staying.map(|section| section.sh_size).sum();
+        pieces.sizes.extend([ROUTINES_SIZE + staying as u32, 0]);
+        for section in codes() {
+            for reference in self.references(section.id()) {
+                let symbol = self.0.symbols.get(reference.symbol);
+                let from = piece(section.id()).unwrap_or(middle);
+                let to = match symbol.section {
+                    Some(section) => piece(section).unwrap_or(middle),
+                    None if symbol.name.starts_with(b"__frame_") => middle,
+                    None => others,
+                };
+                if is_long(&&reference) && from != to {
+                    let at = if from == middle {
+                        0
+                    } else {
+                        reference.offset as u32
+                    };
+                    pieces.calls.push(Call { from, at, to });
+                }
+            }
+        }
+        let order = pieces.order();
+        let compiled: Vec<usize> = (0..=others).collect();
+        let saved = 2 * (pieces.far(&compiled) as i64 - pieces.far(&order) as i64);
+        if saved <= 0 {
+            return 0;
+        }
+        let mut is_low = true;
+        for piece in order {
+            match functions.get(piece) {
+                Some(section) => self.move_to_the_end(*section, is_low),
+                None => is_low = false,
+            }
+        }
+        saved
+    }
+
+    /// Makes a section of code, and its table of relocations, the last ones of the file: the
+    /// linker meets a section where it reads the one or the other first.
+    fn move_to_the_end(&mut self, section: SectionId, is_low: bool) {
+        let new = self.0.sections.copy(section);
+        if let (true, Some(name)) = (is_low, new.name.strip_prefix(b".text")) {
+            new.name = [b".lowtext", name].concat().into();
+        }
+        let new = new.id();
+        self.0.sections.get_mut(section).delete = true;
+        for symbol in &mut self.0.symbols {
+            if symbol.section == Some(section) {
+                symbol.section = Some(new);
+            }
+        }
+        let tables = self.0.sections.iter();
+        let tables = tables.filter(|table| table.sh_info_section == Some(section));
+        let tables: Vec<SectionId> = tables.map(Section::id).collect();
+        for table in tables {
+            self.0.sections.copy(table).sh_info_section = Some(new);
+            self.0.sections.get_mut(table).delete = true;
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Polygons on a page, and names beside them, as SVG.
+
+use std::fmt::Write;
+
+use super::picture::Label;
+
+/// Around the robot, pixels.
+const MARGIN: f64 = 12.0;
+/// Room for names on each side of a picture, pixels, and from one to the next.
+const BESIDE: f64 = 165.0;
+const LINE: f64 = 16.0;
+const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
+
+/// Points on the page.
+pub(super) type Trail = Vec<(f64, f64)>;
+
+/// What of the page is shown, mm before the page's scale.
+pub(super) struct Frame {
+    low: (f64, f64),
+    high: (f64, f64),
+}
+
+impl Frame {
+    /// What holds all of some points, and a little more if it is seen from nearby.
+    pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
+        /// Around what is seen from nearby, mm.
+        const AROUND: f64 = 12.0;
+        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
+        for (x, y) in points {
+            low = (low.0.min(x), low.1.min(y));
+            high = (high.0.max(x), high.1.max(y));
+        }
+        let more = if near { AROUND } else { 0.0 };
+        Self {
+            low: (low.0 - more, low.1 - more),
+            high: (high.0 + more, high.1 + more),
+        }
+    }
+
+    fn holds(&self, (x, y): (f64, f64)) -> bool {
+        self.low.0 <= x && x <= self.high.0 && self.low.1 <= y && y <= self.high.1
+    }
+}
+
+/// Shapes in the order in which they are drawn.
+#[derive(Default)]
+pub(super) struct Ink {
+    /// Colour, loops, and whether its edge is drawn.
+    shapes: Vec<(String, Vec<Trail>, bool)>,
+}
+
+impl Ink {
+    /// Draws loops over all that is there; loops in loops are holes.
+    pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], edge: bool) {
+        let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
+        self.shapes
+            .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), edge));
+    }
+
+    /// The picture, this many pixels wide, with names at their places on the page.
+    pub(super) fn finish(
+        self,
+        width: f64,
+        frame: &Frame,
+        names: &[((f64, f64), &Label)],
+    ) -> String {
+        let (low, high) = (frame.low, frame.high);
+        let beside = |(_, label): &&((f64, f64), &Label)| label.beside;
+        let side = if names.iter().any(|name| beside(&name)) {
+            BESIDE
+        } else {
+            0.0
+        };
+        let room = width - 2.0 * (MARGIN + side);
+        let scale = room / (high.0 - low.0);
+        let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
+        let x0 = MARGIN + side;
+        // Each colour is named once, and a point is whole tenths of a pixel from the one
+        // before: a quarter of the text.
+        let mut styles: Vec<(&str, bool)> = Vec::new();
+        let mut paths = String::new();
+        let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
+        for (colour, loops, edge) in &self.shapes {
+            let style = (colour.as_str(), *edge);
+            let class = styles.iter().position(|of| *of == style);
+            let class = class.unwrap_or_else(|| {
+                styles.push(style);
+                styles.len() - 1
+            });
+            let mut data = String::new();
+            let mut at = (0, 0);
+            for line in loops {
+                let mut begin = None;
+                for (x, y) in line {
+                    let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
+                    let (x, y) = (to.0 - at.0, to.1 - at.1);
+                    // Behind the first point each pair is a line, and a minus separates.
+                    let _ = match (begin, x < 0) {
+                        (None, _) => write!(data, "m{x}"),
+                        (Some(_), _) if (x, y) == (0, 0) => continue,
+                        (Some(_), true) => write!(data, "{x}"),
+                        (Some(_), false) => write!(data, " {x}"),
+                    };
+                    let _ = write!(data, "{}{y}", if y < 0 { "" } else { " " });
+                    begin.get_or_insert(to);
+                    at = to;
+                }
+                data.push('z');
+                at = begin.unwrap_or(at);
+            }
+            let _ = writeln!(paths, "<path class=\"c{class}\" d=\"{data}\"/>");
+        }
+        let mut text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             width=\"{width}\" height=\"{height}\">\n<style>\n"
+        );
+        for (class, (colour, edge)) in styles.into_iter().enumerate() {
+            // A wall's own colour as a hair line closes the seams between walls.
+            let (stroke, thick) = if edge { ("#333", 5) } else { (colour, 4) };
+            let _ = writeln!(
+                text,
+                ".c{class}{{fill:{colour};stroke:{stroke};stroke-width:{thick}}}"
+            );
+        }
+        let _ = write!(
+            text,
+            "</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
+             <g transform=\"scale(.1)\" fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
+        );
+        text.push_str("</g>\n");
+        let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
+        let shown: Vec<_> = names.iter().filter(|(at, _)| frame.holds(*at)).collect();
+        for (at, label) in shown.iter().filter(|(_, label)| !label.beside) {
+            let (x, y) = page(*at);
+            let _ = writeln!(
+                text,
+                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT} font-weight=\"bold\" \
+                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
+                label.text
+            );
+        }
+        for left in [true, false] {
+            let middle = width / 2.0;
+            let here = shown.iter().filter(|(_, label)| label.beside);
+            let places = here.map(|(at, label)| (page(*at), label));
+            let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
+            column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
+            write_column(&mut text, &column, left, width, height);
+        }
+        text.push_str("</svg>\n");
+        text
+    }
+}
+
+/// Names below each other at one side, each with a line to its place.
+fn write_column(
+    text: &mut String,
+    column: &[((f64, f64), &&Label)],
+    left: bool,
+    width: f64,
+    height: f64,
+) {
+    let count = column.len() as f64;
+    let mut least = LINE;
+    for (number, ((x, y), label)) in column.iter().enumerate() {
+        let most = height - (count - number as f64) * LINE + 8.0;
+        let at = (y + 4.0).min(most).max(least);
+        least = at + LINE;
+        let (edge, end, anchor) = match left {
+            true => (8.0, BESIDE - 4.0, "start"),
+            false => (width - 8.0, width - BESIDE + 4.0, "end"),
+        };
+        // The line begins where the words end, about.
+        let words = 6.4 * label.text.chars().count() as f64;
+        let from = if left { edge + words } else { edge - words };
+        let from = if left { from.min(end) } else { from.max(end) };
+        let _ = writeln!(
+            text,
+            "<path d=\"M{from:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
+             <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
+             <text x=\"{edge}\" y=\"{at:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+            at - 4.0,
+            label.text
+        );
+    }
+}
