@@ -139,14 +139,14 @@ clean: ## remove everything that was built
 	@mkdir -p $(dir $(LIZARD))
 	@ln -f $(HOST)/release/lizard $(LIZARD)
 
-# What a simulation needs of the host program, in a profile that compiles fast.
+# What a simulation needs of the host program; `make test` takes up most of what this compiles.
 .simulator:
-	@cd host && $(CARGO) build --profile sim --no-default-features --features simulator
+	@cd host && $(CARGO) build --no-default-features --features simulator
 
 # Both builds at once: each has phases that keep only one core busy.
 .sim:
 	@$(MAKE) -j2 .firmware .simulator
-	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
+	@$(HOST)/debug/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
 # Which packages are tested: TESTS="-p lizard-host-tests" has those that run the image.
 TESTS ?= --workspace

@@ -4,6 +4,7 @@ use object::build::elf::{Section, SectionId};
 use object::elf;
 
 use super::Object;
+use crate::edit::Reference;
 use crate::instruction::{runs_on, skips};
 use crate::order::{Call, Pieces};
 
