@@ -114,7 +114,8 @@ impl Proof {
         share: Share,
         progress: impl Fn(u64) + Sync,
     ) -> Self {
-        let piece = |place| walk::piece(robot, guard, share, place, &progress);
+        let walk = walk::Walk::new(robot, guard, share);
+        let piece = |place| walk.piece(place, &progress);
         Self::with(robot, guard, (0..walk::PIECES).map(piece).collect())
     }
 
@@ -165,7 +166,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .map_err(|error| Failure::Impossible(error.to_string()))?;
     let rows = Proof::rows(guard) * args.spread.own(walk::PIECES) as u64 / walk::PIECES as u64;
     let bar = ProgressBar::new(rows).with_style(style);
-    let piece = |place| walk::piece(&robot, guard, share, place, &|rows| bar.inc(rows));
+    let walk = walk::Walk::new(&robot, guard, share);
+    let piece = |place| walk.piece(place, &|rows| bar.inc(rows));
     let pieces = args.spread.all(&args, &args.robot, walk::PIECES, piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {

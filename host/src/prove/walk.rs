@@ -1,5 +1,7 @@
 //! Rows and columns of positions, and the two decisions at each pair.
 
+use std::sync::OnceLock;
+
 use lizard_core::cells::Cells;
 use lizard_core::five_bar::EndMargins;
 use lizard_core::part;
@@ -21,26 +23,44 @@ const CUTS: usize = 64;
 /// Pieces of the whole walk: of both ends and of both sides.
 pub const PIECES: usize = 4 * CUTS;
 
-/// One piece of the walk by its place, below [`PIECES`].
-pub fn piece(
-    robot: &Robot,
-    guard: &CoreRobot,
+/// The walk of a robot's pairs with a guard: what all of its pieces need is computed once.
+pub struct Walk<'a> {
+    robot: &'a Robot,
+    guard: &'a CoreRobot,
     share: Share,
-    place: usize,
-    progress: &(impl Fn(u64) + Sync),
-) -> Tally {
-    let (whole, cut) = (place / CUTS, place % CUTS);
-    let maps = robot.cell_maps();
-    let of = |[first, second]: [usize; 2]| [first, second].map(|servo| Positions::of(guard, servo));
-    if let Some(end) = End::ALL.get(whole) {
-        let pair = of(end.servos());
-        let walk = EndWalk::new(robot, guard, &maps, *end);
-        walk.walk(pair.each_ref(), share, cut, progress)
-    } else {
-        let side = Side::ALL[whole - End::ALL.len()];
-        let pair = of(side.servos());
-        let walk = SideWalk::new(robot, guard, &maps, side);
-        walk.walk(pair.each_ref(), share, cut, progress)
+    maps: CellMaps,
+    /// Of each servo, as soon as a piece needs them.
+    positions: [OnceLock<Positions>; 4],
+}
+
+impl<'a> Walk<'a> {
+    /// Through a share of the pairs.
+    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, share: Share) -> Self {
+        Self {
+            robot,
+            guard,
+            share,
+            maps: robot.cell_maps(),
+            positions: Default::default(),
+        }
+    }
+
+    fn positions(&self, servo: usize) -> &Positions {
+        self.positions[servo].get_or_init(|| Positions::of(self.guard, servo))
+    }
+
+    /// One piece by its place, below [`PIECES`].
+    pub fn piece(&self, place: usize, progress: &(impl Fn(u64) + Sync)) -> Tally {
+        let (whole, cut) = (place / CUTS, place % CUTS);
+        let of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
+        if let Some(end) = End::ALL.get(whole) {
+            let walk = EndWalk::new(self.robot, self.guard, &self.maps, *end);
+            walk.walk(of(end.servos()), self.share, cut, progress)
+        } else {
+            let side = Side::ALL[whole - End::ALL.len()];
+            let walk = SideWalk::new(self.robot, self.guard, &self.maps, side);
+            walk.walk(of(side.servos()), self.share, cut, progress)
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::picture::Label;
+use lizard_kinematics::Vector;
 
 /// Around the robot, pixels.
 const MARGIN: f64 = 12.0;
@@ -13,6 +13,20 @@ const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
 /// Points on the page.
 pub(super) type Trail = Vec<(f64, f64)>;
+
+/// A name in a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// What it names, chassis frame, mm.
+    pub at: Vector,
+    /// Its height, mm.
+    pub z: f64,
+    /// The name.
+    pub text: String,
+    /// Whether it is written beside the picture with a line to its place, as the names of
+    /// parts are, or on the place itself.
+    pub beside: bool,
+}
 
 /// What of the page is shown, mm before the page's scale.
 pub(super) struct Frame {

@@ -7,7 +7,8 @@ use lizard_kinematics::{Solution, Vector};
 use lizard_robot::servo::NAMES;
 
 use crate::bodies::assembly::Assembly;
-use crate::guide::picture::{Drawn, Label};
+use crate::guide::ink::Label;
+use crate::guide::picture::Drawn;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 

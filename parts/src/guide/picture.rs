@@ -11,7 +11,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::layers::outline::{Loop, Outline};
 
-use super::ink::{Frame, Ink, Trail};
+use super::ink::{Frame, Ink, Label, Trail};
 
 /// A body to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -22,20 +22,6 @@ pub struct Drawn<'a> {
     pub lift: f64,
     /// Whether it is drawn in grey, because the picture is about others.
     pub pale: bool,
-}
-
-/// A name in a picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Label {
-    /// What it names, chassis frame, mm.
-    pub at: Vector,
-    /// Its height, mm.
-    pub z: f64,
-    /// The name.
-    pub text: String,
-    /// Whether it is written beside the picture with a line to its place, as the names of
-    /// parts are, or on the place itself.
-    pub beside: bool,
 }
 
 /// Where it is seen from.
