@@ -5,7 +5,7 @@
 //! answer, no pulse leaves a servo's limits, and what was saved stays whole.
 //!
 //! [`console`] and [`memory`] check that for one input. `make test` calls them with
-//! ten million seeded random bytes and lines, `make fuzz` with what LLVM's libFuzzer
+//! millions of seeded random bytes and lines, `make fuzz` with what LLVM's libFuzzer
 //! finds.
 
 mod board;

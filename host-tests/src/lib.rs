@@ -3,11 +3,13 @@
 
 pub mod avr_gcc;
 mod bench;
+mod extent;
 pub mod judge;
 pub mod random_robot;
 mod robots;
 
 pub use bench::{FirmwareBench, bench_of};
+pub use extent::{minutes, times};
 pub use lizard_host::sim::frame::{FRAME, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{Named, paper, rng, robot, robots, root, seed};

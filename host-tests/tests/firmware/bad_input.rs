@@ -1,5 +1,5 @@
 //! Random bytes, and lines that are nearly right, into the running image as fast as the
-//! line carries them: a minute of each, or as many as `LIZARD_FUZZ_MINUTES` says.
+//! line carries them: for 15 seconds each, or as many times that as `LIZARD_FUZZ` says.
 
 use fastrand::Rng;
 use lizard_core::record::{self, Outcome};
@@ -14,17 +14,15 @@ use crate::{awake, end_flood, lines};
 /// Bytes that the line carries in a second.
 const PER_SECOND: usize = 11_520;
 
-fn minutes() -> u64 {
-    let given = std::env::var("LIZARD_FUZZ_MINUTES").ok();
-    given.and_then(|given| given.parse().ok()).unwrap_or(1)
-}
+/// How long each goes on, seconds.
+const SECONDS: u64 = 15;
 
 /// Sends bytes for all that time, and looks every second.
 fn endure(mut bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
     let mut bench = awake(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
-    for second in 0..60 * minutes() {
+    for second in 0..lizard_host_tests::times(SECONDS) {
         let mut sent = Vec::new();
         while sent.len() < PER_SECOND {
             sent.extend(bytes(&mut rng));
