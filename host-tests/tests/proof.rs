@@ -33,7 +33,7 @@ fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong_for_any_r
             offset: (seed().wrapping_add(number) % u64::from(ONE_IN)) as u32,
         };
         let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
-        let proof = Proof::of(&robot, robot.firmware(), share, |_| {});
+        let proof = Proof::of(&robot, robot.firmware(), share, &|_| {});
         let pairs: u64 = proof.findings.iter().map(|one| one.tally.pairs).sum();
         assert!(pairs > 250_000, "{pairs} pairs are no walk");
         let certified = proof.certified();
@@ -72,10 +72,10 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
         offset: 1,
     };
     assert_eq!(
-        Proof::of(&robot, robot.firmware(), share, |_| {}).wrong(),
+        Proof::of(&robot, robot.firmware(), share, &|_| {}).wrong(),
         0
     );
-    let proof = Proof::of(&robot, longer.firmware(), share, |_| {});
+    let proof = Proof::of(&robot, longer.firmware(), share, &|_| {});
     for (finding, seen) in proof.findings.iter().zip([true, false, true, true]) {
         assert_eq!(finding.tally.wrong > 0, seen, "{}", finding.part);
     }

@@ -112,10 +112,10 @@ impl Proof {
         robot: &Robot,
         guard: &CoreRobot,
         share: Share,
-        progress: impl Fn(u64) + Sync,
+        progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
         let walk = walk::Walk::new(robot, guard, share);
-        let piece = |place| walk.piece(place, &progress);
+        let piece = |place| walk.piece(place, progress);
         Self::with(robot, guard, (0..walk::PIECES).map(piece).collect())
     }
 

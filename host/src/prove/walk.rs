@@ -50,7 +50,7 @@ impl<'a> Walk<'a> {
     }
 
     /// One piece by its place, below [`PIECES`].
-    pub fn piece(&self, place: usize, progress: &(impl Fn(u64) + Sync)) -> Tally {
+    pub fn piece(&self, place: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
         let (whole, cut) = (place / CUTS, place % CUTS);
         let of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
         if let Some(end) = End::ALL.get(whole) {
@@ -149,7 +149,7 @@ fn columns(share: Share, row: usize, count: usize) -> impl Iterator<Item = usize
 fn rows_of(
     first: &Positions,
     cut: usize,
-    progress: &(impl Fn(u64) + Sync),
+    progress: &(dyn Fn(u64) + Sync),
     row: impl Fn(usize) -> Tally + Sync,
 ) -> Tally {
     let rows = first.fixed.len();
@@ -239,7 +239,7 @@ impl<'a> EndWalk<'a> {
         [left, right]: [&Positions; 2],
         share: Share,
         cut: usize,
-        progress: &(impl Fn(u64) + Sync),
+        progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
         rows_of(left, cut, progress, |row| {
             let mut tally = Tally::default();
@@ -399,7 +399,7 @@ impl<'a> SideWalk<'a> {
         [front, rear]: [&Positions; 2],
         share: Share,
         cut: usize,
-        progress: &(impl Fn(u64) + Sync),
+        progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
         let turned = |direction: Direction| match self.side {
             Side::Left => direction,
