@@ -3,7 +3,7 @@
 use std::string::String;
 use std::vec::Vec;
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use crc::{CRC_32_ISO_HDLC, Crc};
 use lizard_avr::{Flash, Plain};
 
 use super::seal::sealed;
@@ -22,7 +22,7 @@ use crate::supply::Supplies;
 use crate::units::{Angle, Scale};
 
 /// Tells robots apart.
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// A robot's numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]

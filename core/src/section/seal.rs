@@ -8,7 +8,7 @@
 use core::mem::offset_of;
 use std::vec::Vec;
 
-use super::{CHECKED, Header};
+use super::{CHECKED, Header, SPACE};
 use crate::checksum::Checksum;
 
 /// A byte of erased flash.
@@ -48,33 +48,44 @@ pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
 /// Whether bytes that were written to some place, with erased flash behind them, have the
 /// sum of all of them. They may be all of them: the last ones may be erased flash's own.
 fn a_beginning_passes(bytes: &[u8]) -> bool {
-    // The sum is linear: that of a beginning differs by the sum, from zero, of what the
-    // bytes behind it differ by. What each bit adds to that sum moves on by eight steps with
-    // every byte that follows it.
-    let mut of_bits: [u16; 8] = core::array::from_fn(|bit| Checksum(0).and(1 << bit).0);
-    let mut differs = 0;
+    let mut sum = Checksum::NOTHING;
+    let mut beginnings = Vec::with_capacity(bytes.len());
+    for byte in bytes {
+        beginnings.push(sum);
+        sum = sum.and(*byte);
+    }
+    // What a beginning's sum would have to be, for the erased bytes behind it to make it that
+    // of all.
+    let mut needed = sum;
     let mut is_whole = true;
-    for byte in bytes.iter().rev() {
-        for (bit, sum) in of_bits.iter_mut().enumerate() {
-            if (byte ^ ERASED) >> bit & 1 == 1 {
-                differs ^= *sum;
-            }
-            *sum = Checksum(*sum).and(0).0;
-        }
+    for (byte, beginning) in bytes.iter().zip(beginnings).rev() {
+        needed = before(needed, ERASED);
         is_whole &= *byte == ERASED;
-        if differs == 0 && !is_whole {
+        if !is_whole && beginning == needed {
             return true;
         }
     }
     false
 }
 
+/// The sum to which this byte was added: [`Checksum::and`] backward.
+const fn before(sum: Checksum, byte: u8) -> Checksum {
+    // The sum's low half came from the high half before and the byte alone.
+    let low = sum.0 as u8;
+    let out = low ^ (low << 5);
+    let high = out ^ (out >> 4) ^ byte;
+    let out = out as u16;
+    let low = (sum.0 ^ (out << 12) ^ (out << 5) ^ out) >> 8;
+    Checksum((high as u16) << 8 | low)
+}
+
 /// Whether a length that is one bit off has the sum of this one, with erased flash behind
-/// the section.
+/// the section. No board takes one of more than [`SPACE`].
 fn another_length_passes(section: &[u8]) -> bool {
     let own = Checksum::of(&section[CHECKED..]);
-    (0..16).any(|bit| {
-        let length = section.len() ^ 1 << bit;
+    let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
+    let mut lengths = lengths.filter(|length| *length <= SPACE.into());
+    lengths.any(|length| {
         let Some(behind) = length.checked_sub(section.len()) else {
             return length > CHECKED && Checksum::of(&section[CHECKED..length]) == own;
         };
@@ -96,6 +107,15 @@ mod tests {
             cut[end..].fill(ERASED);
             cut != bytes && Checksum::of(&cut) == own
         })
+    }
+
+    #[test]
+    fn every_byte_of_a_sum_can_be_taken_back() {
+        for sum in (0..=u16::MAX).map(Checksum) {
+            for byte in 0..=u8::MAX {
+                assert_eq!(before(sum.and(byte), byte), sum);
+            }
+        }
     }
 
     proptest! {
