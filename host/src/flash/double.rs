@@ -1,8 +1,10 @@
 //! For tests: a board whose boot loader is played, byte for byte as optiboot.c, version 4.4,
-//! or ATmegaBOOT_168.c has it, with troubles where a test wants them. Time does not pass in it.
+//! or ATmegaBOOT_168.c has it, with troubles where a test wants them.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
+use std::thread;
+use std::time::Duration;
 
 use super::stk500::{Board, Kind};
 
@@ -185,6 +187,8 @@ impl Read for Double {
             return Err(io::Error::from_raw_os_error(5));
         }
         if self.out.is_empty() {
+            // A port waits for a while, too, and leaves the processor to others.
+            thread::sleep(Duration::from_micros(200));
             return Err(ErrorKind::TimedOut.into());
         }
         // In small pieces, as a serial port gives them.
