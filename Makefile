@@ -27,7 +27,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -139,14 +139,14 @@ clean: ## remove everything that was built
 	@mkdir -p $(dir $(LIZARD))
 	@ln -f $(HOST)/release/lizard $(LIZARD)
 
-# What a simulation needs of the host program; `make test` takes up most of what this compiles.
+# What a simulation needs of the host program, in a profile that compiles fast.
 .simulator:
-	@cd host && $(CARGO) build --no-default-features --features simulator
+	@cd host && $(CARGO) build --profile sim --no-default-features --features simulator
 
 # Both builds at once: each has phases that keep only one core busy.
 .sim:
 	@$(MAKE) -j2 .firmware .simulator
-	@$(HOST)/debug/lizard sim --elf $(ELF) $(FOR_ROBOT)
+	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
 # Which packages are tested: TESTS="-p lizard-host-tests" has those that run the image.
 TESTS ?= --workspace
@@ -158,13 +158,21 @@ TESTS ?= --workspace
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others. One that
 # fails a test is written to a folder proptest-regressions, is tried first from then on,
 # and belongs into the repository.
+.workspace:
+	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test $(TESTS) --no-fail-fast --quiet
+
+# Beside the tests above, many of which wait; what it says is shown at the end.
+WALKS := target/walks.log
+.walks:
+	@mkdir -p $(dir $(WALKS))
+	@MAKEFLAGS= scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) walks > $(WALKS) 2>&1
+
 # Where the judge cannot be set up, its tests fail and say so; the others run.
 .test:
 	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
 	@$(MAKE) .sweep
-	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} cargo test $(TESTS) --no-fail-fast --quiet
-	$(if $(ROBOT),,@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) walks)
+	$(if $(ROBOT),@$(MAKE) .workspace,@$(MAKE) -j2 -k .workspace .walks; result=$$?; cat $(WALKS); exit $$result)
 
 # FreeCAD and PrusaSlicer are large, so they are set up here alone.
 .parts-test:

@@ -5,22 +5,10 @@ use lizard_kinematics::{Pose, Side, Solution, Vector};
 use lizard_parts::{Assembly, Body, Clash, ENOUGH, LEAST, Mount, Proof, Shape};
 use lizard_robot::Robot;
 
-fn text(name: &str) -> String {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).expect(&path)
-}
-
-/// What is added where nothing says what drives the legs: slotted struts, which are wider.
-fn driven(more: &str) -> String {
-    match more.contains("[leg.drive]") {
-        true => more.to_owned(),
-        false => format!("[leg.drive]\nkind = \"strut\"\n{more}"),
-    }
-}
+use crate::{driven, with};
 
 fn assembly(name: &str, parts: &str) -> Assembly {
-    let text = format!("{}\n{}", text(name), driven(parts));
-    Assembly::new(&Robot::parse(&text).expect(parts))
+    Assembly::new(&with(name, &driven(parts)))
 }
 
 /// Numbers from 0 to 1, the same in every run.

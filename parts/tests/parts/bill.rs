@@ -1,23 +1,20 @@
 //! The bill counts what the assembly has, and the spring is the strut's.
 
 use lizard_parts::{Assembly, Bill, Hold, Item, Kind};
-use lizard_robot::Robot;
+
+use crate::STRUT;
 
 fn bill(name: &str) -> (Assembly, Bill) {
-    with(name, "")
+    bill_with(name, "")
 }
 
-fn with(name: &str, more: &str) -> (Assembly, Bill) {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect(&path);
-    let robot = Robot::parse(&format!("{text}\n{more}")).expect(name);
+fn bill_with(name: &str, more: &str) -> (Assembly, Bill) {
+    let robot = crate::with(name, more);
     let assembly = Assembly::new(&robot);
     let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
     let bill = Bill::of(&assembly, &assembly.parts(), &pose);
     (assembly, bill)
 }
-
-const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
 #[test]
 fn every_body_is_printed_or_bought() {
@@ -61,7 +58,7 @@ fn every_file_of_robots_weighs_what_its_bill_says() {
             .and_then(|name| name.to_str())
             .expect("a name");
         // Springs are among what the files' masses count.
-        let (assembly, bill) = with(name, STRUT);
+        let (assembly, bill) = bill_with(name, STRUT);
         let body = assembly.robot().ground().body;
         let off = (body.mass - bill.grams).abs();
         assert!(
@@ -109,7 +106,7 @@ fn a_mass_centre_is_told_in_words_and_as_robot_toml_has_it() {
 
 #[test]
 fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
-    let (assembly, bill) = with("paper", STRUT);
+    let (assembly, bill) = bill_with("paper", STRUT);
     let hold = bill.hold.expect("springs");
     let strut = 28.5f64.hypot(10.0);
     assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
@@ -140,7 +137,7 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     let force = hold.force + 5.0 * hold.rate;
     assert!((torque / (force * by) - 1.0).abs() < 1e-4, "{torque}");
     // A spring as weak as walking allows does spare one.
-    let (_, weak) = with(
+    let (_, weak) = bill_with(
         "paper",
         "[leg.drive]\nkind = \"strut\"\nforce = 2.0\nrate = 0.2",
     );
@@ -168,8 +165,8 @@ fn a_held_foot_stretches_its_spring_one_way_only() {
 
 #[test]
 fn rigid_struts_are_printed_instead_and_need_no_springs() {
-    let (_, sprung) = with("paper", STRUT);
-    let (assembly, rigid) = with("paper", "");
+    let (_, sprung) = bill_with("paper", STRUT);
+    let (assembly, rigid) = bill_with("paper", "");
     assert_eq!(sprung.count("tension spring"), 4);
     assert_eq!(rigid.count("tension spring"), 0);
     // The same screws and nuts.
@@ -204,7 +201,7 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
         .next()
         .expect("the drive");
     // What it says to write there makes the same robot.
-    let (again, _) = with("paper", drive);
+    let (again, _) = bill_with("paper", drive);
     let [was, is] = [sprung.hold, Hold::of(&again)].map(|hold| hold.expect("springs"));
     assert!((was.force - is.force).abs() < 0.01 && (was.rate - is.rate).abs() < 0.001);
 }

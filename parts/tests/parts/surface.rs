@@ -1,13 +1,13 @@
 //! Every printed part of every robot has a closed surface of the right volume.
 
 use lizard_parts::{Assembly, Kind, Mesh, Solid};
-use lizard_robot::Robot;
+
+use crate::with;
 
 #[test]
 fn every_printed_part_is_closed_and_has_its_volume() {
     for name in ["paper", "large", "unequal"] {
-        let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let assembly = Assembly::new(&Robot::load(path).expect(name));
+        let assembly = Assembly::new(&with(name, ""));
         let mut printed = 0;
         for body in assembly.bodies().iter().chain(assembly.instead()) {
             if body.kind != Kind::Printed {

@@ -8,15 +8,15 @@ use lizard_robot::Robot;
 use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
 
+use crate::{ROBOTS, with};
+
 const MOTOR: Motor = Motor {
     rate: 500.0,
     stall: 176.0,
 };
-const ROBOTS: [&str; 4] = ["paper", "large", "own-gaits", "unequal"];
 
 fn robot(name: &str) -> Robot {
-    let file = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    Robot::load(file).expect(name)
+    with(name, "")
 }
 
 fn neutral(robot: &Robot) -> Solution {

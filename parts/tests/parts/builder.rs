@@ -5,18 +5,15 @@
 
 use lizard_kinematics::{End, Vector};
 use lizard_parts::{Assembly, Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
-use lizard_robot::Robot;
 
-const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
+use crate::{ROBOTS, STRUT};
 
 fn with(name: &str, more: &str) -> Assembly {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect(&path);
-    Assembly::new(&Robot::parse(&format!("{text}\n{more}")).expect(more))
+    Assembly::new(&crate::with(name, more))
 }
 
 fn sprung(name: &str) -> Assembly {
-    with(name, "[leg.drive]\nkind = \"strut\"")
+    with(name, STRUT)
 }
 
 fn at(x: f64, y: f64) -> Vector {
@@ -42,7 +39,7 @@ fn layers(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
 
 #[test]
 fn a_servo_goes_into_the_plate_with_its_lead() {
-    for name in NAMES {
+    for name in ROBOTS {
         let assembly = with(name, "");
         let servo = assembly.robot().parts().servo;
         let plate = layers(&assembly.body("plate").expect("a plate").prisms);
@@ -97,7 +94,7 @@ fn coil<'a>(assembly: &'a Assembly, leg: &str) -> (&'a Body, &'a Body) {
 
 #[test]
 fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
-    for name in NAMES {
+    for name in ROBOTS {
         let assembly = sprung(name);
         let parts = assembly.robot().parts();
         for (i, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
@@ -152,7 +149,7 @@ fn a_coil_that_rides_on_its_strut_is_found() {
 
 #[test]
 fn every_shop_has_the_screws() {
-    for name in NAMES {
+    for name in ROBOTS {
         for kind in ["strut", "rigid"] {
             let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let mut asked = 0;
@@ -170,7 +167,7 @@ fn every_shop_has_the_screws() {
 
 #[test]
 fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
-    for name in NAMES {
+    for name in ROBOTS {
         let assembly = with(name, "");
         let boss = assembly.stack().servo + assembly.robot().parts().servo.boss;
         let mut asked = 0;

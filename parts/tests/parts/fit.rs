@@ -4,13 +4,7 @@
 use lizard_parts::{Assembly, Clearance};
 use lizard_robot::Robot;
 
-const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
-const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
-
-fn text(name: &str) -> String {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).expect(&path)
-}
+use crate::{ROBOTS, STRUT, text};
 
 /// The nearest pair of the paper's robot with other parts.
 fn nearest(parts: &str) -> Option<Clearance> {
@@ -21,7 +15,7 @@ fn nearest(parts: &str) -> Option<Clearance> {
 
 #[test]
 fn every_robot_has_air_between_its_parts() {
-    for name in NAMES {
+    for name in ROBOTS {
         let text = format!("{}\n{STRUT}", text(name));
         let assembly = Assembly::new(&Robot::parse(&text).expect(name));
         assert!(assembly.poses(10).count() > 100, "{name}");
@@ -76,7 +70,7 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
 
 #[test]
 fn pins_meet_the_holes_of_what_they_hold() {
-    for name in NAMES {
+    for name in ROBOTS {
         let robot = Robot::parse(&text(name)).expect(name);
         let assembly = Assembly::new(&robot);
         let mut met = 0;
@@ -149,7 +143,7 @@ fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
         let refused = refused(parts);
         assert!(refused.contains(sentence), "{refused}");
     }
-    for name in NAMES {
+    for name in ROBOTS {
         let robot = Robot::parse(&text(name)).expect(name);
         assert_eq!(Assembly::new(&robot).fits(), Ok(()), "{name}");
     }

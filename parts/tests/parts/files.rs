@@ -1,13 +1,11 @@
 //! What is in the files: lengths from hole to hole, and the same bytes every time.
 
 use lizard_parts::{Assembly, Body, Loop, Outline, part_files, sheets};
-use lizard_robot::Robot;
+
+use crate::{STRUT, with};
 
 fn assembly(name: &str) -> Assembly {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect(&path);
-    let slotted = format!("{text}\n[leg.drive]\nkind = \"strut\"\n");
-    Assembly::new(&Robot::parse(&slotted).expect(name))
+    Assembly::new(&with(name, STRUT))
 }
 
 /// The middles of the holes of a body through which an M3 screw turns, from above.

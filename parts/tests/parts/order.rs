@@ -3,23 +3,11 @@
 
 use lizard_kinematics::{Solution, Vector};
 use lizard_parts::{Act, Assembly, Body, Kind, Outline, Stage, Step, Unfit, Where, steps};
-use lizard_robot::Robot;
 
-const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
-
-/// What is added where nothing says what drives the legs: slotted struts, which are wider.
-fn driven(more: &str) -> String {
-    match more.contains("[leg.drive]") {
-        true => more.to_owned(),
-        false => format!("[leg.drive]\nkind = \"strut\"\n{more}"),
-    }
-}
+use crate::{ROBOTS, driven, with};
 
 fn assembly(name: &str, more: &str) -> Assembly {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect(&path);
-    let text = format!("{text}\n{}", driven(more));
-    Assembly::new(&Robot::parse(&text).expect(more))
+    Assembly::new(&with(name, &driven(more)))
 }
 
 fn order(assembly: &Assembly) -> Vec<Step> {
@@ -33,7 +21,7 @@ fn neutral(assembly: &Assembly) -> Solution {
 
 #[test]
 fn every_screw_of_every_robot_can_be_reached() {
-    for name in NAMES {
+    for name in ROBOTS {
         for kind in ["strut", "rigid"] {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let asides = assembly.asides(&order(&assembly));
@@ -136,7 +124,7 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
 
 #[test]
 fn parts_that_move_together_are_not_in_one_place() {
-    for name in NAMES {
+    for name in ROBOTS {
         assert_eq!(assembly(name, "").measures_fit(), Ok(()), "{name}");
     }
     // A standoff's screw whose head is in the boss of the board's screw.
