@@ -38,30 +38,38 @@ pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
         let length = u16::try_from(section.len()).expect("at most 65535");
         section[LENGTH..CRC].copy_from_slice(&length.to_le_bytes());
         seal(&mut section);
-        if !a_beginning_passes(&section[CHECKED..]) && !another_length_passes(&section) {
+        let checked = &section[CHECKED..];
+        let sums = sums(checked);
+        if !a_beginning_passes(checked, &sums) && !another_length_passes(length, &sums) {
             return section;
         }
         section.push(0);
     }
 }
 
+/// The sums of a section's beginnings, from none of its bytes to all of them.
+fn sums(bytes: &[u8]) -> Vec<Checksum> {
+    let mut sum = Checksum::NOTHING;
+    let mut sums = Vec::with_capacity(bytes.len() + 1);
+    sums.push(sum);
+    for byte in bytes {
+        sum = sum.and(*byte);
+        sums.push(sum);
+    }
+    sums
+}
+
 /// Whether bytes that were written to some place, with erased flash behind them, have the
 /// sum of all of them. They may be all of them: the last ones may be erased flash's own.
-fn a_beginning_passes(bytes: &[u8]) -> bool {
-    let mut sum = Checksum::NOTHING;
-    let mut beginnings = Vec::with_capacity(bytes.len());
-    for byte in bytes {
-        beginnings.push(sum);
-        sum = sum.and(*byte);
-    }
+fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
     // What a beginning's sum would have to be, for the erased bytes behind it to make it that
     // of all.
-    let mut needed = sum;
+    let mut needed = sums[bytes.len()];
     let mut is_whole = true;
-    for (byte, beginning) in bytes.iter().zip(beginnings).rev() {
+    for (byte, beginning) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
         needed = before(needed, ERASED);
         is_whole &= *byte == ERASED;
-        if !is_whole && beginning == needed {
+        if !is_whole && *beginning == needed {
             return true;
         }
     }
@@ -81,16 +89,17 @@ const fn before(sum: Checksum, byte: u8) -> Checksum {
 
 /// Whether a length that is one bit off has the sum of this one, with erased flash behind
 /// the section. No board takes one of more than [`SPACE`].
-fn another_length_passes(section: &[u8]) -> bool {
-    let own = Checksum::of(&section[CHECKED..]);
-    let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
-    let mut lengths = lengths.filter(|length| *length <= SPACE.into());
-    lengths.any(|length| {
-        let Some(behind) = length.checked_sub(section.len()) else {
-            return length > CHECKED && Checksum::of(&section[CHECKED..length]) == own;
-        };
-        (0..behind).fold(own, |sum, _| sum.and(ERASED)) == own
-    })
+fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
+    let own = sums[usize::from(length) - CHECKED];
+    let is_one_off = |other: u16| (other ^ length).is_power_of_two();
+    let shorter = (CHECKED as u16 + 1..length)
+        .any(|other| is_one_off(other) && sums[usize::from(other) - CHECKED] == own);
+    let mut sum = own;
+    shorter
+        || (length..SPACE).any(|last| {
+            sum = sum.and(ERASED);
+            is_one_off(last + 1) && sum == own
+        })
 }
 
 #[cfg(test)]
@@ -127,7 +136,7 @@ mod tests {
         ) {
             let mut bytes = bytes;
             bytes.extend(std::vec![ERASED; erased]);
-            prop_assert_eq!(a_beginning_passes(&bytes), a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
             // Two more bytes can be chosen so that the sum of a beginning is that of all:
             // all of them are tried.
             let end = end.min(bytes.len());
@@ -139,9 +148,9 @@ mod tests {
                 before.and(*low).and(*high) == target
             });
             bytes.extend(pair.expect("a sum of sixteen bits takes two bytes"));
-            prop_assert_eq!(a_beginning_passes(&bytes), a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
             let differs = cut[end..].iter().chain(&[ERASED; 2]).ne(&bytes[end..]);
-            prop_assert_eq!(a_beginning_passes(&bytes), differs || a_beginning_has_the_sum(&bytes));
+            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), differs || a_beginning_has_the_sum(&bytes));
         }
 
         #[test]

@@ -1,6 +1,9 @@
 //! A robot at its console: lines go in, and every frame that comes is checked for
 //! all that no frame may do.
 
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
 use fastrand::Rng;
 use lizard_core::gait::GaitId;
 use lizard_core::motion::{Activity, Motion};
@@ -31,7 +34,17 @@ const ROUNDING: f64 = 4.0;
 /// begins or ends: `6 way / 8^2` a frame, with a mean pace of 2/3 of the slew limit.
 /// That is half the slew limit, also where one move ends and the next leads straight
 /// back. A gait has its own changes, and gathers or loses its pace on top of them.
+///
+/// Computed once for each robot, by the hash of its numbers: a walker asks for it.
 pub fn jerk(robot: &Robot) -> f64 {
+    static KNOWN: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().expect("no test fails in here");
+    *known
+        .entry(robot.firmware().hash())
+        .or_insert_with(|| most_jerk(robot))
+}
+
+fn most_jerk(robot: &Robot) -> f64 {
     let moves = robot.pace().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
         let (speed, change) = fastest(robot, id);
