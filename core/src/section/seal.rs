@@ -118,6 +118,23 @@ mod tests {
         })
     }
 
+    /// The same as [`another_length_passes`], on what the flash would hold.
+    fn another_length_has_the_sum(section: &[u8]) -> bool {
+        let own = Checksum::of(&section[CHECKED..]);
+        let mut flash = section.to_vec();
+        flash.resize(SPACE.into(), ERASED);
+        let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
+        let mut lengths = lengths.filter(|length| (CHECKED + 1..=flash.len()).contains(length));
+        lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == own)
+    }
+
+    /// Two bytes that lead from one sum to another: a sum of sixteen bits takes two.
+    fn pair(from: Checksum, to: Checksum) -> [u8; 2] {
+        let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
+        let mut right = pairs.filter(|[low, high]| from.and(*low).and(*high) == to);
+        right.next().expect("any two sums are two bytes apart")
+    }
+
     #[test]
     fn every_byte_of_a_sum_can_be_taken_back() {
         for sum in (0..=u16::MAX).map(Checksum) {
@@ -125,6 +142,43 @@ mod tests {
                 assert_eq!(before(sum.and(byte), byte), sum);
             }
         }
+    }
+
+    #[test]
+    fn a_length_one_bit_off_that_has_the_sum_is_found() {
+        let mut found = [0, 0];
+        for length in [300usize, 425] {
+            for bit in 0..8 {
+                let other = length ^ 1 << bit;
+                let mut bytes: Vec<u8> =
+                    (0..length as u32 - 2).map(|n| (n * n >> 3) as u8).collect();
+                if other <= CHECKED || (bytes.len() + 1..length).contains(&other) {
+                    continue;
+                }
+                // Shorter: the sum there. Longer: one to which the erased bytes lead back.
+                let erased = |from| (length..other).fold(from, |sum: Checksum, _| sum.and(ERASED));
+                let target = match other < length {
+                    true => Some(Checksum::of(&bytes[CHECKED..other])),
+                    false => (0..=u16::MAX)
+                        .map(Checksum)
+                        .find(|sum| erased(*sum) == *sum),
+                };
+                let Some(target) = target else { continue };
+                bytes.extend(pair(Checksum::of(&bytes[CHECKED..]), target));
+                assert!(another_length_has_the_sum(&bytes), "{length} and {other}");
+                let sums = sums(&bytes[CHECKED..]);
+                assert!(
+                    another_length_passes(length as u16, &sums),
+                    "{length} and {other}"
+                );
+                found[usize::from(other > length)] += 1;
+            }
+        }
+        let [shorter, longer] = found;
+        assert!(
+            shorter >= 6 && longer >= 6,
+            "{shorter} shorter, {longer} longer"
+        );
     }
 
     proptest! {
@@ -143,11 +197,7 @@ mod tests {
             let mut cut = bytes.clone();
             cut[end..].fill(ERASED);
             let target = Checksum::of(&cut).and(ERASED).and(ERASED);
-            let before = Checksum::of(&bytes);
-            let pair = (0..=u16::MAX).map(u16::to_le_bytes).find(|[low, high]| {
-                before.and(*low).and(*high) == target
-            });
-            bytes.extend(pair.expect("a sum of sixteen bits takes two bytes"));
+            bytes.extend(pair(Checksum::of(&bytes), target));
             prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
             let differs = cut[end..].iter().chain(&[ERASED; 2]).ne(&bytes[end..]);
             prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), differs || a_beginning_has_the_sum(&bytes));
@@ -164,6 +214,7 @@ mod tests {
             prop_assert_eq!(crc, Checksum::of(&section[CHECKED..]).0);
             prop_assert!(section.len() <= bytes.len() + 3);
             prop_assert!(!a_beginning_has_the_sum(&section[CHECKED..]));
+            prop_assert!(!another_length_has_the_sum(&section));
             prop_assert_eq!(&section[CHECKED..bytes.len()], &bytes[CHECKED..]);
         }
     }
