@@ -1,4 +1,5 @@
 // A browser, and the page as any web server would serve it, below a folder of its own.
+import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
@@ -93,7 +94,21 @@ export async function blank(options = {}) {
   limit(opened.keyboard, 'keyboard', ['press', 'down', 'up']);
   limit(opened.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
   opened.setDefaultTimeout(PATIENCE);
+  const wait = opened.waitForFunction.bind(opened);
+  opened.waitForFunction = (question, ...more) => {
+    assert.notEqual(question.constructor.name, 'AsyncFunction', 'a promise passes for a yes here: use until');
+    return wait(question, ...more);
+  };
   return opened;
+}
+
+/** Until the page answers a question with yes, which may take it a while. */
+export async function until(opened, question, value) {
+  const end = Date.now() + PATIENCE;
+  while (!(await opened.evaluate(question, value))) {
+    assert.ok(Date.now() < end, `waited ${PATIENCE / 1000} s for ${question}`);
+    await new Promise((next) => setTimeout(next, 50));
+  }
 }
 
 /**

@@ -119,7 +119,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
   assert.equal(await slider.inputValue(), '35');
   await opened.getByRole('button', { name: 'reset' }).click();
   await advance(opened, 7000);
-  await opened.waitForFunction(async () => {
+  await opened.waitForFunction(() => {
     window.lizard.advance(20);
     return document.querySelector('#speed').value === '100';
   });

@@ -7,7 +7,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { address, advance, blank, close, complaints, DIST, open, serve, tidy, within } from './browser.js';
+import { DIST, address, advance, blank, close, complaints, open, serve, tidy, until, within } from './browser.js';
 
 let folder;
 const servers = [];
@@ -43,7 +43,7 @@ const begun = (opened) => opened.waitForFunction(() => window.lizard);
 /** Until the page is kept, and is the one that answers. */
 async function kept(opened) {
   await begun(opened);
-  await opened.waitForFunction(async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller);
+  await until(opened, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
 }
 
 test('once opened, the page walks without a server, with any of its robots', async () => {
@@ -81,7 +81,7 @@ test('a newer page is offered, taken as a whole when a person says so, and the o
   await opened.getByRole('button', { name: 'Take it now' }).click();
   await opened.locator('h1', { hasText: 'lizard, newer' }).waitFor();
   await begun(opened);
-  await opened.waitForFunction(async (first) => !(await window.caches.keys()).includes(first), first);
+  await until(opened, async (first) => !(await window.caches.keys()).includes(first), first);
   assert.equal((await caches()).length, 1);
 });
 
@@ -99,7 +99,7 @@ test('a page of which a part is missing on the server is not taken, and the one 
   asked.length = 0;
   await opened.reload();
   await begun(opened);
-  await opened.waitForFunction(async () => {
+  await until(opened, async () => {
     const registration = await navigator.serviceWorker.ready;
     return !registration.installing && !registration.waiting;
   });
