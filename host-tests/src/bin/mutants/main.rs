@@ -240,6 +240,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         .arg(filter)
         .current_dir(root().join("host"))
         .env("LIZARD_ELF", elf)
+        .env("LIZARD_FUZZ", "5") // as long as in continuous integration
         .env("PROPTEST_RNG_SEED", "1")
         .env("RUST_BACKTRACE", "0")
         .stdout(file)
