@@ -150,8 +150,9 @@ mod tests {
         for length in [300usize, 425] {
             for bit in 0..8 {
                 let other = length ^ 1 << bit;
-                let mut bytes: Vec<u8> =
-                    (0..length as u32 - 2).map(|n| (n * n >> 3) as u8).collect();
+                let mut bytes: Vec<u8> = (0..length as u32 - 2)
+                    .map(|n| ((n * n) >> 3) as u8)
+                    .collect();
                 if other <= CHECKED || (bytes.len() + 1..length).contains(&other) {
                     continue;
                 }
