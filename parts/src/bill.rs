@@ -5,9 +5,10 @@ use std::fmt;
 
 use lizard_kinematics::{Solution, Vector};
 use lizard_robot::Coil;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
+use crate::decimals;
 use crate::hold::Hold;
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::outline::Outline;
@@ -84,10 +85,13 @@ pub struct Item {
     /// What.
     pub what: String,
     /// Of one, g.
-    #[serde(serialize_with = "tenths")]
+    #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
     /// To print one, h; `None` for what is bought.
-    #[serde(serialize_with = "hundredths", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        serialize_with = "decimals::optional::<100, _>",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub hours: Option<f64>,
 }
 
@@ -122,29 +126,13 @@ pub struct Bill {
     /// To buy.
     pub bought: Vec<Item>,
     /// All of it at neutral, g.
-    #[serde(serialize_with = "tenths")]
+    #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
     /// The mass centre: ahead of, left of and above the plate's middle, mm.
-    #[serde(serialize_with = "each_in_tenths")]
+    #[serde(serialize_with = "decimals::each::<10, _>")]
     pub centre: [f64; 3],
     /// What the leg feels of its spring; `None` where its strut is rigid.
     pub hold: Option<Hold>,
-}
-
-/// Writes what is estimated no finer than it is known.
-fn tenths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
-    out.serialize_f64((10.0 * value).round() / 10.0)
-}
-
-fn each_in_tenths<S: Serializer>(values: &[f64; 3], out: S) -> Result<S::Ok, S::Error> {
-    // And without a minus before 0.
-    let tenths = values.map(|value| (10.0 * value).round() / 10.0 + 0.0);
-    tenths.serialize(out)
-}
-
-fn hundredths<S: Serializer>(value: &Option<f64>, out: S) -> Result<S::Ok, S::Error> {
-    let hours = value.map(|value| (100.0 * value).round() / 100.0);
-    hours.serialize(out)
 }
 
 /// A name for what is not printed, and its mass in g.

@@ -3,9 +3,10 @@
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
+use crate::decimals;
 
 /// What an SG-90 turns at a stall with 4.8 V, N mm: 1.8 kg cm.
 pub const STALL: f64 = 176.0;
@@ -14,30 +15,30 @@ pub const STALL: f64 = 176.0;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Hold {
     /// Length inside its hooks in the strut, mm.
-    #[serde(serialize_with = "thousandths")]
+    #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub installed: f64,
     /// Its pull there, N.
-    #[serde(serialize_with = "thousandths")]
+    #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub force: f64,
     /// N/mm.
-    #[serde(serialize_with = "thousandths")]
+    #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub rate: f64,
     /// Lever of the strut about the leg's pivot, mm: the least and the greatest that any
     /// leg has in any gait. The pull acts square to the anchor's arm at one pose only.
-    #[serde(serialize_with = "each_in_thousandths")]
+    #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub lever: [f64; 2],
     /// Up to this torque the leg follows its servo exactly wherever gaits lead, N mm.
-    #[serde(serialize_with = "thousandths")]
+    #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub preload: f64,
     /// How far a leg lags at the slot's end, deg: the least and the most that gaits' poses
     /// have.
-    #[serde(serialize_with = "each_in_thousandths")]
+    #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub way: [f64; 2],
     /// What holds the leg there, N mm, likewise.
-    #[serde(serialize_with = "each_in_thousandths")]
+    #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub end: [f64; 2],
     /// What dry friction of its pad asks of a leg, N mm.
-    #[serde(serialize_with = "thousandths")]
+    #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub friction: f64,
 }
 
@@ -123,15 +124,4 @@ impl fmt::Display for Hold {
         }
         Ok(())
     }
-}
-
-/// Writes what is computed no finer than anyone needs it.
-fn thousandths<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
-    out.serialize_f64((1000.0 * value).round() / 1000.0)
-}
-
-fn each_in_thousandths<S: Serializer>(values: &[f64; 2], out: S) -> Result<S::Ok, S::Error> {
-    values
-        .map(|value| (1000.0 * value).round() / 1000.0)
-        .serialize(out)
 }

@@ -41,6 +41,7 @@
 
 mod bill;
 mod bodies;
+mod decimals;
 mod files;
 mod guide;
 mod hold;

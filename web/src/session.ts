@@ -33,6 +33,8 @@ const STOPS = 1000;
 const GREETING = '# lizard ';
 /** `boot` acts three seconds after a reset, ms. */
 const BOOTS = 4000;
+/** The pace with which the firmware begins, percent. */
+const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
 /** The way of the last seconds that is kept to measure a cycle. */
 const KEPT_SECONDS = 12;
@@ -363,6 +365,7 @@ export class Session {
     const { link } = this;
     this.beginnings += 1;
     this.doing('stand');
+    this.listener.speed(FULL_PACE);
     this.watching = false;
     this.listener.trouble('board', null);
     this.found(banner(line) ?? 'unknown');

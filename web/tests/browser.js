@@ -102,13 +102,16 @@ export async function blank(options = {}) {
   return opened;
 }
 
+/** By how many pixels the page is wider than its window, 0 if it fits. */
+export const sideways = (opened) =>
+  opened.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+
 /** Until the page answers a question with yes, which may take it a while. */
-export async function until(opened, question, value) {
-  const end = Date.now() + PATIENCE;
-  while (!(await opened.evaluate(question, value))) {
-    assert.ok(Date.now() < end, `waited ${PATIENCE / 1000} s for ${question}`);
-    await new Promise((next) => setTimeout(next, 50));
-  }
+export function until(opened, question, value) {
+  const answered = async () => {
+    while (!(await opened.evaluate(question, value))) await new Promise((next) => setTimeout(next, 50));
+  };
+  return within(`${question} in Chromium`, answered());
 }
 
 /**

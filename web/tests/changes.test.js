@@ -118,12 +118,11 @@ test('the pace slider has what the robot has, after a typed line and after a res
   const slider = opened.getByLabel('Pace');
   assert.equal(await slider.inputValue(), '35');
   await opened.getByRole('button', { name: 'reset' }).click();
-  await advance(opened, 7000);
-  await opened.waitForFunction(() => {
-    window.lizard.advance(20);
-    return document.querySelector('#speed').value === '100';
-  });
+  // Nobody has asked for a status yet.
+  await advance(opened, 1000);
+  assert.equal(await slider.inputValue(), '100');
   assert.equal(await opened.locator('#speed-out').innerText(), '100 %');
+  assert.match(await type(opened, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
 test('what moves nothing with rigid legs says so and cannot be set', async () => {

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy } from './browser.js';
+import { advance, close, complaints, open, sideways, standing, tidy } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -107,8 +107,7 @@ test('a finger draws on a phone, and the page does not scroll meanwhile', async 
   assert.equal(await page.locator('#path-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
   await draw(page, 6);
   await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
-  const { wide, seen } = await page.evaluate(() => ({ wide: document.documentElement.scrollWidth, seen: document.documentElement.clientWidth }));
-  assert.ok(wide <= seen, `${wide} of ${seen} pixels`);
+  assert.equal(await sideways(page), 0);
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -4,23 +4,23 @@
 use lizard_core::gait::{Gait, GaitId};
 use lizard_core::pose::Pose;
 use lizard_core::units::{CYCLE, Sweep};
-use lizard_host_tests::{Named, paper, rng, robots};
+use lizard_host_tests::{Named, paper, robots};
 use lizard_kinematics::End;
 use lizard_robot::servo::{FORWARD, LEGS, OPPOSITE};
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
-use crate::frames::{Walker, long_enough, words};
+use crate::frames::words;
 use crate::truth::is_safe;
 
 /// Phases that the tables tell apart.
 const PHASES: u32 = 65_536;
 /// A gait's own pace, in 1/1024.
-const FULL_PACE: u16 = 1024;
+pub const FULL_PACE: u16 = 1024;
 /// The largest error of a table, deg: the project's promise.
 const TABLE_ERROR: f64 = 0.10;
 
 /// Every gait of every robot, with its place in the core.
-fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Gait)> {
+pub fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Gait)> {
     robots().iter().flat_map(|named| {
         let ids = GaitId::all(named.robot.gaits().len());
         let gaits = named.robot.gaits().iter().zip(ids);
@@ -286,135 +286,6 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
             float.name()
         );
     }
-}
-
-#[test]
-fn a_hundred_cycles_take_a_hundred_periods() {
-    for (Named { name, .. }, float, gait) in gaits() {
-        let frames = (5000.0 * float.period()).round();
-        let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
-        // The advance is rounded to 1/2^24 cycle, so each frame may be half off.
-        let meant = (frames / 50.0 / float.period()).fract();
-        let off = (f64::from(phase) / f64::from(CYCLE)
-            - if float.is_reversed() { -meant } else { meant })
-        .rem_euclid(1.0);
-        let off = off.min(1.0 - off) * f64::from(CYCLE);
-        assert!(
-            off <= 0.5 * frames + 1.0,
-            "{name}: {} is {off} of 2^24 off",
-            float.name()
-        );
-    }
-}
-
-#[test]
-fn every_speed_gives_its_share_of_every_gaits_pace() {
-    const FRAMES: u32 = 1000;
-    let mut rng = rng(8000);
-    let mut worst = 0.0f64;
-    let (mut walked, mut barred) = (0, 0);
-    for named in robots() {
-        for float in named.robot.gaits().iter().skip(1) {
-            let mut walker = Walker::standing(named);
-            walker.does(&words(float));
-            walker.run(long_enough(&named.robot));
-            if walker.motion().hazard().is_some() {
-                barred += 1; // the way to its first pose
-                continue;
-            }
-            walked += 1;
-            for percent in [10, 100, rng.u8(11..100)] {
-                walker.does(&format!("speed {percent}"));
-                walker.run(10);
-                let mut gone = 0i64;
-                for _ in 0..FRAMES {
-                    let before = walker.motion().phase();
-                    walker.run(1);
-                    // The short way round: less than half a cycle in a frame.
-                    let step = walker.motion().phase().wrapping_sub(before) << 8;
-                    gone += i64::from(step as i32 >> 8);
-                }
-                let cycles = gone as f64 / f64::from(CYCLE);
-                let sign = if float.is_reversed() { -1.0 } else { 1.0 };
-                let share = sign * f64::from(percent) / 100.0;
-                let off = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
-                worst = worst.max(off.abs());
-                assert!(
-                    off.abs() <= 0.005,
-                    "{} {} at {percent} %: {off}",
-                    named.name,
-                    float.name()
-                );
-            }
-        }
-    }
-    println!("pace is off by at most {:.2} %", 100.0 * worst);
-    assert!(
-        walked > 10 * barred,
-        "{walked} gaits walked, {barred} barred"
-    );
-}
-
-#[test]
-fn a_gait_asked_for_again_just_goes_on() {
-    for named in robots() {
-        for gait in named.robot.gaits() {
-            let (mut asked, mut spared) = (Walker::standing(named), Walker::standing(named));
-            for frame in 0..150 {
-                if frame % 7 == 0 {
-                    asked.does(&words(gait));
-                }
-                if frame == 0 {
-                    spared.does(&words(gait));
-                }
-                assert_eq!(
-                    asked.frame(),
-                    spared.frame(),
-                    "{}: {}",
-                    named.name,
-                    gait.name()
-                );
-            }
-        }
-    }
-}
-
-#[test]
-fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
-    let (mut walked, mut barred) = (0, 0);
-    for named in robots() {
-        for (gait, id) in named
-            .robot
-            .gaits()
-            .iter()
-            .zip(GaitId::all(named.robot.gaits().len()))
-        {
-            let mut walker = Walker::standing(named);
-            walker.does(&words(gait));
-            let firmware = named.robot.firmware();
-            let table = firmware.gait(id);
-            walker.run(long_enough(&named.robot));
-            if walker.motion().hazard().is_some() {
-                barred += 1; // the way to its first pose
-                continue;
-            }
-            walked += 1;
-            for _ in 0..100 {
-                walker.run(1);
-                let phase = walker.motion().phase();
-                assert_eq!(
-                    walker.pose(),
-                    table.pose(firmware.waves(), phase),
-                    "{}",
-                    named.name
-                );
-            }
-        }
-    }
-    assert!(
-        walked > 10 * barred,
-        "{walked} gaits walked, {barred} barred"
-    );
 }
 
 #[test]

@@ -15,3 +15,4 @@ mod motion;
 mod motion_guard;
 mod paper_conditions;
 mod truth;
+mod under_way;

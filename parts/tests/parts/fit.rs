@@ -2,13 +2,12 @@
 //! of the parts is wrong, something does.
 
 use lizard_parts::{Assembly, Clearance};
-use lizard_robot::Robot;
 
-use crate::{ROBOTS, STRUT, text};
+use crate::{ROBOTS, STRUT, with};
 
 /// The nearest pair of the paper's robot with other parts.
 fn nearest(parts: &str) -> Option<Clearance> {
-    let robot = Robot::parse(&format!("{}\n{STRUT}\n{parts}", text("paper"))).expect(parts);
+    let robot = with("paper", &format!("{STRUT}\n{parts}"));
     let assembly = Assembly::new(&robot);
     assembly.nearest(assembly.poses(9), 1.0).into_iter().next()
 }
@@ -16,8 +15,7 @@ fn nearest(parts: &str) -> Option<Clearance> {
 #[test]
 fn every_robot_has_air_between_its_parts() {
     for name in ROBOTS {
-        let text = format!("{}\n{STRUT}", text(name));
-        let assembly = Assembly::new(&Robot::parse(&text).expect(name));
+        let assembly = Assembly::new(&with(name, STRUT));
         assert!(assembly.poses(10).count() > 100, "{name}");
         let near = assembly.nearest(assembly.poses(10), 0.2);
         assert!(near.is_empty(), "{name}: {}", near[0]);
@@ -45,7 +43,7 @@ fn a_wrong_measure_makes_parts_overlap() {
 
 #[test]
 fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
-    let assembly = Assembly::new(&Robot::parse(&text("unequal")).expect("unequal"));
+    let assembly = Assembly::new(&with("unequal", ""));
     let mut names: Vec<_> = assembly.bodies().iter().map(|body| &body.name).collect();
     names.sort();
     let count = names.len();
@@ -71,7 +69,7 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
 #[test]
 fn pins_meet_the_holes_of_what_they_hold() {
     for name in ROBOTS {
-        let robot = Robot::parse(&text(name)).expect(name);
+        let robot = with(name, "");
         let assembly = Assembly::new(&robot);
         let mut met = 0;
         for pose in assembly.poses(5) {
@@ -113,7 +111,7 @@ fn pins_meet_the_holes_of_what_they_hold() {
 #[test]
 fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
     let refused = |parts: &str| {
-        let robot = Robot::parse(&format!("{}\n{STRUT}\n{parts}", text("paper"))).expect(parts);
+        let robot = with("paper", &format!("{STRUT}\n{parts}"));
         let unfit = Assembly::new(&robot).fits().expect_err(parts);
         unfit.to_string()
     };
@@ -144,7 +142,7 @@ fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
         assert!(refused.contains(sentence), "{refused}");
     }
     for name in ROBOTS {
-        let robot = Robot::parse(&text(name)).expect(name);
+        let robot = with(name, "");
         assert_eq!(Assembly::new(&robot).fits(), Ok(()), "{name}");
     }
 }
@@ -152,7 +150,7 @@ fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
 #[test]
 fn an_ideal_spring_is_no_part() {
     let ideal = "[leg.drive]\nkind = \"spring\"\nstiffness = 10.0";
-    let robot = Robot::parse(&format!("{}\n{ideal}", text("paper"))).expect("a robot");
+    let robot = with("paper", ideal);
     let refused = Assembly::new(&robot).fits().expect_err("no part is ideal");
     assert_eq!(
         refused.to_string(),

@@ -18,15 +18,11 @@ const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 /// Legs on slotted struts.
 const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
-/// A file of robots/.
-fn text(name: &str) -> String {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).expect(&path)
-}
-
-/// Its robot with more lines at the end.
+/// The robot of a file of robots/, with more lines at the end.
 fn with(name: &str, more: &str) -> Robot {
-    Robot::parse(&format!("{}\n{more}", text(name)))
+    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect(&path);
+    Robot::parse(&format!("{text}\n{more}"))
         .unwrap_or_else(|error| panic!("{name} with {more}: {error}"))
 }
 

@@ -13,6 +13,9 @@ use super::*;
 use crate::firmware::robot_in;
 use crate::flash::file;
 
+mod alone;
+mod nano;
+
 /// Five pages, the last in part.
 fn image() -> Image {
     Image::new(bytes(600, 3)).expect("it fits")
@@ -90,6 +93,32 @@ impl Run {
     fn does_nothing(&self) -> bool {
         self.board.flash[..2] == [0xff, 0xcf]
     }
+}
+
+/// A file of robots/.
+fn robot(name: &str) -> Robot {
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    Robot::load(robots.join(name).with_extension("toml")).expect("it is right")
+}
+
+/// A board with the firmware and this robot.
+fn with_robot(name: &str) -> Double {
+    let image = file::image(&robot(name)).expect("it fits");
+    Double::with(image.bytes())
+}
+
+fn alone(name: &str) -> Image {
+    file::robot_alone(&robot(name)).expect("it fits")
+}
+
+/// The name of the robot that the firmware would find.
+fn its_robot(board: &Double) -> Option<String> {
+    robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
+}
+
+/// The robot of this file with the code.
+fn whole(name: &str) -> Image {
+    file::image(&robot(name)).expect("it fits")
 }
 
 #[test]
@@ -285,249 +314,4 @@ fn a_board_unplugged_before_the_first_page_has_what_it_had() {
             .ends_with("Nothing was written: the board has what it had")
     );
     assert_eq!(run.board.flash[..500], [9; 500]);
-}
-
-/// A file of robots/.
-fn robot(name: &str) -> Robot {
-    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
-    Robot::load(robots.join(name).with_extension("toml")).expect("it is right")
-}
-
-/// A board with the firmware and this robot.
-fn with_robot(name: &str) -> Double {
-    let image = file::image(&robot(name)).expect("it fits");
-    Double::with(image.bytes())
-}
-
-fn alone(name: &str) -> Image {
-    file::robot_alone(&robot(name)).expect("it fits")
-}
-
-/// The name of the robot that the firmware would find.
-fn its_robot(board: &Double) -> Option<String> {
-    robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
-}
-
-#[test]
-fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_last() {
-    let run = run_with(with_robot("paper"), &alone("unequal"));
-    let done = run.result.expect("it is written");
-    let section = robot("unequal").section();
-    let pages: Vec<usize> = (0x6a00..0x6a00 + section.len()).step_by(128).collect();
-    assert_eq!(done.written, pages.len(), "each byte of the robots differs");
-    let order = [&pages[..], &[0x6a00]].concat();
-    assert_eq!(run.board.written, order);
-    let whole = file::image(&robot("unequal")).expect("it fits");
-    assert!(run.board.flash[..whole.end()] == *whole.bytes());
-    assert!(run.board.left, "the firmware is started");
-    let [found] = &run.found[..] else {
-        panic!("{:?}", run.found)
-    };
-    assert!(found.contains(" robot paper "), "{found}");
-}
-
-#[test]
-fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/paper.toml");
-    let text = std::fs::read_to_string(path).expect("it is there");
-    let slower = text.replacen("period = 1.25", "period = 1.5", 1);
-    assert_ne!(slower, text);
-    let slower = Robot::parse(&slower).expect("it is right");
-    let run = run_with(
-        with_robot("paper"),
-        &file::robot_alone(&slower).expect("it fits"),
-    );
-    let done = run.result.expect("it is written");
-    assert!((1..=3).contains(&done.written), "{done:?}");
-    // Ten bits a byte.
-    let seconds = (run.board.received + run.board.sent) as f64 * 10.0 / 115_200.0;
-    assert!((0.2..0.6).contains(&seconds), "{seconds} s");
-}
-
-#[test]
-fn a_robot_that_the_board_has_is_not_written() {
-    let run = run_with(with_robot("paper"), &alone("paper"));
-    assert_eq!(run.result.expect("it is right").written, 0);
-    assert!(run.board.written.is_empty() && run.board.left);
-    assert!(run.found[0].ends_with(" already"), "{:?}", run.found);
-}
-
-#[test]
-fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
-    let (before, large) = (with_robot("own-gaits").flash, alone("large"));
-    let code = before[..0x6a00].to_vec();
-    for written in 1..=large.pages().len() {
-        let mut board = Double::with(&before);
-        board.unplugged_after = Some(written);
-        let cut = run_with(board, &large);
-        let words = cut.words();
-        assert!(words.starts_with("the port is gone"), "{words}");
-        assert!(words.contains("fault=robot and moves no servo"), "{words}");
-        assert!(cut.board.flash[..0x6a00] == code, "the code");
-        assert_eq!(its_robot(&cut.board), None, "after {written} pages");
-        let mut board = cut.board;
-        board.unplugged_after = None;
-        let mended = run_with(board, &large);
-        assert!(
-            mended.found[0].contains(" without a robot"),
-            "{:?}",
-            mended.found
-        );
-        assert!(mended.result.is_ok(), "{}", mended.words());
-        assert_eq!(its_robot(&mended.board).as_deref(), Some("large"));
-    }
-}
-
-#[test]
-fn any_one_byte_that_is_lost_while_a_robot_is_written_is_made_up_for() {
-    let (before, paper) = (with_robot("own-gaits").flash, alone("paper"));
-    let right = file::image(&robot("paper")).expect("it fits");
-    let whole = run_with(Double::with(&before), &paper).board;
-    let is_right = |run: &Run, at: usize| {
-        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
-        assert!(
-            run.board.flash[..right.end()] == *right.bytes(),
-            "byte {at}"
-        );
-    };
-    for at in (0..whole.received).step_by(17) {
-        let mut board = Double::with(&before);
-        board.lost_to = Some(at);
-        is_right(&run_with(board, &paper), at);
-    }
-    for at in (0..whole.sent).step_by(101) {
-        let mut board = Double::with(&before);
-        board.lost_from = Some(at);
-        is_right(&run_with(board, &paper), at);
-    }
-}
-
-#[test]
-fn a_robot_alone_is_refused_where_the_code_is_none_that_reads_it() {
-    let (before, large) = (with_robot("paper").flash, alone("large"));
-    let refused = |change: &dyn Fn(&mut Double)| {
-        let mut board = Double::with(&before);
-        change(&mut board);
-        let before = board.flash.clone();
-        let run = run_with(board, &large);
-        assert!(run.board.flash == before && run.board.written.is_empty());
-        run.words()
-    };
-    let why = "a robot alone moves nothing: write both, without --only-robot. Nothing was written";
-    assert_eq!(
-        refused(&|board| board.flash[..BOOT].fill(0xff)),
-        format!("the board has no program, and {why}")
-    );
-    // Another sketch, shorter than the firmware, most of which is still there.
-    assert_eq!(
-        refused(&|board| board.flash[..1000].fill(0x95)),
-        format!("the board has another program, and {why}")
-    );
-    assert_eq!(
-        refused(&|board| {
-            board.flash[..PAGE].fill(0xff);
-            board.flash[..2].copy_from_slice(&IDLE);
-        }),
-        format!("the board has half a program, which does nothing, and {why}")
-    );
-    let words = refused(&|board| board.flash[AT + 4] += 1);
-    assert!(
-        words.ends_with(&format!(
-            ", whose robots are of format {}; this program's are of format {FORMAT}. Write both, \
-             without --only-robot. Nothing was written",
-            FORMAT + 1
-        )),
-        "{words}"
-    );
-    assert!(words.starts_with("the board has lizard "), "{words}");
-}
-
-/// The robot of this file with the code.
-fn whole(name: &str) -> Image {
-    file::image(&robot(name)).expect("it fits")
-}
-
-#[test]
-fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
-    let mut board = Double::old_nano();
-    board.flash[..500].fill(9);
-    let run = run_with(board, &whole("paper"));
-    assert!(run.result.is_ok(), "{}", run.words());
-    assert_eq!(
-        (run.board.resets, run.again),
-        (2, 1),
-        "called at both speeds"
-    );
-    assert_eq!(run.found, ["the board has another program, of 500 bytes"]);
-    let image = whole("paper");
-    assert!(run.board.flash[..image.end()] == *image.bytes());
-    assert!(run.board.flash[0x7800..] == Double::old_nano().flash[0x7800..]);
-    assert!(run.board.left, "the program is started");
-}
-
-#[test]
-fn a_byte_that_is_lost_on_the_way_to_an_old_nano_is_made_up_for_at_its_speed() {
-    let (code, large) = (whole("paper"), alone("large"));
-    let nano = |lost| {
-        let mut board = Double::old_nano();
-        board.flash[..code.end()].copy_from_slice(code.bytes());
-        board.lost_to = lost;
-        run_with(board, &large)
-    };
-    let bytes = nano(None).board.received;
-    assert!(bytes > 1000, "{bytes} bytes");
-    for at in (0..bytes).step_by(17) {
-        let run = nano(Some(at));
-        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
-        assert_eq!(its_robot(&run.board).as_deref(), Some("large"), "byte {at}");
-        assert!(
-            run.board.resets <= 4,
-            "byte {at}: {} resets",
-            run.board.resets
-        );
-    }
-}
-
-#[test]
-fn what_would_reach_into_the_boot_section_of_a_nano_is_refused() {
-    // Of the robots in the repository the one with the most gaits.
-    let image = whole("own-gaits");
-    assert!(image.end() > 0x7800, "{:#x}", image.end());
-    let refused = |mut board: Double, target: Target| {
-        board.flash[..500].fill(9);
-        let before = board.flash.clone();
-        let run = run_as(board, &image, target);
-        assert!(run.board.flash == before && run.board.written.is_empty());
-        run.words()
-    };
-    let any = Target::default();
-    let named = |model| Target {
-        model: Some(model),
-        may_be_nano: true,
-    };
-    let words = refused(Double::old_nano(), any);
-    let needed = format!(
-        "{} bytes of flash are needed, and a Nano has 30720",
-        image.end()
-    );
-    assert!(words.starts_with(&needed), "{words}");
-    assert!(words.ends_with("Nothing was written"), "{words}");
-    assert_eq!(words, refused(Double::blank(), named(Model::Nano)));
-    // A newer Nano talks like a UNO, and its USB chip is on copies of the UNO, too.
-    let in_doubt = Target {
-        may_be_nano: true,
-        ..any
-    };
-    let words = refused(Double::blank(), in_doubt);
-    assert!(
-        words.contains("If it is a UNO, say so: --board uno"),
-        "{words}"
-    );
-    for target in [any, named(Model::Uno)] {
-        let run = run_as(Double::blank(), &image, target);
-        assert!(run.result.is_ok(), "{}", run.words());
-    }
-    // What is short enough is written without a question.
-    let run = run_as(Double::blank(), &whole("paper"), in_doubt);
-    assert!(run.result.is_ok(), "{}", run.words());
 }

@@ -1,0 +1,137 @@
+//! Gaits under way: how long their cycles take, at every pace, and which poses their frames are.
+
+use lizard_core::gait::GaitId;
+use lizard_core::units::CYCLE;
+use lizard_host_tests::{Named, rng, robots};
+
+use crate::frames::{Walker, long_enough, words};
+use crate::gaits::{FULL_PACE, gaits};
+
+#[test]
+fn a_hundred_cycles_take_a_hundred_periods() {
+    for (Named { name, .. }, float, gait) in gaits() {
+        let frames = (5000.0 * float.period()).round();
+        let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
+        // The advance is rounded to 1/2^24 cycle, so each frame may be half off.
+        let meant = (frames / 50.0 / float.period()).fract();
+        let off = (f64::from(phase) / f64::from(CYCLE)
+            - if float.is_reversed() { -meant } else { meant })
+        .rem_euclid(1.0);
+        let off = off.min(1.0 - off) * f64::from(CYCLE);
+        assert!(
+            off <= 0.5 * frames + 1.0,
+            "{name}: {} is {off} of 2^24 off",
+            float.name()
+        );
+    }
+}
+
+#[test]
+fn every_speed_gives_its_share_of_every_gaits_pace() {
+    const FRAMES: u32 = 1000;
+    let mut rng = rng(8000);
+    let mut worst = 0.0f64;
+    let (mut walked, mut barred) = (0, 0);
+    for named in robots() {
+        for float in named.robot.gaits().iter().skip(1) {
+            let mut walker = Walker::standing(named);
+            walker.does(&words(float));
+            walker.run(long_enough(&named.robot));
+            if walker.motion().hazard().is_some() {
+                barred += 1; // the way to its first pose
+                continue;
+            }
+            walked += 1;
+            for percent in [10, 100, rng.u8(11..100)] {
+                walker.does(&format!("speed {percent}"));
+                walker.run(10);
+                let mut gone = 0i64;
+                for _ in 0..FRAMES {
+                    let before = walker.motion().phase();
+                    walker.run(1);
+                    // The short way round: less than half a cycle in a frame.
+                    let step = walker.motion().phase().wrapping_sub(before) << 8;
+                    gone += i64::from(step as i32 >> 8);
+                }
+                let cycles = gone as f64 / f64::from(CYCLE);
+                let sign = if float.is_reversed() { -1.0 } else { 1.0 };
+                let share = sign * f64::from(percent) / 100.0;
+                let off = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
+                worst = worst.max(off.abs());
+                assert!(
+                    off.abs() <= 0.005,
+                    "{} {} at {percent} %: {off}",
+                    named.name,
+                    float.name()
+                );
+            }
+        }
+    }
+    println!("pace is off by at most {:.2} %", 100.0 * worst);
+    assert!(
+        walked > 10 * barred,
+        "{walked} gaits walked, {barred} barred"
+    );
+}
+
+#[test]
+fn a_gait_asked_for_again_just_goes_on() {
+    for named in robots() {
+        for gait in named.robot.gaits() {
+            let (mut asked, mut spared) = (Walker::standing(named), Walker::standing(named));
+            for frame in 0..150 {
+                if frame % 7 == 0 {
+                    asked.does(&words(gait));
+                }
+                if frame == 0 {
+                    spared.does(&words(gait));
+                }
+                assert_eq!(
+                    asked.frame(),
+                    spared.frame(),
+                    "{}: {}",
+                    named.name,
+                    gait.name()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
+    let (mut walked, mut barred) = (0, 0);
+    for named in robots() {
+        for (gait, id) in named
+            .robot
+            .gaits()
+            .iter()
+            .zip(GaitId::all(named.robot.gaits().len()))
+        {
+            let mut walker = Walker::standing(named);
+            walker.does(&words(gait));
+            let firmware = named.robot.firmware();
+            let table = firmware.gait(id);
+            walker.run(long_enough(&named.robot));
+            if walker.motion().hazard().is_some() {
+                barred += 1; // the way to its first pose
+                continue;
+            }
+            walked += 1;
+            for _ in 0..100 {
+                walker.run(1);
+                let phase = walker.motion().phase();
+                assert_eq!(
+                    walker.pose(),
+                    table.pose(firmware.waves(), phase),
+                    "{}",
+                    named.name
+                );
+            }
+        }
+    }
+    assert!(
+        walked > 10 * barred,
+        "{walked} gaits walked, {barred} barred"
+    );
+}

@@ -1,0 +1,87 @@
+//! An old Nano: its boot loader is slower and larger, and leaves the watchdog on.
+
+use super::*;
+
+/// First byte of an old Nano's boot loader.
+const NANO_BOOT: usize = 0x7800;
+
+/// A Nano as it was sold until 2018: its boot loader talks at 57 600 baud.
+fn old_nano() -> Desk {
+    Desk::with(loader("old-nano.hex"))
+}
+
+#[test]
+fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
+    let mut desk = old_nano();
+    let before = desk.uno.flash().to_vec();
+    let shell = lizard_flash(&desk, &["--robot", "large"]);
+    let screen = end(&mut desk, &shell);
+    assert!(
+        screen.contains("no answer at 115200 baud; calling again at 57600 baud"),
+        "{screen}"
+    );
+    assert!(screen.contains("the board has no program\n"), "{screen}");
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    assert!(screen.contains(" robot large "), "{screen}");
+    let large = Robot::load(root().join("robots/large.toml")).expect("it is right");
+    assert!(desk.uno.flash()[..NANO_BOOT] == firmware_of(&large)[..NANO_BOOT]);
+    assert!(desk.uno.flash()[NANO_BOOT..] == before[NANO_BOOT..]);
+
+    // Another robot alone: the loader resets the chip by itself at no time.
+    let shell = lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("robot large "), "{screen}");
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    let paper = Robot::load(root().join("robots/paper.toml")).expect("it is right");
+    assert!(desk.uno.flash()[..NANO_BOOT] == firmware_of(&paper)[..NANO_BOOT]);
+}
+
+#[test]
+fn a_robot_that_does_not_fit_an_old_nano_is_refused_and_its_boot_loader_is_whole() {
+    let mut desk = old_nano();
+    let before = desk.uno.flash().to_vec();
+    let shell = lizard_flash(&desk, &["--robot", "own-gaits"]);
+    let screen = end(&mut desk, &shell);
+    assert!(
+        screen.contains("a Nano has 30720 before its boot section"),
+        "{screen}"
+    );
+    assert!(desk.uno.flash() == before);
+}
+
+#[test]
+fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
+    let mut desk = old_nano();
+    desk.uno.set_flash(0, &firmware()[..NANO_BOOT]);
+    desk.uno.run_ms(2500);
+    let text = |uno: &mut Uno| -> String {
+        let bytes = uno.take_transmitted();
+        bytes.iter().map(|byte| char::from(byte.byte)).collect()
+    };
+    let said = text(&mut desk.uno);
+    assert!(said.contains("# lizard "), "{said}");
+    desk.uno.send(b"stand\n");
+    desk.uno.run_ms(500);
+    text(&mut desk.uno);
+    desk.uno.stall_main(1000 * simulated_uno::CYCLES_PER_MS);
+    desk.uno.run_ms(400);
+    desk.uno.take_edges();
+    // Its loader leaves the watchdog on, which resets the chip again before the loader's end: the
+    // RESET pin does not clear WDRF, and with it WDE stays set (data sheet, 11.9.2).
+    desk.uno.reset();
+    let resets = desk.uno.resets();
+    desk.uno.run_ms(3000);
+    let again = desk.uno.resets() - resets;
+    assert!(
+        (150..200).contains(&again),
+        "{again}: one every 16 ms or so"
+    );
+    assert_eq!(text(&mut desk.uno), "");
+    let pins = servo_pins(robot());
+    let edges = desk.uno.take_edges();
+    assert!(!edges.iter().any(|edge| pins.contains(&edge.pin)));
+    desk.uno.power_cycle();
+    desk.uno.run_ms(2500);
+    let said = text(&mut desk.uno);
+    assert!(said.contains("# lizard "), "{said}");
+}

@@ -1,0 +1,128 @@
+//! A robot that is written alone, behind the firmware that the board has.
+
+use super::*;
+
+/// What the board says in the next milliseconds, which are none on the wall.
+fn says(desk: &mut Desk, line: &str, ms: u64) -> String {
+    desk.uno.take_transmitted();
+    desk.uno.send(line.as_bytes());
+    desk.uno.run_ms(ms);
+    let bytes = desk.uno.take_transmitted();
+    let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[test]
+fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
+    let (name, other) = another();
+    let mut desk = with_firmware();
+    desk.uno.power_cycle();
+    assert!(says(&mut desk, "", 2500).contains("# lizard "));
+    assert!(says(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
+    assert!(says(&mut desk, "save\n", 500).contains("ok"));
+    unplug(&mut desk);
+    let kept = desk.uno.eeprom();
+
+    let shell = lizard_flash(&desk, &["--only-robot", "--robot", name]);
+    desk.see(&shell, "written and verified");
+    assert!(
+        desk.uno.eeprom() == kept,
+        "the upload has changed the EEPROM"
+    );
+    let screen = end(&mut desk, &shell);
+    let [its, now] = [robot(), &other].map(|robot| named(robot.firmware()));
+    assert!(screen.contains(&format!(" robot {its}\n")), "{screen}");
+    let banner = screen.lines().find(|line| line.starts_with("# lizard "));
+    assert!(
+        banner.is_some_and(|line| line.contains(&format!(" robot {now}"))),
+        "{screen}"
+    );
+    let end = usize::from(START) + other.section().len();
+    assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
+
+    // And the first robot again: its trims are there as they were.
+    let shell = lizard_flash(&desk, &["--only-robot"]);
+    self::end(&mut desk, &shell);
+    assert!(desk.uno.eeprom() == kept);
+    let answer = says(&mut desk, "cal\n", 500);
+    assert!(answer.contains("3.5"), "{answer}");
+}
+
+#[test]
+fn a_board_unplugged_while_a_robot_is_written_has_no_robot_and_is_mended() {
+    let (name, other) = another();
+    let mut desk = with_firmware();
+    let words = ["--only-robot", "--robot", name];
+    let shell = lizard_flash(&desk, &words);
+    let section = other.section();
+    // The third page of the robot is there.
+    let half = desk.until(|uno| {
+        let there = uno.flash()[0x6b00..0x6b80] == section[0x100..0x180];
+        there || shell.has_ended()
+    });
+    assert!(half && !shell.has_ended(), "{}", shell.screen());
+    unplug(&mut desk);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("the port is gone"), "{screen}");
+    assert!(screen.contains("half a robot now"), "{screen}");
+
+    // Plugged in again: the firmware says so, and no servo moves.
+    desk.uno.power_cycle();
+    desk.uno.take_edges();
+    let said = says(&mut desk, "", 2500);
+    assert!(said.contains("no robot in the flash"), "{said}");
+    let said = says(&mut desk, "walk\n", 300);
+    assert!(said.contains("err "), "{said}");
+    assert!(says(&mut desk, "status\n", 300).contains("fault=robot"));
+    let edges = desk.uno.take_edges();
+    let pins = servo_pins(&other);
+    assert!(
+        !edges.iter().any(|edge| pins.contains(&edge.pin)),
+        "{edges:?}"
+    );
+    unplug(&mut desk);
+
+    let shell = lizard_flash(&desk, &words);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains(" without a robot\n"), "{screen}");
+    assert!(
+        screen.contains(&format!(" robot {}", named(other.firmware()))),
+        "{screen}"
+    );
+    let end = usize::from(START) + section.len();
+    assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
+}
+
+#[test]
+fn a_robot_alone_is_not_written_behind_another_program() {
+    let mut desk = with_firmware();
+    // As avrdude leaves it: only the pages of the sketch are others.
+    desk.uno.set_flash(0, &TALKER.flash());
+    let before = desk.uno.flash().to_vec();
+    let shell = lizard_flash(&desk, &["--only-robot"]);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("the board has another program"), "{screen}");
+    assert!(screen.contains("Nothing was written"), "{screen}");
+    assert!(desk.uno.flash() == before);
+}
+
+#[test]
+fn avrdude_writes_the_robot_that_lizard_image_has_made() {
+    let (name, other) = another();
+    let mut desk = with_firmware();
+    let folder = tempfile::tempdir().expect("a folder");
+    let hex = folder.path().join("robot.hex").display().to_string();
+    let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
+    let words = ["image", "--only-robot", "--robot", name, "--output", &hex];
+    let shell = Shell::start(&lizard, &words, &[]);
+    end(&mut desk, &shell);
+    let write = format!("flash:w:{hex}:i");
+    let port = desk.name();
+    let options = ["-D", "-c", "arduino", "-p", "atmega328p", "-b", "115200"];
+    let words = [&options[..], &["-P", &port, "-U", &write]].concat();
+    let shell = Shell::start("avrdude", &words, &[]);
+    let screen = end(&mut desk, &shell);
+    assert!(screen.contains("bytes of flash verified"), "{screen}");
+    let end = usize::from(START) + other.section().len();
+    assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
+}

@@ -1,0 +1,88 @@
+//! An old Nano: slower, and with less room below its boot loader.
+
+use super::*;
+
+#[test]
+fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
+    let mut board = Double::old_nano();
+    board.flash[..500].fill(9);
+    let run = run_with(board, &whole("paper"));
+    assert!(run.result.is_ok(), "{}", run.words());
+    assert_eq!(
+        (run.board.resets, run.again),
+        (2, 1),
+        "called at both speeds"
+    );
+    assert_eq!(run.found, ["the board has another program, of 500 bytes"]);
+    let image = whole("paper");
+    assert!(run.board.flash[..image.end()] == *image.bytes());
+    assert!(run.board.flash[0x7800..] == Double::old_nano().flash[0x7800..]);
+    assert!(run.board.left, "the program is started");
+}
+
+#[test]
+fn a_byte_that_is_lost_on_the_way_to_an_old_nano_is_made_up_for_at_its_speed() {
+    let (code, large) = (whole("paper"), alone("large"));
+    let nano = |lost| {
+        let mut board = Double::old_nano();
+        board.flash[..code.end()].copy_from_slice(code.bytes());
+        board.lost_to = lost;
+        run_with(board, &large)
+    };
+    let bytes = nano(None).board.received;
+    assert!(bytes > 1000, "{bytes} bytes");
+    for at in (0..bytes).step_by(17) {
+        let run = nano(Some(at));
+        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
+        assert_eq!(its_robot(&run.board).as_deref(), Some("large"), "byte {at}");
+        assert!(
+            run.board.resets <= 4,
+            "byte {at}: {} resets",
+            run.board.resets
+        );
+    }
+}
+
+#[test]
+fn what_would_reach_into_the_boot_section_of_a_nano_is_refused() {
+    // Of the robots in the repository the one with the most gaits.
+    let image = whole("own-gaits");
+    assert!(image.end() > 0x7800, "{:#x}", image.end());
+    let refused = |mut board: Double, target: Target| {
+        board.flash[..500].fill(9);
+        let before = board.flash.clone();
+        let run = run_as(board, &image, target);
+        assert!(run.board.flash == before && run.board.written.is_empty());
+        run.words()
+    };
+    let any = Target::default();
+    let named = |model| Target {
+        model: Some(model),
+        may_be_nano: true,
+    };
+    let words = refused(Double::old_nano(), any);
+    let needed = format!(
+        "{} bytes of flash are needed, and a Nano has 30720",
+        image.end()
+    );
+    assert!(words.starts_with(&needed), "{words}");
+    assert!(words.ends_with("Nothing was written"), "{words}");
+    assert_eq!(words, refused(Double::blank(), named(Model::Nano)));
+    // A newer Nano talks like a UNO, and its USB chip is on copies of the UNO, too.
+    let in_doubt = Target {
+        may_be_nano: true,
+        ..any
+    };
+    let words = refused(Double::blank(), in_doubt);
+    assert!(
+        words.contains("If it is a UNO, say so: --board uno"),
+        "{words}"
+    );
+    for target in [any, named(Model::Uno)] {
+        let run = run_as(Double::blank(), &image, target);
+        assert!(run.result.is_ok(), "{}", run.words());
+    }
+    // What is short enough is written without a question.
+    let run = run_as(Double::blank(), &whole("paper"), in_doubt);
+    assert!(run.result.is_ok(), "{}", run.words());
+}

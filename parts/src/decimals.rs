@@ -1,0 +1,31 @@
+//! Numbers in JSON with as many decimals as they are known to: `UNIT` is 10 for tenths, 1000
+//! for thousandths.
+
+use serde::{Serialize, Serializer};
+
+/// No number has a minus before 0.
+fn rounded<const UNIT: u32>(value: f64) -> f64 {
+    let unit = f64::from(UNIT);
+    (unit * value).round() / unit + 0.0
+}
+
+/// Writes one number.
+pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
+    rounded::<UNIT>(*value).serialize(out)
+}
+
+/// Writes one that may be missing.
+pub(crate) fn optional<const UNIT: u32, S: Serializer>(
+    value: &Option<f64>,
+    out: S,
+) -> Result<S::Ok, S::Error> {
+    value.map(rounded::<UNIT>).serialize(out)
+}
+
+/// Writes a list.
+pub(crate) fn each<const UNIT: u32, S: Serializer>(
+    values: &[f64],
+    out: S,
+) -> Result<S::Ok, S::Error> {
+    out.collect_seq(values.iter().map(|value| rounded::<UNIT>(*value)))
+}
