@@ -13,7 +13,7 @@ use crate::robot::Robot;
 use crate::settings::Boot;
 use crate::text::Text;
 use crate::units::{Angle, Sweep, TURN_CENTIDEG};
-use crate::word::Word;
+use crate::word::{Effect, Word};
 
 /// A command, with its arguments checked as far as syntax and range go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,6 +155,17 @@ pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
         Word::Boot => Order::Boot(boot(words.0.trim_ascii(), robot)?),
         Word::Deadman => Order::Deadman(number),
     }))
+}
+
+/// The effect of a line on the servos: that of its word, or of a gait. A line that is no
+/// command has none.
+pub fn effect(line: &str, robot: &Robot) -> Effect {
+    let line = line.as_bytes();
+    match parse(line, robot) {
+        Err(_) => Effect::None,
+        Ok(Command::Order(Order::Gait(_))) => Effect::Moves,
+        Ok(_) => Word::find(Words(line).next()).map_or(Effect::None, Word::effect),
+    }
 }
 
 /// What follows the word `boot`.

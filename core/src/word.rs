@@ -3,8 +3,25 @@
 use lizard_avr::flash;
 use ufmt::uWrite;
 
+/// The effect of a command on the servos, if the robot does it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// No pulse changes: a question, or a setting for later.
+    None,
+    /// A motion begins, with pulses for every servo.
+    Moves,
+    /// The pose is frozen.
+    Freezes,
+    /// The pulses end.
+    Rests,
+    /// A gait goes faster or slower.
+    Paces,
+    /// A servo's calibration changes: the pulses of a pose, or the travel.
+    Calibrates,
+}
+
 macro_rules! words {
-    ($($name:ident = $word:literal,)*) => {
+    ($($name:ident = $word:literal $arguments:literal, $effect:ident;)*) => {
         /// A word of the console; no gait's name may begin with one.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
@@ -14,6 +31,18 @@ macro_rules! words {
         impl Word {
             /// All of them, as `help` lists them.
             pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// Its effect on the servos: the one place that says so. Rules and tests on
+            /// hosts ask here, or [`crate::command::effect`] for a whole line.
+            pub const fn effect(self) -> Effect {
+                match self { $(Self::$name => Effect::$effect),* }
+            }
+
+            /// A line that the paper's robot takes: the word, with arguments where it wants
+            /// some.
+            pub const fn example(self) -> &'static str {
+                match self { $(Self::$name => concat!($word, $arguments)),* }
+            }
         }
 
         /// Each with a bar behind it.
@@ -22,25 +51,26 @@ macro_rules! words {
 }
 
 words! {
-    Help = "help",
-    QuestionMark = "?",
-    Stop = "stop",
-    Rest = "rest",
-    Status = "status",
-    Pose = "pose",
-    Speed = "speed",
-    Watch = "watch",
-    Trim = "trim",
-    Limit = "limit",
-    Dir = "dir",
-    Scale = "scale",
-    Cal = "cal",
-    Center = "center",
-    Save = "save",
-    Load = "load",
-    Factory = "factory",
-    Boot = "boot",
-    Deadman = "deadman",
+    // name = word and the arguments of an example, effect
+    Help = "help" "", None;
+    QuestionMark = "?" "", None;
+    Stop = "stop" "", Freezes;
+    Rest = "rest" "", Rests;
+    Status = "status" "", None;
+    Pose = "pose" " 155 41.41 318.59 221.41", Moves;
+    Speed = "speed" " 50", Paces;
+    Watch = "watch" " 5", None;
+    Trim = "trim" " 1 8", Calibrates;
+    Limit = "limit" " 4 200 240", Calibrates;
+    Dir = "dir" " 2 -", Calibrates;
+    Scale = "scale" " 3 12", Calibrates;
+    Cal = "cal" "", None;
+    Center = "center" "", Moves;
+    Save = "save" "", None;
+    Load = "load" "", Calibrates;
+    Factory = "factory" "", Calibrates;
+    Boot = "boot" " stand", None;
+    Deadman = "deadman" " 2000", None;
 }
 
 /// Follows each word in the list.

@@ -9,6 +9,7 @@ use proptest::prelude::*;
 mod any_line;
 mod calibration;
 mod dialogue;
+mod effect;
 mod faults;
 mod memory;
 mod status;
