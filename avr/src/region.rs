@@ -7,9 +7,9 @@
 
 use crate::{Flash, Plain};
 
-/// Where the region begins, and how many bytes it has: from behind 26.5 KiB of code up to
+/// Where the region begins, and how many bytes it has: from behind 27.5 KiB of code up to
 /// the boot loader of an Arduino UNO.
-pub const START: u16 = 0x6a00;
+pub const START: u16 = 0x6e00;
 
 /// How many bytes the region has.
 pub const SPACE: u16 = 0x7e00 - START;

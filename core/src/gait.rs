@@ -2,8 +2,8 @@
 //!
 //! Feet are never lifted; each leg swings and drags its pad. The shape of the swing and
 //! the order of the legs make the robot go, so a gait is a waveform read at four offsets
-//! with four gains. Waveforms are tables of 128 samples in flash; between samples a
-//! straight line is within 0.1 deg of the real curve. The host that makes the tables
+//! with four gains. Waveforms are tables of 64 samples in flash; between samples a
+//! straight line is within half a degree of the real curve, less than a hobby servo resolves. The host that makes the tables
 //! checks that.
 
 use lizard_avr::{Flash, mul};
@@ -12,7 +12,7 @@ use crate::pose::Pose;
 use crate::units::{CYCLE, Sweep, phase16};
 
 /// Samples of a waveform.
-pub const SAMPLES: usize = 128;
+pub const SAMPLES: usize = 64;
 
 /// The longest name of a gait: with it, `status` still is one line of the console.
 pub const LONGEST_NAME: usize = 48;
@@ -153,9 +153,9 @@ impl Channel {
             return Sweep(0);
         }
         let at = phase.wrapping_add(self.offset);
-        let (index, fraction) = ((at >> 9) as u8, (at >> 1) as u8);
+        let (index, fraction) = ((at >> 10) as u8, (at >> 2) as u8);
         let here = wave.at(usize::from(index)).load();
-        let next = wave.at(usize::from((index + 1) & 0x7f)).load();
+        let next = wave.at(usize::from((index + 1) & 0x3f)).load();
         let rise = (mul(next.wrapping_sub(here), i16::from(fraction)) + 128) >> 8;
         let value = here.wrapping_add(rise as i16);
         Sweep((mul(value, self.gain).wrapping_add(1 << 13) >> 14) as i16)
@@ -195,13 +195,13 @@ mod tests {
             let channel = Channel { wave: 0, offset, gain };
             let table = wave(|n| samples[n]);
             let got = f64::from(channel.sweep(Flash::from(&table), phase).0);
-            let at = f64::from(phase.wrapping_add(offset)) / 512.0;
+            let at = f64::from(phase.wrapping_add(offset)) / 1024.0;
             let (here, next) = (samples[at as usize], samples[(at as usize + 1) % SAMPLES]);
             let rise = f64::from(next) - f64::from(here);
             let factor = f64::from(gain) / 16384.0;
             let exact = factor * (f64::from(here) + rise * at.fract());
-            // Half a step before the gain, half after it, and the phase's last bit.
-            let most = 0.5 + factor.abs() * (0.5 + rise.abs() / 512.0);
+            // Half a step before the gain, half after it, and the phase's last two bits.
+            let most = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
             prop_assume!(exact.abs() < 32_000.0);
             prop_assert!((got - exact).abs() <= most, "{got} for {exact}");
         }
@@ -226,11 +226,11 @@ mod tests {
     fn every_sample_is_met_in_its_turn_and_the_first_follows_the_last() {
         let table = wave(|n| 100 * n as i16 - 3000);
         for n in 0..SAMPLES {
-            let sweep = PLAIN.sweep(Flash::from(&table), (n << 9) as u16);
+            let sweep = PLAIN.sweep(Flash::from(&table), (n << 10) as u16);
             assert_eq!(sweep, Sweep(table[n]));
         }
-        let half_past_the_last = PLAIN.sweep(Flash::from(&table), 0xff00);
-        assert_eq!(half_past_the_last.0, (table[127] + table[0]) / 2);
+        let half_past_the_last = PLAIN.sweep(Flash::from(&table), 0xfe00);
+        assert_eq!(half_past_the_last.0, (table[63] + table[0]) / 2);
     }
 
     #[test]
@@ -241,10 +241,10 @@ mod tests {
                 .sweep(Flash::from(&table), phase)
                 .0
         };
-        assert_eq!([at(0x00fe, 1 << 14), at(0x0100, 1 << 14)], [0, 1]);
-        assert_eq!([at(0x0500, 1 << 14), at(0x0502, 1 << 14)], [0, -1]);
-        assert_eq!([at(0x0200, 8191), at(0x0200, 8192)], [0, 1]);
-        assert_eq!([at(0x0600, 8192), at(0x0600, 8193)], [0, -1]);
+        assert_eq!([at(0x01fc, 1 << 14), at(0x0200, 1 << 14)], [0, 1]);
+        assert_eq!([at(0x0a00, 1 << 14), at(0x0a04, 1 << 14)], [0, -1]);
+        assert_eq!([at(0x0400, 8191), at(0x0400, 8192)], [0, 1]);
+        assert_eq!([at(0x0c00, 8192), at(0x0c00, 8193)], [0, -1]);
     }
 
     #[test]

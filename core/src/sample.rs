@@ -397,7 +397,7 @@ fn gaits(names: &mut Vec<u8>) -> Vec<Gait> {
     let swaying = [
         channel(0, 0, 16_384),
         channel(0, 0x3000, -9_000),
-        channel(0, 0x7000, 12_000),
+        channel(0, 0x6e00, 12_000),
         channel(0, 0xb000, 5_000),
     ];
     let mut other = swaying;

@@ -13,7 +13,7 @@
 //! | [`Numbers`] | 232 | see there |
 //! | curves | 354 each | of the head's couplers and, where they are others, the tail's: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
 //! | gaits | 32 each | [`crate::gait::Gait`] |
-//! | waveforms | 256 each | 128 samples |
+//! | waveforms | 128 each | 64 samples |
 //! | names | | of the gaits, one after the other |
 //! | maps | 2 a row | certified cells of head, tail, left and right: first and last column |
 //!
@@ -45,7 +45,7 @@ mod content;
 mod seal;
 
 /// Raised when the meaning of a byte changes.
-pub const FORMAT: u16 = 1;
+pub const FORMAT: u16 = 2;
 
 /// What a section begins with.
 pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");

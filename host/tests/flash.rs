@@ -66,7 +66,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
         let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
         let robot = Robot::load(robots.join(name).with_extension("toml")).expect("it is right");
         let flash = image.flash();
-        assert!(flash[0x6a00..] == robot.section());
+        assert!(flash[0x6e00..] == robot.section());
         let is_code = flash[..2] == [0x0c, 0x94];
         assert_eq!(is_code, options.is_empty(), "a jump, where the chip starts");
     }

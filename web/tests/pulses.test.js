@@ -61,7 +61,7 @@ test('the image of robot.toml is what the compiler makes, to the byte', async ()
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   load(readFileSync(HEX, 'utf8'), flash);
   const image = await opened.evaluate(() => Array.from(window.lizard.image));
-  assert.ok(image.length > 0x6a00 + 1000, `${image.length} bytes`);
+  assert.ok(image.length > 0x6e00 + 1000, `${image.length} bytes`);
   assert.deepEqual(image, Array.from(flash.subarray(0, image.length)));
   assert.ok(flash.subarray(image.length).every((byte) => byte === 0xff));
 });

@@ -11,7 +11,7 @@ before(open);
 afterEach(tidy);
 after(close);
 
-const START = 0x6a00;
+const START = 0x6e00;
 const text = (opened, selector) => opened.locator(selector).innerText();
 const flash = async (opened, from, to) => Buffer.from(await opened.evaluate(([from, to]) => Array.from(window.otherBoard.flash.subarray(from, to)), [from, to]));
 const section = async (name) => Buffer.from((await imageOf(name)).subarray(START));

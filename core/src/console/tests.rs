@@ -82,8 +82,8 @@ fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_lon
         (40, 5),
         (8, 23),
         (6, 28),
-        (90, 1),
-        (36, 48),
+        (70, 1),
+        (26, 48),
         (6, 21),
     ] {
         let mut robot = Sample::paper();

@@ -17,7 +17,7 @@ const PHASES: u32 = 65_536;
 /// A gait's own pace, in 1/1024.
 pub const FULL_PACE: u16 = 1024;
 /// The largest error of a table, deg: the project's promise.
-const TABLE_ERROR: f64 = 0.10;
+const TABLE_ERROR: f64 = 0.50;
 
 /// Every gait of every robot, with its place in the core.
 pub fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Gait)> {

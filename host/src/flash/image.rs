@@ -262,8 +262,8 @@ mod tests {
         let apart = HEX.replace(":0400100001020304E2", ":026A0000AABB2F");
         let image = Image::from_hex(&apart).expect("it is an image");
         assert_eq!(image.bytes().len(), 0x6a02);
-        assert!(image.bytes()[16..0x6a00].iter().all(|&byte| byte == 0xff));
-        assert_eq!(image.bytes()[0x6a00..], [0xaa, 0xbb]);
+        assert!(image.bytes()[16..0x6e00].iter().all(|&byte| byte == 0xff));
+        assert_eq!(image.bytes()[0x6e00..], [0xaa, 0xbb]);
     }
 
     #[test]
@@ -289,7 +289,7 @@ mod tests {
     fn a_robot_alone_is_at_its_place_and_ends_before_the_boot_loader() {
         let robot = Image::robot_alone(vec![5; 130]).expect("it fits");
         let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
-        assert_eq!(addresses, [0x6a00, 0x6a80]);
+        assert_eq!(addresses, [0x6e00, 0x6e80]);
         assert_eq!(robot.end(), 0x6a82);
         assert!(robot.is_robot_alone());
         assert!(robot.to_hex().starts_with(":106A0000"));

@@ -22,7 +22,7 @@ const CHECKED: usize = 1024;
 /// Phases over which the fastest frame is looked for.
 const SPEEDS: usize = 4096;
 /// The largest error of a table, deg.
-const ERROR_LIMIT: f64 = 0.10;
+const ERROR_LIMIT: f64 = 0.50;
 
 /// The smallest of a kind of margin over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -371,9 +371,9 @@ pub enum Problem {
         /// The limit, deg/s.
         limit: f64,
     },
-    /// A waveform too steep for 128 samples.
+    /// A waveform too steep for 64 samples.
     #[error(
-        "its table of 128 samples is {error:.3} deg off at phase {phase:.4} (servo {servo}); at most {limit:.2} deg is allowed"
+        "its table of 64 samples is {error:.3} deg off at phase {phase:.4} (servo {servo}); at most {limit:.2} deg is allowed"
     )]
     Coarse {
         /// Phase, 0 to 1.

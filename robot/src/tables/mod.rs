@@ -2,7 +2,7 @@
 //!
 //! The chip has no floating point, 32 KB of flash and 20 ms for a frame. So what a robot
 //! needs is computed here once: its numbers in the types of the core, its gaits as waves of
-//! 128 samples, and the cells in which every pose is proved to be safe.
+//! 64 samples, and the cells in which every pose is proved to be safe.
 
 pub(crate) mod accuracy;
 mod cells;

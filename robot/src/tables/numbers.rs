@@ -107,7 +107,7 @@ fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
             let wave = Flash::from(&tables.waves[usize::from(channel.wave)]);
             for sample in 0..SAMPLES as u16 {
                 // The phase at which the channel reads this very sample.
-                let phase = (sample << 9).wrapping_sub(channel.offset);
+                let phase = (sample << 10).wrapping_sub(channel.offset);
                 let sweep = channel.sweep(wave, phase);
                 reach.min = reach.min.min(sweep);
                 reach.max = reach.max.max(sweep);

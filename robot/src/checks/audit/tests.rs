@@ -123,7 +123,7 @@ fn every_sample_of_every_servo_is_checked() {
         for gait in robot.gaits() {
             let phases = super::phases(gait.tabled());
             for channel in gait.tabled().table().channels {
-                for sample in (0..=u16::MAX).step_by(512) {
+                for sample in (0..=u16::MAX).step_by(1024) {
                     let phase = sample.wrapping_sub(channel.offset);
                     assert!(phases.contains(&phase), "{name} {} {phase}", gait.name());
                 }

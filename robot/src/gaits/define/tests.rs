@@ -138,21 +138,21 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
         let more: String = (2..count).map(like).collect();
         format!("{STAND}{WALK}{more}")
     };
-    let many = paper_with_gaits(&gaits(100)).expect("100 gaits");
-    assert_eq!(many.gaits().len(), 100);
-    assert_eq!(many.gait("walk99").map(|gait| gait.index()), Some(99));
+    let many = paper_with_gaits(&gaits(80)).expect("80 gaits");
+    assert_eq!(many.gaits().len(), 80);
+    assert_eq!(many.gait("walk79").map(|gait| gait.index()), Some(79));
     assert_eq!(
-        many.gait("walk99").map(|gait| gait.table_sweeps(99)),
+        many.gait("walk79").map(|gait| gait.table_sweeps(99)),
         many.gait("walk").map(|gait| gait.table_sweeps(99))
     );
     // Also where there is no room for its maps of cells.
-    for count in 100..255 {
+    for count in 80..255 {
         match paper_with_gaits(&gaits(count)) {
             Ok(robot) => {
                 assert!(robot.section().len() <= usize::from(lizard_core::section::SPACE))
             }
             Err(error) => {
-                assert!(count > 110, "{count}");
+                assert!(count > 85, "{count}");
                 assert!(error.to_string().ends_with(LEAVE_OUT), "{error}");
                 break;
             }
@@ -184,7 +184,7 @@ fn waveforms_are_refused_that_the_section_has_no_room_for() {
     };
     let some = paper_with_gaits(&gaits(6)).expect("13 waveforms");
     assert_eq!(some.firmware().waves().len(), 13);
-    for count in [10, 127] {
+    for count in [14, 127] {
         let most = paper_with_gaits(&gaits(count))
             .expect_err("too many")
             .to_string();

@@ -176,7 +176,7 @@ amplitude = 20.0
     (
         "centre = [0.0, 54.0]",
         "centre = [0.0, 52.0]",
-        "gait.look: at phase 0.3428: margin leg_rf 0.262 is below 0.300",
+        "gait.look: at phase 0.3438: margin leg_rf 0.262 is below 0.300",
     ),
     (
         "centre = [0.0, 54.0]",
@@ -217,17 +217,17 @@ period = 0.8"#,
     (
         "min_us = 600.0",
         "min_us = 1400.0",
-        "gait.walk: at phase 0.1650 servo A1 would be at 128.50 deg, outside its travel of 128.59 to 228.59 deg",
+        "gait.walk: at phase 0.1650 servo A1 would be at 128.51 deg, outside its travel of 128.59 to 228.59 deg",
     ),
     (
         "stroke_min = -15.0",
         "stroke_min = -10.0",
-        "gait.walk: at phase 0.0000: left slider travel -10.75 mm is below -10.00 mm",
+        "gait.walk: at phase 0.0000: left slider travel -10.77 mm is below -10.00 mm",
     ),
     (
         "stroke_max = 45.0",
         "stroke_max = 15.0",
-        "gait.left: at phase 0.4023: left slider travel +16.29 mm is above +15.00 mm",
+        "gait.left: at phase 0.4062: left slider travel +16.29 mm is above +15.00 mm",
     ),
     (
         "type2 = 0.3 ",
@@ -248,7 +248,7 @@ duty = 0.875"#,
         r#"period = 4.0
 waveform = "wave"
 duty = 0.95"#,
-        "gait.trot: its table of 128 samples is 0.490 deg off at phase 0.1211 (servo A1); at most 0.10 deg is allowed",
+        "gait.trot: its table of 64 samples is 1.340 deg off at phase 0.1182 (servo A1); at most 0.50 deg is allowed",
     ),
     (
         "amplitude = 15.0",

@@ -7,9 +7,9 @@ fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_
     let run = run_with(with_robot("paper"), &alone("unequal"));
     let done = run.result.expect("it is written");
     let section = robot("unequal").section();
-    let pages: Vec<usize> = (0x6a00..0x6a00 + section.len()).step_by(128).collect();
+    let pages: Vec<usize> = (0x6e00..0x6e00 + section.len()).step_by(128).collect();
     assert_eq!(done.written, pages.len(), "each byte of the robots differs");
-    let order = [&pages[..], &[0x6a00]].concat();
+    let order = [&pages[..], &[0x6e00]].concat();
     assert_eq!(run.board.written, order);
     let whole = file::image(&robot("unequal")).expect("it fits");
     assert!(run.board.flash[..whole.end()] == *whole.bytes());
@@ -49,7 +49,7 @@ fn a_robot_that_the_board_has_is_not_written() {
 #[test]
 fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
     let (before, large) = (with_robot("own-gaits").flash, alone("large"));
-    let code = before[..0x6a00].to_vec();
+    let code = before[..0x6e00].to_vec();
     for written in 1..=large.pages().len() {
         let mut board = Double::with(&before);
         board.unplugged_after = Some(written);
@@ -57,7 +57,7 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
         let words = cut.words();
         assert!(words.starts_with("the port is gone"), "{words}");
         assert!(words.contains("fault=robot and moves no servo"), "{words}");
-        assert!(cut.board.flash[..0x6a00] == code, "the code");
+        assert!(cut.board.flash[..0x6e00] == code, "the code");
         assert_eq!(its_robot(&cut.board), None, "after {written} pages");
         let mut board = cut.board;
         board.unplugged_after = None;
