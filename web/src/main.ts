@@ -171,6 +171,9 @@ async function start(): Promise<void> {
       latest = 0;
       scope.link(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
+      // What most probably comes.
+      const { version, name, hash } = session.description;
+      element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
       element('connect').textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
       flash.update();
       setup.link();

@@ -6,6 +6,8 @@ import { element } from './canvas';
 
 /** Letters of a command that a button of the usual width has room for. */
 const LONG = 13;
+/** The longest text of a prediction: a button has room for it before the prediction comes. */
+const LONGEST = '-999.9 mm, -99.9°';
 
 /** A way in few letters: mm ahead, or deg where it turns. */
 export function short(way: Way | null): string {
@@ -49,14 +51,16 @@ export class Drive {
   /** Takes another robot. */
   take({ gaits }: Description): void {
     this.list.replaceChildren();
-    this.buttons = gaits.map(({ command }) => {
+    this.buttons = gaits.map(({ command, moves }) => {
       const button = this.list.appendChild(document.createElement('button'));
       button.type = 'button';
       button.dataset.command = command;
       button.append(command);
       // A long name has room for two buttons.
       button.classList.toggle('long', command.length > LONG);
-      const note = button.appendChild(document.createElement('small'));
+      const room = button.appendChild(document.createElement('small'));
+      if (moves) room.dataset.room = LONGEST;
+      const note = room.appendChild(document.createElement('span'));
       button.setAttribute('aria-pressed', 'false');
       return { command, button, note };
     });

@@ -38,6 +38,8 @@ export class Floor {
   private centre = { x: 0, y: 0 };
   /** CSS pixels in a mm; 0 until the canvas has a size. */
   private zoom = 0;
+  /** True while the zoom follows the size of the canvas; false once the user has chosen one. */
+  private fits = true;
   private following = true;
   /** The ways that were walked: the robot's, and that of the one beside it. */
   private tracks: { x: number; y: number }[][] = [[], []];
@@ -54,7 +56,7 @@ export class Floor {
     element('zoom-out').addEventListener('click', () => this.zoomBy(0.8));
     element('home').addEventListener('click', () => {
       onHome();
-      this.zoom = 0;
+      this.fits = true;
       this.follow(true);
     });
     this.followButton.addEventListener('click', () => this.follow(!this.following));
@@ -102,7 +104,7 @@ export class Floor {
     if (!area) return;
     const { pen, width, height } = area;
     this.shown = [plate, frame, beside];
-    if (this.zoom === 0) this.zoom = Math.min(width, height) / VIEW;
+    if (this.fits) this.zoom = Math.min(width / (VIEW + (beside ? BESIDE : 0)), height / VIEW);
     if (this.following && frame) {
       // Gently, so that a step does not shake the floor.
       const middle = beside ? [(frame.place.x + beside.place.x + BESIDE) / 2, (frame.place.y + beside.place.y) / 2] : [frame.place.x, frame.place.y];
@@ -120,7 +122,7 @@ export class Floor {
 
   /** Has room for two robots. */
   widen(): void {
-    this.zoom = Math.min(this.zoom, this.canvas.clientWidth / (VIEW + BESIDE));
+    this.fits = true;
     this.follow(true);
   }
 
@@ -224,6 +226,7 @@ export class Floor {
     this.centre.x += dx * shift;
     this.centre.y += dy * shift;
     this.zoom = zoom;
+    this.fits = false;
   }
 
   private pan(dx: number, dy: number): void {
