@@ -13,7 +13,7 @@ use crate::robot::Robot;
 use crate::settings::Boot;
 use crate::text::Text;
 use crate::units::{Angle, Sweep, TURN_CENTIDEG};
-use crate::word::{Effect, Word};
+use crate::word::{Effect, RESERVED, Word};
 
 /// A command, with its arguments checked as far as syntax and range go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,10 +122,21 @@ const fn form(word: Word) -> Option<usize> {
 ///
 /// # Errors
 /// What keeps the line from being a command.
-#[inline(never)]
 pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
+    parse_among::<RESERVED>(line, robot)
+}
+
+/// The same; words from number `YIELDING` on yield to a gait of the same name.
+#[inline(never)]
+fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     let mut words = Words(line);
-    let Some(word) = Word::find(words.next()) else {
+    let word = Word::find(words.next()).filter(|word| {
+        // No instruction is spent on it while no word yields.
+        YIELDING >= Word::ALL.len()
+            || (*word as usize) < YIELDING
+            || !matches!(gait(line, robot), Ok(_) | Err(Misread::Surplus))
+    });
+    let Some(word) = word else {
         return Ok(Command::Order(Order::Gait(gait(line, robot)?)));
     };
     let Arguments { servo, numbers } = match form(word) {

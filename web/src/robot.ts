@@ -51,7 +51,7 @@ export interface Description {
   models: ServoModel[];
   /** Frames without motion after which it stands still. */
   still: number;
-  /** The words of the console. */
+  /** The words of the console that mean the same to every robot. */
   words: string[];
 }
 

@@ -73,12 +73,43 @@ fn every_word_is_its_command() {
     }
 }
 
+/// The readings of a line by a console where words from a number on yield to gaits:
+/// every word, those from `center` on, and none.
+fn yielding(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
+    const CENTER: usize = Word::Center as usize;
+    const NONE: usize = Word::ALL.len();
+    let line = line.as_bytes();
+    [
+        parse_among::<0>(line, robot),
+        parse_among::<CENTER>(line, robot),
+        parse_among::<NONE>(line, robot),
+    ]
+}
+
 #[test]
-fn the_words_of_the_console_are_those_that_it_reads() {
-    let mut list = String::new();
-    let Ok(()) = Word::print_all(&mut list);
-    for word in list.split('|') {
-        assert_ne!(read(word), Err(Misread::Unknown), "{word}");
+fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
+    let robot = Sample::paper();
+    for (number, word) in Word::ALL.iter().enumerate() {
+        let (text, example) = (word.text(), word.example());
+        let command = parse(example.as_bytes(), &robot);
+        assert!(command.is_ok(), "{example}");
+        assert_eq!(yielding(example, &robot), [command; 3], "{example}");
+
+        let longer = std::format!("{text} on");
+        let other = Sample::paper().with_gait(&longer);
+        assert_eq!(yielding(example, &other), [command; 3], "{example}");
+
+        let named = Sample::paper().with_gait(text).with_gait(&longer);
+        let since = [0, Word::Center as usize, Word::ALL.len()];
+        for (line, as_gait) in [
+            (text, Ok(gait_of(named.id(text)))),
+            (&*longer, Ok(gait_of(named.id(&longer)))),
+            (&std::format!("{text} 1 2"), Err(Misread::Surplus)),
+        ] {
+            let as_word = parse(line.as_bytes(), &robot);
+            let expected = since.map(|since| if number < since { as_word } else { as_gait });
+            assert_eq!(yielding(line, &named), expected, "{line}");
+        }
     }
 }
 

@@ -20,7 +20,7 @@ use crate::settings::Boot;
 use crate::supply::{Level, Voltage};
 use crate::text::Text;
 use crate::units::{Angle, Sweep, thousandths_from_phase};
-use crate::word::Word;
+use crate::word::{RESERVED, Word};
 
 /// Places of the lines of `cal`.
 const CAL_BOOT: u8 = 4;
@@ -52,7 +52,7 @@ where
         }
         Answer::Words => {
             Text::HelpWords.print(out)?;
-            Word::print_all(out)?;
+            Word::print_all::<_, RESERVED>(out, control.motion().robot())?;
             return Ok(Some(Answer::Hint));
         }
         Answer::Hint => {

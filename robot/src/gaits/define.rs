@@ -104,7 +104,7 @@ fn check_name(name: &str) -> Result<(), Problem> {
         return Err(Problem::Name("a dash stands for a blank between two words"));
     }
     let word = name.split('-').next().unwrap_or(name);
-    if Word::find(word.as_bytes()).is_some() {
+    if Word::find(word.as_bytes()).is_some_and(Word::is_reserved) {
         return Err(Problem::Command(word.to_string()));
     }
     Ok(())

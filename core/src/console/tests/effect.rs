@@ -1,7 +1,7 @@
 //! The effect that a word is said to have, and the one that it has.
 
 use super::*;
-use crate::word::{Effect, Word};
+use crate::word::Effect;
 
 /// Frames in which every effect shows.
 const FRAMES: usize = 40;

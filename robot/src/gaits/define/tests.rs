@@ -2,6 +2,7 @@
 
 use crate::testing::{body, robot};
 use crate::{Error, Robot};
+use lizard_core::word::Word;
 
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}{gaits}", body("paper")))
@@ -112,6 +113,17 @@ fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
                 "gait.point.{end}: the point {point} mm at phase 0.0000 is out of reach of the {end}"
             );
             assert!(refused.ends_with(&expected), "{refused}");
+        }
+    }
+}
+
+#[test]
+fn a_gait_may_have_the_name_of_a_word_of_the_console_that_is_not_reserved() {
+    for word in Word::ALL.iter().filter(|word| **word != Word::QuestionMark) {
+        for name in [word.text().to_owned(), format!("{}-on", word.text())] {
+            let gaits = format!("{STAND}{}", WALK.replace("walk", &name));
+            let taken = paper_with_gaits(&gaits).is_ok();
+            assert_eq!(taken, !word.is_reserved(), "{name}");
         }
     }
 }
