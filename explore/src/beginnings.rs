@@ -1,7 +1,12 @@
 //! Where a walk begins: memories of every kind, and robots that already do something.
 
+use lizard_core::memory::Progress;
+use lizard_core::part::Servo;
+use lizard_core::record::COPIES;
 use lizard_core::restart::Cause;
 use lizard_core::robot::Robot;
+use lizard_core::settings::Settings;
+use lizard_core::units::Sweep;
 use lizard_core::virtual_board::Eeprom;
 
 use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};
@@ -71,10 +76,12 @@ const MEMORIES: [(&str, &[Action]); 5] = [
 const BEHIND_A_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
 /// What the robot does before the walk begins.
-const DOES: [&[Action]; 8] = [
+const DOES: [&[Action]; 9] = [
     &[],
     &[Frames(160)],
     &[Frames(160), Say("walk"), Frames(25)],
+    // The guard holds it.
+    &[Frames(160), Say("stray"), Frames(160)],
     &[Frames(160), Say("rest"), Frames(25)],
     &[Frames(160), Say("trim 1 8"), Frames(25)],
     &[
@@ -86,6 +93,18 @@ const DOES: [&[Action]; 8] = [
     &[Frames(160), Supply(4_100), Frames(5)],
     &[Frames(25), Stall(240), Frames(5)],
 ];
+
+/// A record that is whole, whose travel ends before the gaits do.
+fn cut_off(robot: &Robot) -> Eeprom {
+    let mut settings = Settings::of(robot);
+    let mut set = settings.servo(Servo::ALL[2]);
+    set.max = Sweep(robot.reach(Servo::ALL[2]).max.0 / 2);
+    settings.set_servo(Servo::ALL[2], set);
+    let mut memory = Eeprom::blank();
+    let mut writing = COPIES[0].write();
+    while writing.step(settings.bytes(), &mut memory) == Progress::Going {}
+    Eeprom::with(*memory.bytes())
+}
 
 /// All beginnings.
 ///
@@ -113,6 +132,7 @@ pub fn all(robot: Robot<'static>) -> Vec<Beginning> {
     memories.extend([
         ("foreign bytes in the memory", foreign),
         ("a worn memory", worn),
+        ("saved settings that cut the gaits off", cut_off(&robot)),
     ]);
     memories.push((BEHIND_A_BOOT_LOADER, Eeprom::blank()));
     let mut all = Vec::new();

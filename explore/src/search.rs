@@ -1,4 +1,4 @@
-//! Breadth first through everything that may happen.
+//! Breadth first through all sequences of [`Action`]s, as many states as time allows.
 //!
 //! All states of one length are processed before any of the next, by as many threads as
 //! there are processors. So the first sequence that breaks a rule is one of the shortest.

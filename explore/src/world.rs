@@ -125,6 +125,7 @@ impl World {
     /// # Errors
     /// The first rule that is broken by it.
     pub fn apply(&mut self, action: Action) -> Held {
+        let was_kept = self.rest_is_kept();
         match action {
             Action::Say(line) => self.say(line.as_bytes())?,
             Action::Noise => self.say(&[b'w', b'a', GARBLED, b'k'])?,
@@ -157,6 +158,13 @@ impl World {
                 self.seen.power_on();
             }
             Action::Deaf(deaf) => self.running.board.transmitter.held = deaf,
+        }
+        let robot_rests = self.running.motion().is_resting();
+        if was_kept && robot_rests && !self.rest_is_kept() {
+            return broken(
+                "where the robot rests stays in the memory, also after a reset",
+                action.to_string(),
+            );
         }
         self.written()
     }

@@ -138,9 +138,11 @@ fn why_the_guard_holds_the_robot_is_told_once_and_status_goes_on_saying_so() {
     assert!(told[0].contains(" margin of ") || told[0].contains(" slider is at "));
     assert!(dialogue.run(100).is_empty());
     assert_eq!(dialogue.status("guard"), "held");
+    assert_eq!(dialogue.status("fault"), "guard");
     dialogue.say("stand");
     dialogue.run(1);
     assert_eq!(dialogue.status("guard"), "clear");
+    assert_eq!(dialogue.status("fault"), "none");
     dialogue.run(100);
     dialogue.say("stray");
     assert_eq!(

@@ -120,15 +120,13 @@ fn the_docs_print_the_table_of_restarts() {
 }
 
 #[test]
-fn a_robot_without_pulses_gets_none_by_anything_that_goes_wrong() {
+fn only_stand_and_boot_give_a_robot_without_pulses_any() {
     for event in Event::ALL {
         for (supply, _) in SUPPLIES {
-            let response = response(event, supply, State::Resting);
-            let orders = matches!(event, Event::Stand | Event::Save | Event::Boot);
-            assert_eq!(
-                response == Response::Obey,
-                orders && response == Response::Obey
-            );
+            // `save` is done, too, and moves nothing.
+            if response(event, supply, State::Resting) == Response::Obey {
+                assert!(matches!(event, Event::Stand | Event::Boot | Event::Save));
+            }
         }
     }
 }

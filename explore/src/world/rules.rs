@@ -4,7 +4,8 @@ use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
 use lizard_core::motion::Activity;
 use lizard_core::pose::Pose;
-use lizard_core::virtual_board::{Running, is_final};
+use lizard_core::record;
+use lizard_core::virtual_board::{Eeprom, Running, is_final};
 
 use super::{BELIEVED, Held, World, broken};
 use crate::fingerprint;
@@ -90,6 +91,8 @@ impl World {
             self.rests_after(line)?;
             self.seen.is_sent_to_rest = true;
             Ok(())
+        } else if line == "ok load" {
+            self.takes_what_it_loaded()
         } else if line.starts_with("err 8")
             && self.seen.since_low > 70
             && self.running.motion().frames() > u32::from(BELIEVED)
@@ -105,6 +108,9 @@ impl World {
 
     /// Nothing that stopped the robot is hidden.
     fn status_is_true(&self, line: &str) -> Held {
+        if line.contains(" guard=held ") && line.contains(" fault=none ") {
+            return broken("status names a fault wherever the guard holds", line);
+        }
         let is_well = line.contains(" fault=none ") && line.contains(" guard=clear ");
         let waits = self.seen.stopped > 3;
         if waits && is_well {
@@ -117,6 +123,36 @@ impl World {
             return broken("status says why the robot has no pulses", line);
         }
         Ok(())
+    }
+
+    /// A `limit` that says what `cal` tells is taken.
+    fn takes_what_it_loaded(&self) -> Held {
+        let mut later = self.running.clone();
+        later.board.transmitter.text.clear();
+        for line in later.send(b"cal\r") {
+            let Some((servo, rest)) = line
+                .strip_prefix("# A")
+                .and_then(|of| of.split_at_checked(1))
+            else {
+                continue;
+            };
+            let (_, limit) = rest.split_once(" limit ").expect("cal tells it");
+            let (limit, _) = limit.split_once(" dir ").expect("it ends there");
+            let answer = later.say(&format!("limit {servo} {limit}"));
+            if answer.starts_with("err ") {
+                return broken("what load takes, limit would have taken", answer);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the robot rests, and where it does is in the memory.
+    pub(super) fn rest_is_kept(&self) -> bool {
+        let memory = &self.running.board.memory;
+        let motion = self.running.motion();
+        // A memory that is busy cannot be read; its bytes can.
+        let readable = Eeprom::with(*memory.bytes());
+        motion.is_resting() && record::rested(motion.robot(), &readable) == Some(*motion.pose())
     }
 
     fn has_pulses_after(&self, line: &str) -> Held {

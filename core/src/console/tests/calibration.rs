@@ -1,6 +1,10 @@
 //! What is set of the servos, kept, and taken back.
 
 use super::*;
+use crate::memory::Progress;
+use crate::part::Servo;
+use crate::record::COPIES;
+use crate::units::Sweep;
 
 /// The lines of `cal`.
 fn cal(dialogue: &mut Dialogue) -> Vec<String> {
@@ -86,8 +90,19 @@ fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_t
         "scale 1 8",
         "dir 1 -",
         "dir 1 +",
+        "load",
+        "factory",
     ] {
         let mut dialogue = standing();
+        if change == "factory" {
+            dialogue.say("trim 1 15");
+        }
+        if change == "load" {
+            dialogue.say("trim 1 -15");
+            dialogue.say("save");
+            dialogue.say("factory");
+        }
+        dialogue.run(100);
         dialogue.say("pose 145 50 311 224.5");
         dialogue.run(150);
         let before = widths(&mut dialogue);
@@ -198,7 +213,7 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
     assert!(other.say("load").starts_with("err 9 "));
     assert_eq!(cal(&mut other), before);
     // A trim moves the travel: this pose is within it, but not within robot.toml's.
-    let narrow = crate::units::Sweep(2200);
+    let narrow = Sweep(2200);
     let robot = Sample::odd().with(|content| content.calibration[0].max = narrow);
     let mut narrow = awake(robot);
     assert_eq!(narrow.say("trim 1 -5"), "ok trim 1 -5");
@@ -214,6 +229,27 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
             .starts_with("err 3 A1 would not reach where it is")
     );
     assert_eq!(cal(&mut narrow), before);
+}
+
+#[test]
+fn settings_that_cut_a_gait_off_are_not_loaded_and_change_nothing() {
+    for servo in Servo::ALL {
+        for (beyond, served) in [(1, true), (-1, false)] {
+            let mut dialogue = standing();
+            let robot = Sample::odd();
+            let mut settings = Settings::of(&robot);
+            let mut set = settings.servo(servo);
+            set.min = Sweep(robot.reach(servo).min.0 - beyond);
+            settings.set_servo(servo, set);
+            let mut writing = COPIES[0].write();
+            while writing.step(settings.bytes(), &mut dialogue.board.memory) == Progress::Going {}
+            let before = cal(&mut dialogue);
+            let answer = dialogue.say("load");
+            let refused = answer == "err 9 nothing is saved that could be loaded";
+            assert_eq!(refused, !served, "{servo:?}: {answer}");
+            assert_eq!(cal(&mut dialogue) == before, refused, "{servo:?}");
+        }
+    }
 }
 
 #[test]
@@ -260,11 +296,11 @@ fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
 
 #[test]
 fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
-    for servo in crate::part::Servo::ALL {
+    for servo in Servo::ALL {
         let robot = Sample::odd();
         let mut settings = Settings::of(&robot);
         let mut set = settings.servo(servo);
-        set.max = crate::units::Sweep(robot.reach(servo).max.0 - 1);
+        set.max = Sweep(robot.reach(servo).max.0 - 1);
         settings.set_servo(servo, set);
         assert_eq!(settings.unfit(&robot), Some(servo));
     }

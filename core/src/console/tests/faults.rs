@@ -235,15 +235,38 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
         dialogue.run(150);
         dialogue.say("rest");
         dialogue.run(5);
+        let kept = *dialogue.board.memory.bytes();
         dialogue.reset(cause);
+        dialogue.board.memory.log.clear();
         for _ in 0..149 {
             assert_eq!(dialogue.frame(), Pulses::default(), "{cause:?}");
         }
+        assert_eq!(*dialogue.board.memory.bytes(), kept, "{cause:?}");
+        assert!(dialogue.board.memory.log.is_empty(), "it is there already");
         // `boot` is stand, and a hang calls it off.
         let said = dialogue.run(1);
         let boots = said.iter().any(|line| line == "# boot: stand");
         assert_eq!(boots, cause != Cause::Watchdog, "{said:?}");
         assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
+    for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
+        let mut dialogue = standing();
+        dialogue.say("pose 140 50 311 224.5");
+        dialogue.run(150);
+        dialogue.board.memory.slowness = 4;
+        dialogue.board.memory.timed = true;
+        dialogue.board.send(b"rest\r");
+        dialogue.frame();
+        dialogue.reset(cause);
+        assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
+        dialogue.run(100);
+        let chip = dialogue.board.memory.clone();
+        let mut again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
+        assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
     }
 }
 
