@@ -63,13 +63,13 @@ prove: ## compare the guard with floating point at every pose; a minute or two
 	$(call prepared,.prove)
 physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 stores the figures, ONE_IN=5 takes every fifth
 	$(call prepared,.physics)
-mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics
+mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: fresh ones, with the rate
 	$(call prepared,.mutants)
 other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10
 	$(call prepared,.other-robots)
 trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
-explore: ## a model checker: everything that may happen to the robot, in any order; STATES=10000000
+explore: ## a model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
 	$(call prepared,.explore)
 fuzz: ## search harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)

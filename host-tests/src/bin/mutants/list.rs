@@ -13,10 +13,14 @@ pub struct Mutant {
     pub compiled_by: Option<String>,
     /// The package whose own tests are to notice, of code that runs on the host, too.
     pub package: Option<String>,
+    /// True if nobody has chosen it.
+    pub is_fresh: bool,
     /// Line of the list at which the entry begins.
     pub line: usize,
-    old: String,
-    new: String,
+    /// The text that is replaced.
+    pub old: String,
+    /// The text in its place.
+    pub new: String,
 }
 
 impl Mutant {

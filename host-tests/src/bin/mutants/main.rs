@@ -9,18 +9,28 @@
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
 //! sentence that says what is wrong; an entry that has one of them is tried. None: all.
+//!
+//! With SAMPLE=60 it makes that many mistakes that nobody has chosen ([`fresh`]), drawn by
+//! SEED from the firmware's whole code, and prints the rate at which tests notice them,
+//! with its interval. A mistake in the core is tried on the core's own tests first, then on
+//! the model checker, then in the running image.
 
+mod fresh;
 mod list;
 
 use std::fs;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use list::Mutant;
 
-/// The longest that tests may take, or the mistake makes them hang.
+/// The longest that the image's tests may take, or the mistake makes them hang.
 const PATIENCE: Duration = Duration::from_secs(1800);
+
+/// The same of a package's own, which take seconds.
+const PATIENCE_ALONE: Duration = Duration::from_secs(300);
 
 /// The root of the repository.
 fn root() -> PathBuf {
@@ -31,10 +41,17 @@ fn root() -> PathBuf {
 enum Fate {
     Caught(String),
     Lives,
+    /// The compiler refuses it.
+    NoProgram,
 }
 
 fn main() -> ExitCode {
-    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
+    let parts: Vec<String> = std::env::args().skip(1).collect();
+    let outcome = match number("SAMPLE") {
+        Some(count) => sample(&parts, count as usize, number("SEED").unwrap_or(1)),
+        None => run(&parts),
+    };
+    match outcome {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(sentence) => {
@@ -42,6 +59,51 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// Tries `count` fresh mistakes; returns how many live.
+fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
+    let scratch = Scratch::copy()?;
+    let mut mutants = Vec::new();
+    for file in scratch.files.iter().filter(|file| fresh::is_firmware(file)) {
+        if parts.is_empty() || parts.iter().any(|part| file.contains(part)) {
+            mutants.extend(fresh::all(file, &text(&root().join(file))?));
+        }
+    }
+    println!("seed {seed}: {count} of {} fresh mistakes", mutants.len());
+    // Noticed and tried: what moves a servo or a saved value, and the rest.
+    let mut tally = [[0; 2]; 2];
+    for mutant in fresh::drawn(mutants, seed) {
+        let [moving, rest] = tally;
+        if moving[1] + rest[1] == count {
+            break;
+        }
+        let fate = match scratch.judge(&mutant)? {
+            Fate::NoProgram => continue,
+            Fate::Caught(test) => format!("caught by {test}"),
+            Fate::Lives => "LIVES".to_owned(),
+        };
+        println!("{}, {}: {fate}", mutant.file, mutant.wrong);
+        let of = &mut tally[usize::from(!fresh::moves(&mutant.file))];
+        of[0] += usize::from(fate != "LIVES");
+        of[1] += 1;
+    }
+    for ([noticed, tried], kind) in tally
+        .into_iter()
+        .zip(["that move a servo or a saved value", "in text"])
+    {
+        let (least, most) = fresh::wilson(noticed, tried);
+        println!(
+            "mistakes {kind}: {noticed} of {tried} noticed, {:.1} to {:.1} % (Wilson, 95 %)",
+            100.0 * least,
+            100.0 * most
+        );
+    }
+    Ok(tally.iter().map(|[noticed, tried]| tried - noticed).sum())
 }
 
 /// Returns how many live.
@@ -61,7 +123,8 @@ fn run(parts: &[String]) -> Result<usize, String> {
     let scratch = Scratch::copy()?;
     let is_of_board = |mutant: &&&Mutant| mutant.package.is_none();
     if list.iter().find(is_of_board).is_some()
-        && !tests(&scratch.firmware()?, "")?.is_none_or(|failed| failed.is_empty())
+        && let elf = scratch.firmware()?.ok_or("the firmware does not build")?
+        && !tests(&elf, "")?.is_none_or(|failed| failed.is_empty())
     {
         return Err("a test fails without any mistake".into());
     }
@@ -75,6 +138,7 @@ fn run(parts: &[String]) -> Result<usize, String> {
                 lives.push(mutant);
                 "LIVES".to_owned()
             }
+            Fate::NoProgram => return Err(format!("{}: it does not build", mutant.wrong)),
         };
         let seconds = begin.elapsed().as_secs();
         println!("{}: {}: {fate} ({seconds} s)", mutant.file, mutant.wrong);
@@ -98,6 +162,8 @@ fn text(path: &Path) -> Result<String, String> {
 /// A copy of the tree to make mistakes in, with build folders of its own.
 struct Scratch {
     folder: PathBuf,
+    /// What is in it.
+    files: Vec<String>,
 }
 
 impl Scratch {
@@ -109,12 +175,14 @@ impl Scratch {
             .current_dir(root())
             .output()
             .map_err(|error| format!("git: {error}"))?;
-        let scratch = Self { folder };
-        for name in String::from_utf8_lossy(&listed.stdout).split_terminator('\0') {
-            let from = root().join(name);
-            if from.is_file() {
-                scratch.write(name, &fs::read(&from).map_err(|e| format!("{name}: {e}"))?)?;
-            }
+        let listed = String::from_utf8_lossy(&listed.stdout);
+        let names = listed.split_terminator('\0');
+        let files = names.filter(|name| root().join(name).is_file());
+        let files = files.map(str::to_owned).collect();
+        let scratch = Self { folder, files };
+        for name in &scratch.files {
+            let bytes = fs::read(root().join(name)).map_err(|e| format!("{name}: {e}"))?;
+            scratch.write(name, &bytes)?;
         }
         Ok(scratch)
     }
@@ -130,8 +198,8 @@ impl Scratch {
         written.map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Builds the firmware of the copy.
-    fn firmware(&self) -> Result<PathBuf, String> {
+    /// Builds the firmware of the copy; none where the compiler refuses it.
+    fn firmware(&self) -> Result<Option<PathBuf>, String> {
         let build = self.folder.join("build");
         let status = Command::new("cargo")
             .args(["build", "--release", "--quiet"])
@@ -141,10 +209,8 @@ impl Scratch {
             .stderr(Stdio::null())
             .status()
             .map_err(|error| format!("cargo: {error}"))?;
-        if !status.success() {
-            return Err("it does not build".into());
-        }
-        Ok(build.join("avr-atmega328p/release/lizard.elf"))
+        let elf = build.join("avr-atmega328p/release/lizard.elf");
+        Ok(status.success().then_some(elf))
     }
 
     /// Makes a mistake, tests, and puts it right.
@@ -161,7 +227,9 @@ impl Scratch {
     }
 
     fn in_the_firmware(&self, mutant: &Mutant) -> Result<Fate, String> {
-        let elf = self.firmware()?;
+        let Some(elf) = self.firmware()? else {
+            return Ok(Fate::NoProgram);
+        };
         // The likely ones first: all of them take a minute.
         for filter in mutant.test.as_deref().into_iter().chain([""]) {
             match tests(&elf, filter)? {
@@ -173,30 +241,55 @@ impl Scratch {
         Ok(Fate::Lives)
     }
 
-    /// Runs the tests of a package of the copy: those that are to notice, then all.
+    /// Runs the tests of a package of the copy: those that are to notice, then all; for a
+    /// fresh mistake the model checker's and those of the image, too.
     fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Fate, String> {
-        for filter in mutant.test.as_deref().into_iter().chain([""]) {
-            let run = Command::new("cargo")
-                .args(["test", "--no-fail-fast", "-p", package, "--", filter])
-                .current_dir(self.folder.join("tree/host"))
-                .env("CARGO_TARGET_DIR", self.folder.join("host"))
-                .env("PROPTEST_RNG_SEED", "1")
-                .env("RUST_BACKTRACE", "0")
-                .stderr(Stdio::null())
-                .output()
-                .map_err(|error| format!("cargo: {error}"))?;
-            let said = String::from_utf8_lossy(&run.stdout);
-            if !said.lines().any(|line| line.starts_with("test ")) {
-                return Err(format!(
-                    "no test of {package} has {filter:?} in its name, or it does not build"
-                ));
-            }
-            let failed = failures(&said);
-            if !failed.is_empty() {
-                return Ok(Fate::Caught(failed.join(", ")));
+        if !self
+            .cargo_test(package, &["--no-run"])?
+            .is_some_and(|run| run.0)
+        {
+            return Ok(Fate::NoProgram);
+        }
+        let is_fresh = mutant.is_fresh;
+        let filters = mutant.test.as_deref().into_iter().chain([""]);
+        let runs = filters.map(|filter| (package, filter));
+        for (package, filter) in runs.chain(is_fresh.then_some(("lizard-explore", ""))) {
+            match self.cargo_test(package, &["--no-fail-fast", "--", filter])? {
+                None => return Ok(Fate::Caught("tests that hang".into())),
+                Some((false, said)) => {
+                    let failed = failures(&said);
+                    return Ok(Fate::Caught(match failed.is_empty() {
+                        true => format!("{package}, which crashes"),
+                        false => failed.join(", "),
+                    }));
+                }
+                Some((true, said)) if !said.lines().any(|line| line.starts_with("test ")) => {
+                    return Err(format!("no test of {package} has {filter:?} in its name"));
+                }
+                Some(_) => {}
             }
         }
-        Ok(Fate::Lives)
+        if is_fresh {
+            self.in_the_firmware(mutant)
+        } else {
+            Ok(Fate::Lives)
+        }
+    }
+
+    /// Runs `cargo test` on a package of the copy.
+    fn cargo_test(
+        &self,
+        package: &str,
+        arguments: &[&str],
+    ) -> Result<Option<(bool, String)>, String> {
+        run_limited(
+            Command::new("cargo")
+                .args(["test", "-p", package])
+                .args(arguments)
+                .current_dir(self.folder.join("tree/host"))
+                .env("CARGO_TARGET_DIR", self.folder.join("host")),
+            PATIENCE_ALONE,
+        )
     }
 
     /// Compiles and runs one test file of the copy without cargo.
@@ -224,42 +317,53 @@ impl Scratch {
 /// Runs those of the firmware's tests whose names have `filter` in them. Returns the
 /// names of those that fail, or nothing if they do not end.
 fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
-    let output = root().join("target/mutants/tests.txt");
-    let file = fs::File::create(&output).map_err(|error| error.to_string())?;
-    let mut run = Command::new("cargo")
-        .args([
-            "test",
-            "-p",
-            "lizard-host-tests",
-            "--test",
-            "firmware",
-            "--test",
-            "trouble",
-            "--",
-        ])
-        .arg(filter)
-        .current_dir(root().join("host"))
-        .env("LIZARD_ELF", elf)
-        .env("LIZARD_FUZZ", "5") // as long as in continuous integration
-        .env("PROPTEST_RNG_SEED", "1")
-        .env("RUST_BACKTRACE", "0")
-        .stdout(file)
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|error| format!("cargo: {error}"))?;
-    let begin = Instant::now();
-    while run.try_wait().map_err(|error| error.to_string())?.is_none() {
-        if begin.elapsed() > PATIENCE {
-            _ = run.kill();
-            return Ok(None);
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
-    let said = text(&output)?;
+    let run = run_limited(
+        Command::new("cargo")
+            .args(["test", "-p", "lizard-host-tests"])
+            .args(["--test", "firmware", "--test", "trouble", "--", filter])
+            .current_dir(root().join("host"))
+            .env("LIZARD_ELF", elf)
+            .env("LIZARD_FUZZ", "5"), // as long as in continuous integration
+        PATIENCE,
+    )?;
+    let Some((_, said)) = run else {
+        return Ok(None);
+    };
     if !said.contains("test result:") {
         return Err("the tests of the firmware do not run; try make test".into());
     }
     Ok(Some(failures(&said)))
+}
+
+/// Runs tests; says whether they passed, and what they said. Nothing if they do not end.
+fn run_limited(
+    command: &mut Command,
+    patience: Duration,
+) -> Result<Option<(bool, String)>, String> {
+    let output = root().join("target/mutants/tests.txt");
+    let file = fs::File::create(&output).map_err(|error| error.to_string())?;
+    let mut run = command
+        .env("PROPTEST_RNG_SEED", "1")
+        .env("RUST_BACKTRACE", "0")
+        .stdout(file)
+        .stderr(Stdio::null())
+        .process_group(0)
+        .spawn()
+        .map_err(|error| format!("cargo: {error}"))?;
+    let begin = Instant::now();
+    loop {
+        if let Some(status) = run.try_wait().map_err(|error| error.to_string())? {
+            return Ok(Some((status.success(), text(&output)?)));
+        }
+        if begin.elapsed() > patience {
+            // With the tests that it has started.
+            let group = format!("-{}", run.id());
+            _ = Command::new("kill").args(["-9", "--", &group]).status();
+            _ = run.wait();
+            return Ok(None);
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
 }
 
 /// The tests that failed, by their harness's lines.

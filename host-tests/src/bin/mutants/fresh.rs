@@ -1,0 +1,221 @@
+//! Fresh mistakes, which nobody has chosen: every place of the code in which an operator,
+//! a number or a call can be another, and a sample of them drawn by a seed.
+
+use fastrand::Rng;
+
+use super::list::Mutant;
+
+/// What makes the console's text and nothing else. Every other file of the core, the
+/// board's and the pulses' move a servo or a saved value.
+const TEXT: [&str; 8] = [
+    "answer.rs",
+    "console.rs",
+    "console/",
+    "digits.rs",
+    "fault.rs",
+    "refusal.rs",
+    "text.rs",
+    "word.rs",
+];
+
+/// Not on the chip, or tables of another program.
+const HOST_ONLY: [&str; 6] = [
+    "tests",
+    "virtual_board",
+    "sample",
+    "bounds.rs",
+    "section/content.rs",
+    "section/seal.rs",
+];
+
+/// What is written, and what is written in its place.
+const SWAPS: [(&str, &str); 19] = [
+    (" == ", " != "),
+    (" != ", " == "),
+    (" < ", " <= "),
+    (" > ", " >= "),
+    (" <= ", " < "),
+    (" >= ", " > "),
+    (" && ", " || "),
+    (" || ", " && "),
+    (" + ", " - "),
+    (" - ", " + "),
+    (" += ", " -= "),
+    (" -= ", " += "),
+    (" << ", " >> "),
+    (" >> ", " << "),
+    ("true", "false"),
+    ("false", "true"),
+    (".min(", ".max("),
+    (".max(", ".min("),
+    ("saturating_sub(", "wrapping_add("),
+];
+
+/// True if the file has code that fresh mistakes are made in.
+#[must_use]
+pub fn is_firmware(file: &str) -> bool {
+    let ours = ["core/src/", "src/board/", "pulses/src/"];
+    let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
+    file.ends_with(".rs") && ours.iter().any(|folder| file.starts_with(folder)) && !host_only
+}
+
+/// True if a mistake in the file can move a servo or change a saved value.
+#[must_use]
+pub fn moves(file: &str) -> bool {
+    let name = file.strip_prefix("core/src/").unwrap_or(file);
+    !TEXT.iter().any(|part| name.starts_with(part))
+}
+
+/// Every mistake that can be made in a file.
+#[must_use]
+pub fn all(file: &str, text: &str) -> Vec<Mutant> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let lines: Vec<&str> = code.lines().collect();
+    let mut mutants = Vec::new();
+    for (n, line) in lines.iter().enumerate() {
+        for (wrong, changed) in changes(line) {
+            // As many lines before it as tell it from others.
+            let mut first = n;
+            while first > 0 && text.matches(&lines[first..=n].join("\n")).count() > 1 {
+                first -= 1;
+            }
+            let before = lines[first..n].iter().copied();
+            mutants.push(Mutant {
+                file: file.into(),
+                wrong: format!("line {}: {wrong}", n + 1),
+                package: file.starts_with("core/").then(|| "lizard-core".into()),
+                is_fresh: true,
+                line: n + 1,
+                old: lines[first..=n].join("\n"),
+                new: before
+                    .chain([changed.as_str()])
+                    .collect::<Vec<_>>()
+                    .join("\n"),
+                ..Mutant::default()
+            });
+        }
+    }
+    mutants
+}
+
+/// What a line of code can be instead, each with a word about it.
+fn changes(line: &str) -> Vec<(String, String)> {
+    let code = line.split("//").next().unwrap_or_default();
+    let trimmed = code.trim();
+    let idle = [
+        "#",
+        "use ",
+        "assert!",
+        "debug_assert!",
+        "const _",
+        "type ",
+        "impl",
+    ];
+    if trimmed.contains('"') || idle.iter().any(|start| trimmed.starts_with(start)) {
+        return Vec::new();
+    }
+    let mut changes = Vec::new();
+    let mut swap = |at: usize, old: &str, new: &str| {
+        let changed = format!("{}{new}{}", &line[..at], &line[at + old.len()..]);
+        changes.push((format!("`{}` for `{}`", new.trim(), old.trim()), changed));
+    };
+    for (old, new) in SWAPS {
+        for (at, _) in code.match_indices(old) {
+            swap(at, old, new);
+        }
+    }
+    for (at, number) in numbers(code) {
+        let next = number.parse::<u32>().map_or(1, |number| number + 1);
+        swap(at, number, &next.to_string());
+    }
+    let is_call = trimmed.ends_with(';') && trimmed.contains('(') && trimmed.contains('.');
+    let starts = ["let ", "return ", "pub ", "}", ")", "."];
+    if is_call && !starts.iter().any(|start| trimmed.starts_with(start)) {
+        changes.push((format!("no `{trimmed}`"), String::new()));
+    }
+    changes
+}
+
+/// The decimal numbers of a line of code, each with its place.
+fn numbers(code: &str) -> Vec<(usize, &str)> {
+    let mut found = Vec::new();
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+    for piece in code.split(|c: char| !is_name(c)) {
+        let at = piece.as_ptr() as usize - code.as_ptr() as usize;
+        if !piece.is_empty() && piece.bytes().all(|byte| byte.is_ascii_digit()) {
+            found.push((at, piece));
+        }
+    }
+    found
+}
+
+/// The mistakes in the order in which a seed draws them.
+#[must_use]
+pub fn drawn(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
+    Rng::with_seed(seed).shuffle(&mut mutants);
+    mutants
+}
+
+/// The Wilson interval of a rate, 95 %: within it the true rate lies in 19 of 20 samples.
+#[must_use]
+pub fn wilson(noticed: usize, tried: usize) -> (f64, f64) {
+    const Z: f64 = 1.96;
+    let n = tried.max(1) as f64;
+    let rate = noticed as f64 / n;
+    let middle = rate + Z * Z / (2.0 * n);
+    let half = Z * (rate * (1.0 - rate) / n + Z * Z / (4.0 * n * n)).sqrt();
+    let scale = 1.0 + Z * Z / n;
+    ((middle - half) / scale, (middle + half) / scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_of_a_line_that_can_be_another_is_found_once() {
+        let text =
+            "fn f() {\n    a.b(1); // 2 < 3\n    if x < 17 && y {}\n}\n#[cfg(test)]\n1 < 2\n";
+        let mut made: Vec<String> = all("core/src/motion.rs", text)
+            .iter()
+            .map(|mutant| mutant.make(text).expect("it is there once"))
+            .collect();
+        made.sort();
+        let with = |old, new| text.replacen(old, new, 1);
+        let mut wanted = vec![
+            with("    a.b(1); // 2 < 3", ""),
+            with("b(1)", "b(2)"),
+            with("x < 17", "x <= 17"),
+            with("17", "18"),
+            with("&&", "||"),
+        ];
+        wanted.sort();
+        assert_eq!(made, wanted);
+    }
+
+    #[test]
+    fn a_line_that_is_there_twice_is_told_by_the_lines_before_it() {
+        let text = "one\na = b + c;\ntwo\na = b + c;\n";
+        let made: Vec<String> = all("pulses/src/lib.rs", text)
+            .iter()
+            .map(|mutant| mutant.make(text).expect("it is there once"))
+            .collect();
+        assert_eq!(made.len(), 2);
+        assert_eq!(made[1], "one\na = b + c;\ntwo\na = b - c;\n");
+        assert_eq!(made[0], "one\na = b - c;\ntwo\na = b + c;\n");
+    }
+
+    #[test]
+    fn the_interval_is_wilsons() {
+        // Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+        for (noticed, tried, low, high) in [
+            (81, 263, 0.2553, 0.3662),
+            (15, 148, 0.0624, 0.1605),
+            (0, 20, 0.0000, 0.1611),
+            (1, 29, 0.0061, 0.1718),
+        ] {
+            let (least, most) = wilson(noticed, tried);
+            assert!((least - low).abs() < 1e-4 && (most - high).abs() < 1e-4);
+        }
+    }
+}
