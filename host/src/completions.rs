@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Command;
 use clap_complete::Shell;
 
-use crate::{Failure, commands, whole_file};
+use crate::{Failure, commands, files};
 
 /// Print what a shell needs to complete commands and options
 #[derive(clap::Args, Debug)]
@@ -64,5 +64,5 @@ pub fn man(args: ManArgs) -> Result<(), Failure> {
 fn page(args: &ManArgs, name: &str, command: Command) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(command).render(&mut text)?;
-    whole_file::write_picture(&args.folder.join(format!("{name}.1")), &text)
+    files::write(&args.folder.join(format!("{name}.1")), &text)
 }

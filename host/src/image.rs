@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use lizard_core::section::SPACE;
 
 use crate::flash::file;
-use crate::{Failure, RobotFile, firmware, whole_file};
+use crate::{Failure, RobotFile, files, firmware};
 
 /// Make the image of your robot as a file of Intel HEX, without a compiler
 ///
@@ -46,7 +46,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let Some(path) = args.output else {
         return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
     };
-    whole_file::write(&path, hex.as_bytes())?;
+    files::write(&path, hex.as_bytes())?;
     let what = match args.only_robot {
         true => String::new(),
         false => format!("lizard {} ", env!("CARGO_PKG_VERSION")),

@@ -11,6 +11,7 @@ pub mod completions;
 pub mod console;
 pub mod draw;
 mod failure;
+mod files;
 #[cfg(any(feature = "simulator", feature = "console"))]
 pub mod firmware;
 #[cfg(feature = "console")]
@@ -39,7 +40,6 @@ mod suggestion;
 pub mod tune;
 #[cfg(feature = "simulator")]
 pub mod twin;
-mod whole_file;
 
 pub use failure::Failure;
 pub use pose_args::PoseArgs;

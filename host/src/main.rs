@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use lizard_host::commands;
-use lizard_host::plain::plain_lines;
+use lizard_host::plain::readable_lines;
 
 fn main() -> ExitCode {
     match commands::run(std::env::args_os().collect()) {
@@ -12,7 +12,7 @@ fn main() -> ExitCode {
         Err(failure) if failure.is_silent() => ExitCode::SUCCESS,
         Err(failure) => {
             // It may quote a file or a board. A terminal that is gone is no reason to panic.
-            let words = plain_lines(&failure.to_string());
+            let words = readable_lines(&failure.to_string());
             let _ = writeln!(io::stderr(), "lizard: {words}");
             ExitCode::from(failure.exit_code())
         }

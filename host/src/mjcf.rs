@@ -13,7 +13,7 @@ use simulated_uno::{CYCLES_PER_US, Fidelity, State, Uno};
 use crate::sim::frame_log::FrameLog;
 use crate::sim::tour;
 use crate::suggestion::did_you_mean;
-use crate::{Failure, RobotFile, firmware, twin, whole_file};
+use crate::{Failure, RobotFile, files, firmware, twin};
 
 /// A foot may be off by so much, mm; more, and its screw or its leaf ends.
 const MOST: f64 = 5.0;
@@ -113,7 +113,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         scene.course = Some(course(&args, &robot, gait)?);
     }
     let text = mjcf(&assembly, &neutral, &scene)?;
-    whole_file::write_picture(&args.file, text.as_bytes())?;
+    files::write(&args.file, text.as_bytes())?;
     // Where the file is a stream, such as /dev/stdout, it alone is to be in it.
     if !args.file.is_file() {
         return Ok(());

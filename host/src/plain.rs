@@ -25,9 +25,36 @@ pub fn plain_lines(text: &str) -> String {
     lines.join("\n")
 }
 
+/// The same, with lines of a length that a person reads: of a longer one, the middle is left out.
+#[must_use]
+pub fn readable_lines(text: &str) -> String {
+    let lines: Vec<String> = text.split('\n').map(|line| short(&plain(line))).collect();
+    lines.join("\n")
+}
+
+fn short(line: &str) -> String {
+    const SIDE: usize = 300;
+    let count = line.chars().count();
+    if count <= 3 * SIDE {
+        return line.to_owned();
+    }
+    let begin: String = line.chars().take(SIDE).collect();
+    let end: String = line.chars().skip(count - SIDE).collect();
+    format!("{begin} [...{} characters...] {end}", count - 2 * SIDE)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_that_nobody_reads_loses_its_middle() {
+        let [fits, long] = [900, 901].map(|count| "ä".repeat(count));
+        assert_eq!(readable_lines(&fits), fits);
+        let side = "ä".repeat(300);
+        let said = format!("no\n{side} [...301 characters...] {side}");
+        assert_eq!(readable_lines(&format!("no\n{long}")), said);
+    }
 
     #[test]
     fn control_characters_are_spelled_out_and_all_others_stay() {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use lizard_robot::Robot;
 
 use crate::Failure;
+use crate::files::{self, reading};
 
 /// The robot.toml of this source tree, for use outside of it.
 const BUILT_IN: &str = include_str!("../../robot.toml");
@@ -52,8 +53,7 @@ impl RobotFile {
             Found::File(path) => path,
             Found::BuiltIn(text) => return Ok(text.to_owned()),
         };
-        std::fs::read_to_string(&path)
-            .map_err(|error| Failure::Input(format!("{}: cannot be read: {error}", path.display())))
+        files::read_text(&path)
     }
 
     /// The one at a path, or else as [`RobotFile::load`] finds it.
@@ -71,7 +71,7 @@ impl RobotFile {
             return Ok(Robot::parse(text)?);
         }
         Ok(match self.found()? {
-            Found::File(path) => Robot::load(path)?,
+            Found::File(path) => Robot::load(reading(&path))?,
             Found::BuiltIn(text) => Robot::parse(text)?,
         })
     }

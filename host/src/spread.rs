@@ -16,7 +16,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{Failure, RobotFile, json};
+use crate::{Failure, RobotFile, files, json};
 
 /// The most parts; more than any queue has use for.
 const MOST: u32 = 1_000_000;
@@ -259,8 +259,7 @@ fn shares(files: &[PathBuf]) -> Result<Vec<Share>, Failure> {
     }
     for file in files {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file)
-            .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+        let text = files::read_text(file)?;
         read(&name, &text)?;
     }
     Ok(shares)

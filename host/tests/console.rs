@@ -381,6 +381,36 @@ fn what_is_no_lizard_is_named_by_what_it_says() {
 }
 
 #[test]
+fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut ours, theirs, path) = terminal();
+    drop(theirs);
+    let (heard, until) = mpsc::channel::<()>();
+    let board = std::thread::spawn(move || {
+        let pause = Duration::from_millis(20);
+        let mut asked: Vec<u8> = Vec::new();
+        // Nobody may have it open; then reading fails.
+        while until.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+            let mut bytes = [0; 64];
+            let count = ours.read(&mut bytes).unwrap_or_default();
+            asked.extend(&bytes[..count]);
+            if asked == b"status\n" {
+                let _ = ours.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
+            }
+        }
+    });
+    let arguments = ["record", "a.jsonl", &path.display().to_string()];
+    let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
+    drop(heard);
+    LIMIT
+        .within("the end of the board", || board.join())
+        .expect("it has ended");
+    assert_eq!(code, Some(1), "{error}");
+    let words = "lizard: the robot did not take 3 of 3 lines, the first `walk`: no answer\n";
+    assert!(error.ends_with(words), "{error}");
+}
+
+#[test]
 fn wrong_input_is_a_sentence_and_starts_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();

@@ -71,7 +71,7 @@ fn a_script_that_never_ends_is_refused() {
     let (words, code) = complaint(&["sim", "--script", "/dev/zero"]);
     assert_eq!(
         words,
-        "lizard: cannot read /dev/zero: it is longer than 1 MiB"
+        "lizard: cannot read /dev/zero: it is longer than 256 MiB"
     );
     assert_eq!(code, Some(2));
 }

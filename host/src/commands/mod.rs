@@ -14,6 +14,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
+use crate::plain::readable_lines;
 use groups::Group;
 
 /// The table below, as [`Command`] and as [`KNOWN`].
@@ -174,9 +175,23 @@ pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
         menu::Choice::Chosen(words) => words,
         menu::Choice::Nothing => return Ok(()),
     };
-    let mut matches = program().get_matches_from(words);
-    let cli = Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
-    cli.command.run()
+    let parsed = program().try_get_matches_from(words);
+    match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
+        Ok(cli) => cli.command.run(),
+        Err(error) => leave(&error),
+    }
+}
+
+/// Ends the program with what clap says: the help, or a mistake, of which a word that is very
+/// long is shortened.
+fn leave(error: &clap::Error) -> ! {
+    let text = error.render().to_string();
+    let short = readable_lines(&text);
+    if short == text {
+        error.exit();
+    }
+    eprint!("{short}");
+    std::process::exit(error.exit_code())
 }
 
 #[cfg(test)]

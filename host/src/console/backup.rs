@@ -7,7 +7,7 @@ use super::calibration::Calibration;
 use super::connect::Connect;
 use super::file;
 use super::link::{Link, LinkError};
-use crate::{Failure, whole_file};
+use crate::{Failure, files};
 
 /// Save the robot's calibration to a file
 ///
@@ -41,7 +41,7 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("backup FILE")?;
     let (mut board, _) = finder.meet()?;
     let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
-    whole_file::write(&args.file, file::text(&set).as_bytes())?;
+    files::write(&args.file, file::text(&set).as_bytes())?;
     println!(
         "the calibration of {} is in {}",
         board.name,

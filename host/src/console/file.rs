@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::calibration::{Calibration, Servos, is_name};
-use crate::Failure;
+use crate::{Failure, files};
 
 /// What the key `format` says. The number rises when a key changes its meaning.
 const FORMAT: &str = "lizard calibration 1";
@@ -102,8 +102,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
 /// It cannot be read, or is no calibration.
 pub fn read(path: &Path) -> Result<Calibration, Failure> {
     let name = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    let text = files::read_text(path)?;
     parse(&text).map_err(|problem| Failure::Input(format!("{name}: {problem}")))
 }
 
@@ -111,7 +110,6 @@ pub fn read(path: &Path) -> Result<Calibration, Failure> {
 mod tests {
     use super::super::calibration::{Direction, Servo};
     use super::*;
-    use crate::whole_file;
 
     fn set() -> Calibration {
         let servo = |trim| Servo {
@@ -136,7 +134,7 @@ mod tests {
     fn a_calibration_is_the_same_after_the_way_through_a_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.toml");
-        whole_file::write(&path, text(&set()).as_bytes()).expect("it is written");
+        files::write(&path, text(&set()).as_bytes()).expect("it is written");
         assert_eq!(read(&path).expect("it is read"), set());
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::whole_file;
+use crate::files;
 
 /// `$XDG_STATE_HOME/lizard/history`, by default in ~/.local/state.
 fn path() -> Option<PathBuf> {
@@ -25,10 +25,5 @@ pub fn save(lines: &[String]) {
     let Some(path) = path() else {
         return;
     };
-    let made = path
-        .parent()
-        .is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
-    if made {
-        let _ = whole_file::write(&path, (lines.join("\n") + "\n").as_bytes());
-    }
+    let _ = files::write(&path, (lines.join("\n") + "\n").as_bytes());
 }

@@ -134,9 +134,9 @@ impl Talk {
         }
         let overdue = self.session.overdue(Instant::now());
         self.keep()?;
-        if let Some(line) = overdue {
-            self.refusals.silence();
-            show(&line)?;
+        if let Some(unanswered) = overdue {
+            self.refusals.count_silence(&unanswered);
+            show(&unanswered.to_string())?;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::session::Said;
 use super::status::angles;
 use crate::plain::plain;
-use crate::{Failure, json, whole_file};
+use crate::{Failure, files, json};
 
 /// What the first line's `format` says. The number rises when a key changes its
 /// meaning.
@@ -78,7 +78,7 @@ pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
             "{name} is there already; name a new file for the session"
         ))),
-        Err(error) => Err(whole_file::cannot(path, &error)),
+        Err(error) => Err(files::cannot(path, &error)),
     }
 }
 
@@ -108,7 +108,7 @@ impl<W: Write> Recorder<W> {
     }
 
     fn cannot(&self, error: &io::Error) -> Failure {
-        whole_file::cannot(Path::new(&self.name), error)
+        files::cannot(Path::new(&self.name), error)
     }
 }
 

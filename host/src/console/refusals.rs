@@ -1,7 +1,7 @@
 //! The results of the lines of a script: the program that called this one has to learn
 //! that a line was refused.
 
-use super::session::Said;
+use super::session::{Said, Unanswered};
 use crate::Failure;
 
 /// A count of the lines that came to nothing.
@@ -28,9 +28,11 @@ impl Refusals {
         }
     }
 
-    /// A line was not answered in time.
-    pub fn silence(&mut self) {
-        self.count("no answer");
+    /// Counts a line that was not answered in time; the program's own questions are no lines.
+    pub fn count_silence(&mut self, unanswered: &Unanswered) {
+        if let Unanswered::Line(_) = unanswered {
+            self.count("no answer");
+        }
     }
 
     fn count(&mut self, why: &str) {
@@ -93,7 +95,8 @@ mod tests {
         ] {
             refusals.hear(&said);
         }
-        refusals.silence();
+        refusals.count_silence(&Unanswered::Program);
+        refusals.count_silence(&Unanswered::Line("stop".to_owned()));
         let words = refusals
             .verdict()
             .expect_err("three were not taken")

@@ -35,6 +35,17 @@ enum Asked {
     Watch,
 }
 
+/// A question that the robot has not answered; its text is for the person.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Unanswered {
+    /// A line of the person.
+    #[error("(no answer to `{0}`)")]
+    Line(String),
+    /// A question of this program.
+    #[error("(the robot does not answer)")]
+    Program,
+}
+
 /// A dialogue.
 #[derive(Debug)]
 pub struct Session {
@@ -122,16 +133,16 @@ impl Session {
         }
     }
 
-    /// What is to be shown because an answer has not come in time.
-    pub fn overdue(&mut self, now: Instant) -> Option<String> {
+    /// The question whose answer has not come in time.
+    pub fn overdue(&mut self, now: Instant) -> Option<Unanswered> {
         let (_, since) = self.waiting.as_ref()?;
         if now.saturating_duration_since(*since) < PATIENCE {
             return None;
         }
-        match self.waiting.take()?.0 {
-            Asked::Person(line) => Some(format!("(no answer to `{line}`)")),
-            Asked::Poll | Asked::Watch => Some("(the robot does not answer)".to_owned()),
-        }
+        Some(match self.waiting.take()?.0 {
+            Asked::Person(line) => Unanswered::Line(line),
+            Asked::Poll | Asked::Watch => Unanswered::Program,
+        })
     }
 
     /// Whether nothing is waited for.
@@ -230,8 +241,8 @@ mod tests {
         assert_eq!(session.overdue(now), None);
         let later = now + PATIENCE;
         assert_eq!(
-            session.overdue(later).as_deref(),
-            Some("(no answer to `walk`)")
+            session.overdue(later).map(|line| line.to_string()),
+            Some("(no answer to `walk`)".to_owned())
         );
         assert_eq!(session.overdue(later), None);
         assert_eq!(session.due(later).as_deref(), Some("stop"));

@@ -12,7 +12,7 @@ mod wiring;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
-use crate::{Failure, PoseArgs, RobotFile, whole_file};
+use crate::{Failure, PoseArgs, RobotFile, files};
 
 pub use horns::horns;
 pub use labels::pin_name;
@@ -69,7 +69,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         top_view(&robot, &solution, !args.plain)
     };
     match args.output {
-        Some(path) => whole_file::write_picture(&path, picture.as_bytes()),
+        Some(path) => files::write(&path, picture.as_bytes()),
         None => Ok(io::stdout().lock().write_all(picture.as_bytes())?),
     }
 }

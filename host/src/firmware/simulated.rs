@@ -8,6 +8,7 @@ use simulated_uno::{Image, LoadError};
 
 use super::{CODE, named, robot_in};
 use crate::board::BoardError;
+use crate::files::reading;
 use crate::{Failure, RobotFile};
 
 /// An image to run, and where it is from.
@@ -64,7 +65,7 @@ pub(crate) fn of_robot(
     if !elf.is_file() {
         return Err(FirmwareError::Missing(elf.display().to_string()).into());
     }
-    let image = Image::read(elf).map_err(|error| BoardError::Load {
+    let image = Image::read(reading(elf)).map_err(|error| BoardError::Load {
         elf: elf.to_owned(),
         error,
     })?;
@@ -100,7 +101,7 @@ pub fn inside(robot: &Robot) -> Image {
 /// # Errors
 /// It cannot be read, or is no program of an AVR.
 pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, LoadError> {
-    let mut image = Image::read(path)?;
+    let mut image = Image::read(reading(path))?;
     if robot_in(&image.flash()).is_some() {
         put(&mut image, robot)?;
     }

@@ -6,8 +6,8 @@ use lizard_core::section::START;
 use lizard_robot::Robot;
 
 use super::image::{BLANK, Image, ImageError};
-use crate::Failure;
 use crate::firmware::CODE;
+use crate::{Failure, files};
 
 /// The image of a robot: the code inside this program with this robot's section behind it.
 ///
@@ -34,8 +34,7 @@ pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
 /// It cannot be read, or is no image for a UNO.
 pub fn read(path: &Path) -> Result<Image, Failure> {
     let name = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    let text = files::read_text(path)?;
     Image::from_hex(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 

@@ -10,7 +10,7 @@ use lizard_parts::{Assembly, Bill, File, Unfit, coupon, papers, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
-use crate::{Failure, RobotFile, whole_file};
+use crate::{Failure, RobotFile, files};
 
 /// Make the parts of the robot: files to print and to cut, what to buy, how to build it
 ///
@@ -157,7 +157,7 @@ fn said(bill: &Bill, robot: &Robot) -> String {
 fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
     for file in files {
         let path = folder.join(&file.path);
-        whole_file::write_picture(&path, &file.bytes)?;
+        files::write(&path, &file.bytes)?;
     }
     Ok(())
 }

@@ -18,7 +18,7 @@ pub mod supplies;
 pub(crate) mod timeline;
 pub mod tour;
 
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -27,7 +27,7 @@ use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
 use crate::firmware::{self, Firmware};
 use crate::suggestion::did_you_mean;
-use crate::{Failure, RobotFile, json, whole_file};
+use crate::{Failure, RobotFile, files, json};
 use analysis::Run;
 use dialogue::Printer;
 use report::{Ram, Report};
@@ -141,7 +141,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let (robot, log) = (&robot, &recording.frames);
     let frames = Run { robot, log };
     let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
-    whole_file::write_picture(&args.svg, picture.as_bytes())?;
+    files::write(&args.svg, picture.as_bytes())?;
     let report = Report {
         elf: name,
         fidelity: match fidelity {
@@ -270,21 +270,8 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
 /// A script from its file.
 pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
     let name = path.display();
-    let text = script_text(path)
-        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    let text = files::read_text(path)?;
     Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
-}
-
-/// The text of a script; no script is longer than 1 MiB.
-fn script_text(path: &Path) -> io::Result<String> {
-    const LONGEST: u64 = 1 << 20;
-    let mut text = String::new();
-    let file = std::fs::File::open(path)?;
-    file.take(LONGEST + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > LONGEST {
-        return Err(io::Error::other("it is longer than 1 MiB"));
-    }
-    Ok(text)
 }
 
 fn progress_bar(end_ms: u64) -> ProgressBar {

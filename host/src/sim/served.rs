@@ -11,14 +11,15 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use simulated_uno::{Fidelity, Image, Port, State, Uno};
 
-use crate::{Failure, whole_file};
+use crate::Failure;
+use crate::files::{self, reading};
 
 /// A board as sold, with this boot loader in flash and nothing else.
 ///
 /// # Errors
 /// The file is missing or no AVR program.
 pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
-    let image = Image::read(boot_loader)
+    let image = Image::read(reading(boot_loader))
         .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
     Ok(Uno::with_boot_loader(image, fidelity))
 }
@@ -89,7 +90,7 @@ fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
 /// Makes `link` point at `port`. A link to another pseudo terminal, which a run that
 /// was killed has left, is replaced.
 fn point(link: &Path, port: &Path) -> Result<(), Failure> {
-    let cannot = |error: io::Error| whole_file::cannot(link, &error);
+    let cannot = |error: io::Error| files::cannot(link, &error);
     let foreign = || {
         let name = link.display();
         Failure::Input(format!(

@@ -19,7 +19,7 @@ use crate::sim::script::{Script, Step};
 use crate::sim::session::{self, Event, Recording};
 use crate::sim::{frame, read_script, spans, supplies, tour};
 use crate::suggestion::did_you_mean;
-use crate::{Failure, RobotFile, firmware, whole_file};
+use crate::{Failure, RobotFile, files, firmware};
 use replay::Replay;
 use report::Report;
 
@@ -112,11 +112,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let mut said = Vec::new();
     if let Some(path) = &args.html {
-        whole_file::write_picture(path, html::page(&replay, &report)?.as_bytes())?;
+        files::write(path, html::page(&replay, &report)?.as_bytes())?;
         said.push(("replay", path));
     }
     if let Some(path) = &args.apng {
-        whole_file::write_picture(path, &apng::draw(&replay)?)?;
+        files::write(path, &apng::draw(&replay)?)?;
         said.push(("moving picture", path));
     }
     if let Some(times) = args.robust {

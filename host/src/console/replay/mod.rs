@@ -43,8 +43,7 @@ const CAPTION: Caption = Caption {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let name = args.file.display();
-    let text = std::fs::read_to_string(&args.file)
-        .map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    let text = crate::files::read_text(&args.file)?;
     let session =
         Session::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
 
@@ -77,7 +76,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let log = session.frames(&robot);
     let (robot, log) = (&robot, &log);
     let picture = timeline::draw(Run { robot, log }, &session.spans(), &CAPTION);
-    crate::whole_file::write_picture(&args.svg, picture.as_bytes())?;
+    crate::files::write(&args.svg, picture.as_bytes())?;
     writeln!(out, "picture     {}", args.svg.display())?;
     Ok(())
 }

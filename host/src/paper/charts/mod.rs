@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::paper::design;
-use crate::{Failure, PoseArgs, RobotFile, draw, json, whole_file};
+use crate::{Failure, PoseArgs, RobotFile, draw, files, json};
 
 /// Grid of the performance charts, and rings of their circles.
 const STEP: f64 = 0.005;
@@ -65,7 +65,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .solve(&pose)
         .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
     // Before anything is computed, which takes seconds.
-    fs::create_dir_all(&args.folder).map_err(|error| whole_file::cannot(&args.folder, &error))?;
+    fs::create_dir_all(&args.folder).map_err(|error| files::cannot(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
     let options = (!args.svg_only).then(raster::options);
@@ -115,6 +115,6 @@ pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
 
 fn write(folder: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
     let path = folder.join(format!("{name}.{ending}"));
-    whole_file::write(&path, bytes)?;
+    files::write(&path, bytes)?;
     Ok(path)
 }

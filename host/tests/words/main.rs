@@ -1,6 +1,8 @@
 //! The words of the command line: which there are, which are meant by others, and what
 //! shells and `man` know of them.
 
+mod outputs;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -70,6 +72,27 @@ fn a_roboticists_words_mean_the_same_commands() {
             .lines()
             .find(|line| line.trim_start().starts_with(command));
         assert!(line.expect(command).ends_with(&format!("[also: {word}]")));
+    }
+}
+
+#[test]
+fn a_word_of_20_000_letters_is_not_repeated_in_full() {
+    let long = "x".repeat(20_000);
+    let folder = tempfile::tempdir().expect("a folder");
+    let robot = folder.path().join("x.toml");
+    std::fs::write(&robot, format!("name = {long}\n")).expect("it is written");
+    let robot = robot.display().to_string();
+    for words in [
+        &[long.as_str()][..],
+        &["gaits", "--robot", &long],
+        &["gaits", "--robot", &robot],
+        &["sim", "--gait", &long],
+        &["draw", "--theta1", &long],
+        &["restore", &long],
+    ] {
+        let error = complaint(words);
+        assert!(error.contains("xxx [..."), "{error}");
+        assert!(error.len() < 2500, "{} bytes: {error}", error.len());
     }
 }
 
