@@ -88,7 +88,7 @@ impl Case {
     };
 
     /// The robot as the contact model gets it: the friction of the pads is equal in all
-    /// directions, as they do in the engines.
+    /// directions, as in the engine.
     #[must_use]
     pub fn ground(self, robot: &Robot) -> Ground {
         Ground {

@@ -1,4 +1,4 @@
-//! The figures of the model and the engines from their last run.
+//! The figures of the model and of MuJoCo from their last run.
 
 use std::collections::BTreeMap;
 
@@ -39,13 +39,11 @@ pub struct Said {
     /// By the contact model; none where two feet pull against two, so that the smallest
     /// difference between the pads decides.
     pub model: Option<Way>,
-    /// By rapier: a chassis and four balls.
-    pub rapier: Way,
     /// By MuJoCo: the robot as `lizard mjcf` writes it.
     pub mujoco: Way,
 }
 
-/// Engines may differ from the model by this many mm, or by this share of the way, or by so
+/// MuJoCo may differ from the model by this many mm, or by this share of the way, or by so
 /// many deg: with level feet; with one that is too long on leaves that give; and on stiff
 /// ones, where a few hundredths of a mm decide which feet hold.
 const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
@@ -57,7 +55,7 @@ const NOWHERE: (f64, f64) = (1.0, 0.5);
 const CREEPS: f64 = 3.5;
 
 impl Said {
-    /// How far engines may be from the model, mm and deg.
+    /// How far MuJoCo may be from the model, mm and deg.
     #[must_use]
     pub fn bound(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
@@ -73,23 +71,16 @@ impl Said {
         }
     }
 
-    /// The words for each engine that is further off.
+    /// The words for MuJoCo if it is further off.
     #[must_use]
-    pub fn parted(&self, case: Case) -> Vec<String> {
-        let Some(model) = self.model else {
-            return Vec::new();
-        };
+    pub fn parted(&self, case: Case) -> Option<String> {
+        let (off, turned) = self.mujoco.off(&self.model?);
         let (mm, deg) = self.bound(case);
-        let engines = [("rapier", self.rapier), ("MuJoCo", self.mujoco)];
-        let parted = engines.into_iter().filter_map(|(engine, way)| {
-            let (off, turned) = way.off(&model);
-            (off > mm || turned > deg).then(|| {
-                format!(
-                    "{engine} is {off:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
-                )
-            })
-        });
-        parted.collect()
+        (off > mm || turned > deg).then(|| {
+            format!(
+                "MuJoCo is {off:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
+            )
+        })
     }
 }
 

@@ -1,22 +1,19 @@
-//! Compares the contact model with two engines that others wrote.
+//! Compares the contact model with MuJoCo, an engine that others wrote.
 //!
 //! Every prediction of a path over the floor comes from this project's own contact model.
 //! A fault of that model would affect every table, the page and the choice of gaits. So
-//! rapier and MuJoCo walk the same gaits: rapier with a chassis and four dragging balls,
-//! MuJoCo with the robot as `lizard mjcf` writes it. Neither uses the model.
+//! MuJoCo walks the same gaits, with the robot as `lizard mjcf` writes it. It does not use the
+//! model.
 //!
-//! `make physics` runs both (`rapier`, `mujoco`), compares them with the model and with
-//! the figures in `figures.json`, and prints all of it. The tables of the documentation
-//! are made from the stored figures ([`Figures`], [`table`]), so a test without engines
-//! keeps them current.
+//! `make physics` runs it (`mujoco`), compares it with the model and with the figures in
+//! `figures.json`, and prints all of it. The tables of the documentation are made from the
+//! stored figures ([`Figures`], [`table`]), so a test without the engine keeps them current.
 
 mod case;
 mod expected;
 mod figures;
-#[cfg(feature = "engines")]
+#[cfg(feature = "engine")]
 pub mod mujoco;
-#[cfg(feature = "engines")]
-pub mod rapier;
 mod row;
 mod table;
 

@@ -1,12 +1,10 @@
-//! `make physics`: every gait of every file of robots/ by the contact model, by rapier
-//! and by MuJoCo. With `--write` the new results replace the stored ones; with `--one-in N`
+//! `make physics`: every gait of every file of robots/ by the contact model and by MuJoCo. With `--write` the new results replace the stored ones; with `--one-in N`
 //! only every N-th gait walks.
 
 use std::process::ExitCode;
 
 use lizard_physics::mujoco::{Jobs, MujocoError};
-use lizard_physics::rapier::{self, Setup};
-use lizard_physics::{Figures, ROBOTS, Row, Said, Way, here, robot, rows, table};
+use lizard_physics::{Figures, ROBOTS, Row, Said, here, robot, rows, table};
 use lizard_robot::Robot;
 
 /// An engine that answers otherwise than it did by more than this, mm and deg, is another
@@ -26,7 +24,7 @@ fn main() -> ExitCode {
     };
     match run(one_in) {
         Ok(faults) if faults.is_empty() => {
-            println!("physics: model and engines agree");
+            println!("physics: model and MuJoCo agree");
             ExitCode::SUCCESS
         }
         Ok(faults) => {
@@ -68,30 +66,19 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         jobs.add(robot, named.map(|(place, row)| (name(of, place), row)))?;
     }
     println!(
-        "physics: {} walks by each engine take some minutes",
+        "physics: {} walks by MuJoCo take some minutes",
         jobs.count()
     );
-    let walking = jobs.start()?;
-    let mut others = Vec::new();
-    for ((_, robot), rows) in robots.iter().zip(&all) {
-        let ways = rows.iter().map(|row| {
-            let gait = robot.gait(&row.gait).expect("it is the robot's");
-            let rapier = rapier::walked(gait, &Setup::of(robot, row.case));
-            (row.model(robot), Way::from(rapier))
-        });
-        others.push(ways.collect::<Vec<_>>());
-    }
-    let by_mujoco = walking.done()?;
+    let by_mujoco = jobs.start()?.done()?;
 
     let (kept, mut found, mut faults) = (Figures::kept(), Figures::default(), Vec::new());
-    for (((of, robot), rows), others) in robots.iter().zip(&all).zip(&others) {
-        for (place, (row, (model, rapier))) in rows.iter().zip(others).enumerate() {
+    for ((of, robot), rows) in robots.iter().zip(&all) {
+        for (place, row) in rows.iter().enumerate() {
             let said = Said {
-                model: *model,
-                rapier: *rapier,
+                model: row.model(robot),
                 mujoco: by_mujoco[&name(of, place)],
             };
-            let mut words = said.parted(row.case);
+            let mut words: Vec<String> = said.parted(row.case).into_iter().collect();
             if !write {
                 words.extend(changed(kept.get(of, &row.gait, row.case), &said));
             }
@@ -125,7 +112,6 @@ fn changed(kept: Option<&Said>, now: &Said) -> Vec<String> {
     };
     let all = [
         ("the model", was, is),
-        ("rapier", before.rapier, now.rapier),
         ("MuJoCo", before.mujoco, now.mujoco),
     ];
     let changed = all.into_iter().filter_map(|(who, before, now)| {

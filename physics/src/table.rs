@@ -46,7 +46,7 @@ impl Part {
     }
 }
 
-/// All figures of a robot: model, rapier and MuJoCo side by side, one block for each kind of
+/// All figures of a robot: model and MuJoCo side by side, one block for each kind of
 /// legs.
 #[must_use]
 pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
@@ -70,12 +70,12 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             Feet::Soft => "1.0 mm long",
         });
         for head in heads {
-            _ = write!(text, "  {head:<24}");
+            _ = write!(text, "  {head:<20}");
         }
         text = text.trim_end().to_owned();
         _ = write!(text, "\n{:<widest$}    ", "gait");
         for _ in &cases {
-            _ = write!(text, "  {:>6}  {:>6}  {:>6}  ", "model", "rapier", "MuJoCo");
+            _ = write!(text, "  {:>6}  {:>6}      ", "model", "MuJoCo");
         }
         text = text.trim_end().to_owned() + "\n";
         for gait in gaits(robot) {
@@ -88,13 +88,13 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
                     .iter()
                     .filter_map(|case| figures.get(name, gait, *case))
                 {
-                    for way in [said.model, Some(said.rapier), Some(said.mujoco)] {
+                    for way in [said.model, Some(said.mujoco)] {
                         _ = match way {
                             Some(way) => write!(text, "  {:>+6.1}", part.value(way)),
                             None => write!(text, "  {:>6}", "-"),
                         };
                     }
-                    text.push_str("  ");
+                    text.push_str("      ");
                 }
                 text = text.trim_end().to_owned() + "\n";
             }
@@ -111,10 +111,10 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
 }
 
 /// What a cycle of each gait comes to, as Markdown: what the model predicts for level feet,
-/// the range of both engines, and the range of all three where a foot is 1.0 mm too long.
+/// MuJoCo's answer, and the range of both where a foot is 1.0 mm too long.
 #[must_use]
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
-    let mut text = "| gait | cycle, s | predicted | rapier and MuJoCo | all three, a foot 1.0 mm too long |\n|---|---|---|---|---|\n".to_owned();
+    let mut text = "| gait | cycle, s | predicted | MuJoCo | both, a foot 1.0 mm too long |\n|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
         let of = |feet: Feet| {
             let legs = Legs::Rigid;
@@ -136,8 +136,8 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
             gait.name(),
             gait.period(),
             cell(&[model]),
-            cell(&[level.rapier, level.mujoco]),
-            cell(&[rocks, long.rapier, long.mujoco])
+            cell(&[level.mujoco]),
+            cell(&[rocks, long.mujoco])
         );
     }
     text

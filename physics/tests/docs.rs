@@ -1,4 +1,4 @@
-//! The pages show what the engines said, and that is as near to the model as it must be.
+//! The pages show what MuJoCo said, and that is as near to the model as it must be.
 //!
 //! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
 
@@ -24,7 +24,7 @@ fn block(page: &str, marker: &str, wanted: &str) {
 }
 
 #[test]
-fn the_pages_have_the_ways_that_model_and_engines_say() {
+fn the_pages_have_the_ways_that_model_and_engine_say() {
     let kept = Figures::kept();
     for name in ROBOTS {
         let robot = robot(name);
@@ -75,12 +75,7 @@ fn every_walk_is_kept_and_near_to_the_model() {
                     assert!(!decided && case != Case::ALL[0], "{name}: {}", gait.name());
                     continue;
                 };
-                assert_eq!(
-                    said.parted(case),
-                    Vec::<String>::new(),
-                    "{name}: {}",
-                    gait.name()
-                );
+                assert_eq!(said.parted(case), None, "{name}: {}", gait.name());
                 assert_eq!(said.model.is_some(), decided, "{name}: {}", gait.name());
                 count += 1;
             }
@@ -121,8 +116,7 @@ fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_way() {
                 continue;
             };
             let model = level.model.zip(long.model);
-            let engines = [(level.rapier, long.rapier), (level.mujoco, long.mujoco)];
-            for (before, after) in model.into_iter().chain(engines) {
+            for (before, after) in model.into_iter().chain([(level.mujoco, long.mujoco)]) {
                 let ahead = |way: Way| way.0[0].hypot(way.0[1]);
                 let turn = |way: Way| way.0[2].abs();
                 // What the gait is about: its way, its turn, or neither.
@@ -140,7 +134,7 @@ fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_way() {
             }
         }
     }
-    assert!(count >= 90, "{count}");
+    assert!(count >= 60, "{count}");
 }
 
 #[test]
