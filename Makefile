@@ -55,13 +55,13 @@ parts-test: ## check the files of `lizard parts` with ezdxf, FreeCAD, admesh, Pr
 	$(call prepared,.parts-test)
 cli: ## build the host program, host/target/release/lizard
 	$(call prepared,.cli)
-bench: ## measured budgets, beside the Arduino Servo library's; speed beside numpy's
+bench: ## measured budgets, beside the Arduino Servo library's; poses solved per second
 	$(call prepared,.bench)
 fit: ## proof that no two parts meet at any pose that the guard accepts
 	$(call prepared,.fit)
 prove: ## compare the guard with floating point at every pose; a minute or two
 	$(call prepared,.prove)
-physics: ## every gait by the contact model and the engines rapier and MuJoCo; WRITE=1 stores the figures, ONE_IN=5 takes every fifth
+physics: ## every gait by the contact model and the engine MuJoCo; WRITE=1 stores the figures, ONE_IN=5 takes every fifth
 	$(call prepared,.physics)
 mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: fresh ones, with the rate
 	$(call prepared,.mutants)
@@ -181,10 +181,9 @@ WALKS := target/walks.log
 	@scripts/parts-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
-	@scripts/setup-bench
 	@$(LIZARD) bench --elf $(ELF) $(FOR_ROBOT)
 	@echo
-	@$(LIZARD) speed
+	@cd host && cargo bench --quiet -p lizard-kinematics
 
 .prove:
 	@cd host && cargo build --workspace --bin lizard --quiet
@@ -193,16 +192,14 @@ WALKS := target/walks.log
 .fit: .cli
 	@$(LIZARD) fit $(FOR_ROBOT)
 
-# Apart from the other tests, because rapier takes minutes to compile and MuJoCo is installed
-# here alone.
+# Apart from the other tests, because MuJoCo is installed here alone.
 .physics: .firmware
 	@scripts/setup-physics
-	@cd host && cargo clippy -p lizard-physics --features engines --all-targets --quiet -- -D warnings
-	@cd host && cargo test --workspace --features lizard-physics/engines --test rapier --quiet
+	@cd host && cargo clippy -p lizard-physics --features engine --all-targets --quiet -- -D warnings
 	@cd host && cargo build --workspace --bin lizard --quiet
 	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python physics/judge.py target/physics/walk.xml
-	@cd host && cargo build --workspace --features lizard-physics/engines --bin lizard-physics --quiet
+	@cd host && cargo build --workspace --features lizard-physics/engine --bin lizard-physics --quiet
 	@cd host && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
 # ONLY=serial.rs narrows it down.
@@ -229,8 +226,7 @@ WALKS := target/walks.log
 	@cp out/parts/guide/robot.svg docs/robot.svg
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
-	@$(LIZARD) twin --gait walk --robot robots/paper.toml --apng docs/walk.png
-	@$(LIZARD) charts docs/charts --svg-only
+	@$(LIZARD) charts docs/charts
 	@cd host && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --quiet
 	@BLESS_GAITS=1 $(MAKE) .docs-check
 	@scripts/walk-through $(LIZARD)

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 9] = [
     "contact",
     "core",
+    "host",
     "kinematics",
     "linker",
     "parts",

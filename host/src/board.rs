@@ -1,10 +1,10 @@
 //! A simulated UNO, used as with a serial cable and an oscilloscope: power it on, send
 //! lines, read answers, look at its servos' pulses.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lizard_robot::Robot;
-use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, LoadError, Pin, SerialByte, State, Uno};
+use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, Pin, SerialByte, State, Uno};
 
 use crate::sim::frame::{FRAME, Frame, frames, latest_start, next_start, opens, servo_pins};
 use crate::sim::lines::{Line, LineReader};
@@ -23,13 +23,8 @@ const BYTE_CYCLES: u64 = 1400;
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// The firmware cannot be loaded.
-    #[error("{}: {error}; `make firmware` builds it", elf.display())]
-    Load {
-        /// The file.
-        elf: PathBuf,
-        /// What is wrong with it.
-        error: LoadError,
-    },
+    #[error(transparent)]
+    Load(#[from] firmware::Unreadable),
     /// The first line is not the firmware's banner.
     #[error("no banner `# lizard ...` within {BANNER_MS} ms of power-on, but {0:?}")]
     Banner(Option<String>),
@@ -72,7 +67,7 @@ pub enum BoardError {
 impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
         match error {
-            BoardError::Load { .. } => Self::Input(error.to_string()),
+            BoardError::Load(_) => Self::Input(error.to_string()),
             _ => Self::Impossible(format!("the firmware cannot be measured: {error}")),
         }
     }
@@ -98,13 +93,8 @@ impl SimulatedBoard {
     /// # Errors
     /// The ELF file is missing or wrong.
     pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
-        match firmware::with_robot(elf, robot) {
-            Ok(image) => Ok(Self::with_image(image, fidelity, robot)),
-            Err(error) => Err(BoardError::Load {
-                elf: elf.to_owned(),
-                error,
-            }),
-        }
+        let image = firmware::with_robot(elf, robot)?;
+        Ok(Self::with_image(image, fidelity, robot))
     }
 
     /// The same with an image that has the robot in it already.

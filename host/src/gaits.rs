@@ -24,14 +24,14 @@ use crate::{Failure, RobotFile};
   lizard gaits
   lizard gaits --robot my/robot.toml --json
   lizard gaits --trace walk > walk.csv
-  lizard gaits --trace walk | lizard solve")]
+  lizard gaits --trace walk | lizard pose")]
 pub struct Args {
     /// Print one JSON object a line, one for each gait
     #[arg(long)]
     json: bool,
     /// Print instead the servo angles of one gait over a cycle as CSV, with the header
     /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees in the
-    /// chassis frame, as `lizard solve` reads them
+    /// chassis frame, as `lizard pose` reads them
     #[arg(long, value_name = "GAIT", conflicts_with = "json")]
     trace: Option<String>,
     /// Print instead how far each gait walks on other pads (friction backward over

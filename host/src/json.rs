@@ -4,6 +4,22 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+/// Prints a value as JSON, or else as this text.
+///
+/// # Errors
+/// Standard output cannot be written.
+pub fn either(
+    json: bool,
+    value: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<(), crate::Failure> {
+    let mut out = io::stdout().lock();
+    Ok(match json {
+        true => line(&mut out, value)?,
+        false => out.write_all(text().as_bytes())?,
+    })
+}
+
 /// Writes one value as one line of JSON.
 ///
 /// # Errors

@@ -6,7 +6,6 @@ pub mod bench;
 #[cfg(feature = "simulator")]
 pub mod board;
 pub mod commands;
-pub mod completions;
 #[cfg(feature = "console")]
 pub mod console;
 pub mod draw;
@@ -20,6 +19,7 @@ pub mod gaits;
 #[cfg(feature = "console")]
 pub mod image;
 mod json;
+pub mod merge;
 #[cfg(all(feature = "simulator", feature = "parts"))]
 pub mod mjcf;
 #[cfg(feature = "paper")]
@@ -34,7 +34,6 @@ mod robot_file;
 #[cfg(feature = "simulator")]
 pub mod sim;
 pub mod spread;
-pub mod spring;
 mod suggestion;
 #[cfg(all(feature = "simulator", feature = "paper"))]
 pub mod tune;

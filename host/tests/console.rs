@@ -295,7 +295,7 @@ fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
 fn a_kept_session_is_drawn_and_summed_up() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let mut child = lizard(here, &["record", "a.jsonl", "--sim"])
+    let mut child = lizard(here, &["console", "--record", "a.jsonl", "--sim"])
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -331,7 +331,7 @@ fn a_kept_session_is_drawn_and_summed_up() {
         "{curves}: a curve for each servo"
     );
 
-    let (_, error, code) = run(here, &["record", "a.jsonl", "--sim"], "");
+    let (_, error, code) = run(here, &["console", "--record", "a.jsonl", "--sim"], "");
     assert_eq!(code, Some(2));
     assert!(error.contains("a.jsonl is there already"), "{error}");
 }
@@ -399,7 +399,12 @@ fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
             }
         }
     });
-    let arguments = ["record", "a.jsonl", &path.display().to_string()];
+    let arguments = [
+        "console",
+        "--record",
+        "a.jsonl",
+        &path.display().to_string(),
+    ];
     let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
     drop(heard);
     LIMIT
@@ -437,7 +442,7 @@ fn wrong_input_is_a_sentence_and_starts_nothing() {
         (["restore", "none.toml"], "lizard: cannot read none.toml: "),
         (
             ["replay", "other.toml"],
-            "lizard: other.toml: this is no session of `lizard record`: its first line has no",
+            "lizard: other.toml: this is no session of `lizard console --record`: its first line has no",
         ),
         (
             ["calibrate", "/dev/no-such-port"],

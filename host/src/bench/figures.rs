@@ -4,14 +4,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use lizard_robot::Robot;
-use simulated_uno::{Call, Fidelity, Image};
+use simulated_uno::{Call, Fidelity};
 
 use super::exactness::Exactness;
 use super::stack::StackDepth;
-use crate::Failure;
 use crate::board::{BoardError, SimulatedBoard};
 use crate::sim::frame::FRAME;
 use crate::sim::tour;
+use crate::{Failure, firmware};
 
 /// What the firmware costs and how exact it is. Cycles are of 62.5 ns. What is
 /// nothing could not be measured: a robot without a gait that moves has no figures
@@ -132,10 +132,7 @@ impl Figures {
             Ok(board)
         };
         progress("the stack's depth");
-        let image = Image::read(elf).map_err(|error| BoardError::Load {
-            elf: elf.to_owned(),
-            error,
-        })?;
+        let image = firmware::read(elf)?;
         let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
         progress("pulses on an idle line");
         let mut idle = Steady::of(awake()?, gait, 20_000)?;

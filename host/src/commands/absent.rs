@@ -87,7 +87,7 @@ mod tests {
         );
         assert!(said("backup", &[]).contains("without the commands for a board on USB;"));
         assert!(said("parts", &["console"]).contains("without the parts to print;"));
-        assert!(said("ik", &[]).starts_with("`lizard inverse` is missing: "));
+        assert!(said("monitor", &[]).starts_with("`lizard console` is missing: "));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The list of commands, grouped by purpose.
 //!
-//! Thirty commands in one list hide the five that the owner of a robot needs. So `lizard
-//! help` has them under headings.
+//! Many commands in one list hide the five that the owner of a robot needs. So `lizard
+//! help` has them under headings, and those that people do not type are only named.
 
 use std::fmt::Write as _;
 
@@ -22,7 +22,7 @@ pub(super) enum Group {
     Change,
     /// What the paper has.
     Paper,
-    /// The program.
+    /// Scripts and development.
     Itself,
 }
 
@@ -44,7 +44,7 @@ impl Group {
             Self::Build => "Build it",
             Self::Change => "Change its gaits and measures",
             Self::Paper => "The paper, computed",
-            Self::Itself => "The program itself",
+            Self::Itself => "For scripts and development",
         }
     }
 }
@@ -69,7 +69,7 @@ fn list(command: &Command) -> String {
     let widest = present.iter().map(|sub| sub.get_name().len()).max();
     let width = widest.unwrap_or(0);
     let mut text = String::new();
-    let mut section = |title: &str, subs: &[&Command]| {
+    let section = |text: &mut String, title: &str, subs: &[&Command]| {
         if subs.is_empty() {
             return;
         }
@@ -95,7 +95,12 @@ fn list(command: &Command) -> String {
                 present.iter().find(|sub| sub.get_name() == name).copied()
             })
             .collect();
-        section(group.title(), &subs);
+        if group == Group::Itself && !subs.is_empty() {
+            let names: Vec<&str> = subs.iter().map(|sub| sub.get_name()).collect();
+            _ = writeln!(text, "{}\n  {}\n", heading(group.title()), names.join(", "));
+        } else {
+            section(&mut text, group.title(), &subs);
+        }
     }
     text
 }
@@ -108,15 +113,15 @@ mod tests {
     fn every_command_is_listed_once_and_the_owners_come_first() {
         let sub = |name: &'static str| Command::new(name).about(format!("does {name}"));
         let command = Command::new("lizard").subcommands([
-            sub("solve").visible_alias("fk"),
+            sub("pose").visible_alias("fk"),
             sub("completions"),
             sub("console"),
         ]);
         assert_eq!(
             without_colours(&list(&command)),
             "Drive the robot:\n  console      does console\n\n\
-             The paper, computed:\n  solve        does solve [also: fk]\n\n\
-             The program itself:\n  completions  does completions\n\n"
+             The paper, computed:\n  pose         does pose [also: fk]\n\n\
+             For scripts and development:\n  completions\n\n"
         );
     }
 

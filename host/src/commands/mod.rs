@@ -6,6 +6,7 @@
 //! of all commands.
 
 mod absent;
+pub mod completions;
 mod groups;
 mod menu;
 
@@ -86,20 +87,17 @@ commands! {
         Calibrate(crate::console::calibrate::Args) => crate::console::calibrate::run, needs "console";
         Backup(crate::console::backup::BackupArgs) => crate::console::backup::backup, needs "console";
         Restore(crate::console::backup::RestoreArgs) => crate::console::backup::restore, needs "console";
-        Record(crate::console::interactive::RecordArgs) => crate::console::interactive::record, needs "console";
         Replay(crate::console::replay::Args) => crate::console::replay::run, needs "console" and "simulator";
     }
     Simulate {
         Sim(crate::sim::Args) => crate::sim::run, needs "simulator";
         Twin(crate::twin::Args) => crate::twin::run, needs "simulator";
         Mjcf(crate::mjcf::Args) => crate::mjcf::run, needs "simulator" and "parts";
-        Bench(crate::bench::Args) => crate::bench::run, needs "simulator";
     }
     Build {
         Draw(crate::draw::Args) => crate::draw::run;
         Parts(crate::parts::Args) => crate::parts::run, needs "parts";
         Fit(crate::parts::fit::Args) => crate::parts::fit::run, needs "parts";
-        Spring(crate::spring::Args) => crate::spring::run;
     }
     Change {
         Gaits(crate::gaits::Args) => crate::gaits::run;
@@ -107,21 +105,63 @@ commands! {
         Prove(crate::prove::Args) => crate::prove::run, needs "paper";
     }
     Paper {
-        Solve(crate::paper::solve::Args) => crate::paper::solve::run, needs "paper", also "fk";
-        Inverse(crate::paper::inverse::Args) => crate::paper::inverse::run, needs "paper", also "ik";
-        Velocity(crate::paper::velocity::Args) => crate::paper::velocity::run, needs "paper", also "jacobian";
-        Singularity(crate::paper::singularity::Args) => crate::paper::singularity::run, needs "paper";
-        Mobility(crate::paper::mobility::Args) => crate::paper::mobility::run, needs "paper";
+        Pose(crate::paper::pose::Args) => crate::paper::pose::run, needs "paper";
         Design(crate::paper::design::Args) => crate::paper::design::run, needs "paper";
         Charts(crate::paper::charts::Args) => crate::paper::charts::run, needs "paper";
         Errata(crate::paper::errata::Args) => crate::paper::errata::run, needs "paper";
-        Speed(crate::paper::speed::Args) => crate::paper::speed::run, needs "paper";
     }
     Itself {
-        Merge(crate::spread::MergeArgs) => crate::spread::merge;
-        Completions(crate::completions::CompletionsArgs) => crate::completions::completions;
-        Man(crate::completions::ManArgs) => crate::completions::man;
+        Merge(crate::merge::MergeArgs) => crate::merge::merge;
+        Completions(completions::CompletionsArgs) => completions::completions;
+        Man(completions::ManArgs) => completions::man;
+        Bench(crate::bench::Args) => crate::bench::run, needs "simulator";
     }
+}
+
+/// Commands of the version before, and the words that mean the same now.
+const RENAMED: [(&str, &[&str]); 9] = [
+    ("solve", &["pose"]),
+    ("fk", &["pose"]),
+    ("inverse", &["pose"]),
+    ("ik", &["pose"]),
+    ("velocity", &["pose", "--show", "rates"]),
+    ("jacobian", &["pose", "--show", "rates"]),
+    ("singularity", &["pose", "--show", "singularities"]),
+    ("mobility", &["pose", "--show", "freedoms"]),
+    ("record", &["console", "--record"]),
+];
+
+/// Commands of the version before that are gone.
+const REMOVED: [(&str, &str); 2] = [
+    (
+        "spring",
+        "a spring's force and rate belong into robot.toml, under [leg.drive], or its coil under \
+         [parts.spring]",
+    ),
+    ("speed", "make bench measures how fast poses are solved"),
+];
+
+/// The command line with the words of this version for those of the one before.
+///
+/// # Errors
+/// The command is gone.
+fn in_new_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
+    let Some(word) = words.get(1).and_then(|word| word.to_str()) else {
+        return Ok(words);
+    };
+    if let Some((word, instead)) = REMOVED.iter().find(|(old, _)| *old == word) {
+        return Err(Failure::Input(format!(
+            "there is no command `{word}` any more; {instead}"
+        )));
+    }
+    if let Some((old, new)) = RENAMED.iter().find(|(old, _)| *old == word) {
+        eprintln!(
+            "lizard: `{old}` is `lizard {}` now; the next version will not know the old word",
+            new.join(" ")
+        );
+        words.splice(1..2, new.iter().map(OsString::from));
+    }
+    Ok(words)
 }
 
 /// A command that there is, in this build or in another one.
@@ -175,7 +215,7 @@ pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
         menu::Choice::Chosen(words) => words,
         menu::Choice::Nothing => return Ok(()),
     };
-    let parsed = program().try_get_matches_from(words);
+    let parsed = program().try_get_matches_from(in_new_words(words)?);
     match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
         Ok(cli) => cli.command.run(),
         Err(error) => leave(&error),
@@ -222,7 +262,35 @@ mod tests {
             })
             .collect();
         assert_eq!(built, known);
-        assert!(known.contains("fk") && known.contains("merge"), "{known:?}");
+        assert!(
+            known.contains("monitor") && known.contains("merge"),
+            "{known:?}"
+        );
+    }
+
+    #[test]
+    fn an_old_word_means_a_command_that_there_is_and_no_new_one_is_lost() {
+        for (old, new) in RENAMED {
+            let [old, name] =
+                [old, new[0]].map(|word| KNOWN.iter().any(|known| known.name() == word));
+            assert_eq!((old, name), (false, true), "{new:?}");
+        }
+        let words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+        for (old, new) in [
+            (
+                "lizard velocity --omega1 5",
+                "lizard pose --show rates --omega1 5",
+            ),
+            (
+                "lizard record a.jsonl --sim",
+                "lizard console --record a.jsonl --sim",
+            ),
+            ("lizard console solve", "lizard console solve"),
+        ] {
+            assert_eq!(in_new_words(words(old)).expect("it is known"), words(new));
+        }
+        let gone = in_new_words(words("lizard spring --wire 0.6")).expect_err("it is gone");
+        assert!(gone.to_string().contains("[leg.drive]"), "{gone}");
     }
 
     #[test]

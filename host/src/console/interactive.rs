@@ -1,4 +1,4 @@
-//! `lizard console` and `lizard record`: a person, or a script on standard input,
+//! `lizard console`: a person, or a script on standard input,
 //! talks to the robot.
 
 use std::fs::File;
@@ -31,18 +31,10 @@ use crate::Failure;
 /// after another, and the exit code is 1 if the robot refuses one.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
-    #[command(flatten)]
-    connect: Connect,
-}
-
-/// Talk to the robot, and record the session in a file
-///
-/// Works like `lizard console`. The file gets commands, answers, the pose of every frame,
-/// and faults: a JSON object a line, each with its time in ms. `lizard replay` draws it.
-#[derive(clap::Args, Debug)]
-pub struct RecordArgs {
-    /// A new file for the session
-    file: PathBuf,
+    /// A new file that records the session: commands, answers, the pose of every frame, and
+    /// faults, as a JSON object a line, each with its time in ms; `lizard replay` draws it
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     #[command(flatten)]
     connect: Connect,
 }
@@ -57,20 +49,12 @@ const RETRY: Duration = Duration::from_millis(300);
 /// Runs `lizard console`.
 ///
 /// # Errors
-/// No board, or the terminal fails.
+/// No board, the terminal fails, or the file is there already or cannot be written.
 pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
-    talk(&args.connect.finder("console")?, None)
-}
-
-/// Runs `lizard record`.
-///
-/// # Errors
-/// As [`console`], or the file is there already or cannot be written.
-pub fn record(args: RecordArgs) -> Result<(), Failure> {
-    if args.file.exists() {
-        recorder::create(&args.file)?;
+    if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
+        recorder::create(file)?;
     }
-    talk(&args.connect.finder("record FILE")?, Some(args.file))
+    talk(&args.connect.finder("console")?, args.record)
 }
 
 fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {

@@ -15,7 +15,7 @@ use lizard_core::robot::Robot as CoreRobot;
 use lizard_core::section::{Region, START};
 
 #[cfg(feature = "simulator")]
-pub use simulated::{Firmware, inside, with_robot};
+pub use simulated::{Firmware, Unreadable, inside, read, with_robot};
 
 #[cfg(feature = "simulator")]
 pub(crate) use simulated::of_robot;

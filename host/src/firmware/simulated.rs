@@ -7,7 +7,6 @@ use lizard_robot::Robot;
 use simulated_uno::{Image, LoadError};
 
 use super::{CODE, named, robot_in};
-use crate::board::BoardError;
 use crate::files::reading;
 use crate::{Failure, RobotFile};
 
@@ -18,6 +17,31 @@ pub struct Firmware {
     pub name: String,
     /// The code with the robot behind it.
     pub image: Image,
+}
+
+/// A file that is no program of an AVR, or cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {error}; `make firmware` builds it", elf.display())]
+pub struct Unreadable {
+    elf: PathBuf,
+    error: LoadError,
+}
+
+impl From<Unreadable> for Failure {
+    fn from(error: Unreadable) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// Reads the program of an ELF or HEX file.
+///
+/// # Errors
+/// It cannot be read, or is no program of an AVR.
+pub fn read(elf: &Path) -> Result<Image, Unreadable> {
+    Image::read(reading(elf)).map_err(|error| Unreadable {
+        elf: elf.to_owned(),
+        error,
+    })
 }
 
 /// Why an image is not run.
@@ -65,10 +89,7 @@ pub(crate) fn of_robot(
     if !elf.is_file() {
         return Err(FirmwareError::Missing(elf.display().to_string()).into());
     }
-    let image = Image::read(reading(elf)).map_err(|error| BoardError::Load {
-        elf: elf.to_owned(),
-        error,
-    })?;
+    let image = read(elf)?;
     if let Some(its) = robot_in(&image.flash())
         && its.hash() != robot.firmware().hash()
     {
@@ -100,10 +121,13 @@ pub fn inside(robot: &Robot) -> Image {
 ///
 /// # Errors
 /// It cannot be read, or is no program of an AVR.
-pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, LoadError> {
-    let mut image = Image::read(reading(path))?;
+pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
+    let mut image = read(path)?;
     if robot_in(&image.flash()).is_some() {
-        put(&mut image, robot)?;
+        put(&mut image, robot).map_err(|error| Unreadable {
+            elf: path.to_owned(),
+            error,
+        })?;
     }
     Ok(image)
 }

@@ -1,43 +1,13 @@
-//! `lizard inverse`: the servo angles that put head and tail at given points.
-
-use std::io::{self, Write};
+//! `lizard pose --head X Y --tail X Y`: the servo angles that put head and tail at given points.
 
 use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector};
 use lizard_robot::Robot;
 use serde::Serialize;
 
+use crate::Failure;
 use crate::json;
 use crate::paper::tidy::tidy;
 use crate::paper::verdict;
-use crate::pose_args::length;
-use crate::{Failure, RobotFile};
-
-/// Servo angles for a head point, a tail point, or both.
-///
-/// Lists all four working modes (each arm bent outward or inward), and says for each
-/// whether this robot can take it: its servos must reach the angles, its assembly mode
-/// must be the robot's (end point ahead of the crank tips), and its margins must hold.
-/// Then it judges the pose of the whole robot, as `lizard solve` does.
-#[derive(clap::Args)]
-#[command(
-    allow_negative_numbers = true,
-    after_help = "Example:
-  lizard inverse --head 5 120 --tail 0 -125"
-)]
-pub struct Args {
-    /// End point of the head in mm, chassis frame
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
-          required_unless_present = "tail")]
-    head: Option<Vec<f64>>,
-    /// End point of the tail in mm, chassis frame
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length)]
-    tail: Option<Vec<f64>>,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    robot: RobotFile,
-}
 
 /// What is printed.
 #[derive(Serialize)]
@@ -85,25 +55,16 @@ struct Way {
     why: Vec<String>,
 }
 
-/// Finds and prints the angles.
+/// Prints the servo angles that put head and tail at these points, mm.
 ///
 /// # Errors
-/// A wrong robot.toml, an output that cannot be written.
-pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
-    let part = |end: End, point: &Option<Vec<f64>>| {
-        point
-            .as_ref()
-            .map(|p| solve(&robot, end, Vector::new(p[0], p[1])))
-    };
-    let (head, tail) = (part(End::Head, &args.head), part(End::Tail, &args.tail));
-    let report = report(&robot, head, tail);
-    let mut out = io::stdout().lock();
-    if args.json {
-        json::line(&mut out, &report)?;
-    } else {
-        out.write_all(text(&report).as_bytes())?;
-    }
+/// A point out of reach, an output that cannot be written.
+pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(), Failure> {
+    let [head, tail] = ends;
+    let head = head.map(|point| solve(robot, End::Head, point));
+    let tail = tail.map(|point| solve(robot, End::Tail, point));
+    let report = report(robot, head, tail);
+    json::either(json, &report, || text(&report))?;
     let unreachable = [("head", &report.head), ("tail", &report.tail)]
         .into_iter()
         .find_map(|(name, part)| Some((name, part.as_ref()?.why.as_ref()?)));

@@ -1,4 +1,4 @@
-//! `lizard mobility`: degrees of freedom, counted and measured.
+//! `lizard pose --show freedoms`: degrees of freedom, counted and measured.
 //!
 //! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of
 //! the constraints at a pose does not assume it. Here every moving link has three
@@ -10,14 +10,12 @@
 //! the rank is computed again with the driven cranks locked, which adds a row for each.
 //! Whatever can still move then is loose.
 
-use std::io::{self, Write};
-
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
+use crate::Failure;
 use crate::json;
-use crate::{Failure, PoseArgs, RobotFile};
 
 /// Singular values below this share of the largest are zero: a pose typed with
 /// seven digits is met.
@@ -28,22 +26,6 @@ const STILL: f64 = 1e-3;
 
 /// A unit of length that makes rows in mm and in radians comparable.
 const LENGTH: f64 = 50.0;
-
-/// Degrees of freedom of body and legs, by counting and by the rank of the constraints
-///
-/// The rank is computed twice, with the driven cranks free and with them locked. What can
-/// still move with locked servos is loose, such as the end point at a type-2 singularity,
-/// and is named. The default pose is the neutral one.
-#[derive(clap::Args)]
-pub struct Args {
-    #[command(flatten)]
-    pose: PoseArgs,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    robot: RobotFile,
-}
 
 /// A mechanism: its joints connect links, of which number 0 does not move.
 struct Mechanism {
@@ -90,35 +72,25 @@ struct Report {
     conditioning: f64,
 }
 
-/// Counts and measures.
+/// Prints the degrees of freedom of body and legs.
 ///
 /// # Errors
-/// A wrong robot.toml, a pose in which a loop does not close, an output that cannot
-/// be written.
-pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
-    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
-    let solution = robot
-        .lizard()
-        .solve(&pose)
-        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+/// An output that cannot be written.
+pub fn print(lizard: &Lizard, solution: &Solution, json: bool) -> Result<(), Failure> {
     let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let mut all = vec![body(robot.lizard(), &solution)];
-    all.extend((0..4).map(|i| leg(robot.lizard(), &solution, i, legs[i])));
+    let mut all = vec![body(lizard, solution)];
+    all.extend((0..4).map(|i| leg(lizard, solution, i, legs[i])));
     let reports: Vec<Report> = all.iter().map(measure).collect();
-    let mut out = io::stdout().lock();
-    if args.json {
-        json::line(&mut out, &reports)?;
-        return Ok(());
-    }
-    writeln!(
-        out,
-        "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  locked  conditioning"
-    )?;
-    for r in &reports {
-        writeln!(
-            out,
-            "{:16} {:6} {:7} {:9}   {:>5}x{:<2} {:5} {:9} {:7}  {:12.1e}",
+    json::either(json, &reports, || text(&reports))
+}
+
+fn text(reports: &[Report]) -> String {
+    let mut page =
+        "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  locked  conditioning\n"
+            .to_owned();
+    for r in reports {
+        page += &format!(
+            "{:16} {:6} {:7} {:9}   {:>5}x{:<2} {:5} {:9} {:7}  {:12.1e}\n",
             r.mechanism,
             r.links,
             r.joints,
@@ -129,36 +101,29 @@ pub fn run(args: Args) -> Result<(), Failure> {
             r.freedoms,
             r.locked_freedoms,
             r.conditioning
-        )?;
+        );
     }
-    writeln!(
-        out,
-        "locked: freedoms left with the driven cranks locked; conditioning: of that Jacobian\n"
-    )?;
+    page +=
+        "locked: freedoms left with the driven cranks locked; conditioning: of that Jacobian\n\n";
     let singular = |r: &&Report| r.freedoms as i64 != r.gruebler || r.locked_freedoms > 0;
     if !reports.iter().any(|r| singular(&r)) {
-        writeln!(
-            out,
-            "Count and rank agree: four servos hold the body, one spring each leg."
-        )?;
+        page += "Count and rank agree: four servos hold the body, one spring each leg.\n";
     }
     for r in reports.iter().filter(singular) {
-        write!(
-            out,
+        page += &format!(
             "{} is singular here: the rank leaves {} freedoms",
             r.mechanism, r.freedoms
-        )?;
-        match r.loose.as_slice() {
-            [] => writeln!(out, ".")?,
-            loose => writeln!(
-                out,
-                ", and {} with the driven cranks locked: {}.",
+        );
+        page += &match r.loose.as_slice() {
+            [] => ".\n".to_owned(),
+            loose => format!(
+                ", and {} with the driven cranks locked: {}.\n",
                 r.locked_freedoms,
                 loose.join(", ")
-            )?,
-        }
+            ),
+        };
     }
-    Ok(())
+    page
 }
 
 /// The 13 links of the body: chassis, four cranks with their side arms, four

@@ -4,13 +4,13 @@
 pub mod charts;
 pub mod design;
 pub mod errata;
-pub mod inverse;
+mod inverse;
 pub mod mobility;
+pub mod pose;
 pub mod pose_line;
 pub mod poses;
 pub mod singularity;
-pub mod solve;
-pub mod speed;
+mod solve;
 pub mod tidy;
-pub mod velocity;
+mod velocity;
 pub mod verdict;

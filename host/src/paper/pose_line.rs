@@ -1,4 +1,4 @@
-//! A solved pose as `lizard solve` prints it.
+//! A solved pose as `lizard pose` prints it.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ use crate::paper::poses::Timed;
 use crate::paper::tidy::tidy;
 use crate::paper::verdict;
 
-/// One object of `lizard solve --json`. Everything that a pose without a
+/// One object of `lizard pose --json`. Everything that a pose without a
 /// solution lacks is null; seconds are there only where the stream has them.
 #[derive(serde::Serialize)]
 pub struct PoseLine {

@@ -1,48 +1,15 @@
-//! `lizard singularity`: K and K*, their factors, and the way to the nearest
+//! `lizard pose --show singularities`: K and K*, their factors, and the way to the nearest
 //! singular pose.
 
-use std::io::{self, Write};
-
-use lizard_kinematics::{Blocks, End, FiveBar, Pose, SingularPose, Singularity, Solution, wrap};
+use lizard_kinematics::{Blocks, End, FiveBar, SingularPose, Singularity, Solution, wrap};
 use lizard_robot::Robot;
 use nalgebra::SMatrix;
 use serde::Serialize;
 
+use crate::Failure;
 use crate::json;
 use crate::paper::tidy::tidy;
-use crate::paper::verdict;
 use crate::pose_args::ANGLES;
-use crate::{Failure, PoseArgs, RobotFile};
-
-/// The velocity matrices of a pose and its nearest singularities, or a map of the margins
-///
-/// K (8x4) holds the derivatives of the loop equations by the servo angles theta1,
-/// theta4, theta8, theta5, K* (8x8) those by the passive joints; text and JSON name the
-/// rows and columns. The default pose is the neutral one.
-#[derive(clap::Args)]
-#[command(after_help = "Examples:
-  lizard singularity
-  lizard singularity --map 5")]
-pub struct Args {
-    #[command(flatten)]
-    pose: PoseArgs,
-    /// Print the head's margins for theta1 and theta4 from 0 to 180, in steps of this
-    /// many degrees
-    #[arg(long, value_name = "STEP", value_parser = step)]
-    map: Option<f64>,
-    /// Print one JSON object
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    robot: RobotFile,
-}
-
-fn step(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(step) if (0.1..=45.0).contains(&step) => Ok(step),
-        _ => Err("it must be 0.1 to 45 degrees".to_string()),
-    }
-}
 
 /// The unknown rates, in the order of the columns of K*.
 const PASSIVE: [&str; 8] = [
@@ -131,29 +98,13 @@ struct Nearest {
     turn: [f64; 4],
 }
 
-/// Computes and prints matrices or map.
+/// Prints the matrices and the nearest singularities.
 ///
 /// # Errors
-/// A wrong robot.toml, a pose in which a loop does not close, an output that cannot
-/// be written.
-pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
-    let mut out = io::stdout().lock();
-    if let Some(step) = args.map {
-        return map(&robot, step, args.json, &mut out);
-    }
-    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
-    let solution = robot
-        .lizard()
-        .solve(&pose)
-        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
-    let report = report(&robot, &solution);
-    if args.json {
-        json::line(&mut out, &report)?;
-    } else {
-        out.write_all(text(&report).as_bytes())?;
-    }
-    Ok(())
+/// An output that cannot be written.
+pub fn print(robot: &Robot, solution: &Solution, json: bool) -> Result<(), Failure> {
+    let report = report(robot, solution);
+    json::either(json, &report, || text(&report))
 }
 
 fn report(robot: &Robot, solution: &Solution) -> Report {
@@ -299,91 +250,4 @@ fn text(report: &Report) -> String {
         page += &format!("  {:7.2} deg  {turn}   {}\n", near.distance, near.what);
     }
     page
-}
-
-#[derive(Serialize)]
-struct Cell {
-    theta1: f64,
-    theta4: f64,
-    type2: Option<f64>,
-    type1_a1: Option<f64>,
-    type1_a2: Option<f64>,
-    safe: bool,
-}
-
-/// Margins of the head over its plane.
-fn map(robot: &Robot, step: f64, json: bool, out: &mut impl Write) -> Result<(), Failure> {
-    let count = (180.0 / step + 1e-9).floor() as usize;
-    let axis = |i: usize| i as f64 * step;
-    let cells: Vec<Vec<Cell>> = (0..=count)
-        .map(|row| {
-            (0..=count)
-                .map(|column| cell(robot, axis(column), axis(row)))
-                .collect()
-        })
-        .collect();
-    if json {
-        return Ok(json::line(
-            out,
-            &cells.into_iter().flatten().collect::<Vec<_>>(),
-        )?);
-    }
-    writeln!(
-        out,
-        "least margin of the head in tenths (9 is .9 or more), . below the robot's limits or out of a servo's travel; type-2, type-1, legs"
-    )?;
-    for row in cells.iter().rev() {
-        let theta4 = row[0].theta4;
-        let marks: String = row
-            .iter()
-            .map(|cell| match cell {
-                Cell {
-                    safe: true,
-                    type2: Some(a),
-                    type1_a1: Some(b),
-                    type1_a2: Some(c),
-                    ..
-                } => {
-                    let leg = cell
-                        .theta1
-                        .to_radians()
-                        .sin()
-                        .abs()
-                        .min(cell.theta4.to_radians().sin().abs());
-                    let least = a.min(*b).min(*c).min(leg);
-                    char::from_digit((least * 10.0) as u32 % 10, 10).unwrap_or('9')
-                }
-                _ => '.',
-            })
-            .collect();
-        writeln!(out, "{theta4:6.1} {marks}")?;
-    }
-    writeln!(out, "theta4 / theta1 from 0.0 to {:.1}", axis(count))?;
-    Ok(())
-}
-
-fn cell(robot: &Robot, theta1: f64, theta4: f64) -> Cell {
-    // The tail stays at neutral, mirrored so that it limits nothing here.
-    let neutral = robot.neutral();
-    let pose = Pose {
-        theta1,
-        theta4,
-        ..neutral
-    };
-    let solved = robot.lizard().solve(&pose).ok();
-    let head = solved.as_ref().map(|s| s.head);
-    let safe = solved.is_some_and(|s| {
-        robot.limits().violations(&s).all(|v| {
-            use lizard_kinematics::Check::{StrokeLeft, StrokeRight};
-            matches!(v.what, StrokeLeft | StrokeRight)
-        }) && verdict::out_of_travel(robot, &pose).next().is_none()
-    });
-    Cell {
-        theta1,
-        theta4,
-        type2: head.map(|h| h.type2),
-        type1_a1: head.map(|h| h.type1_left()),
-        type1_a2: head.map(|h| h.type1_right()),
-        safe,
-    }
 }

@@ -1,4 +1,4 @@
-//! `lizard solve`: the forward solution of everything, by Algorithm 1.
+//! `lizard pose`: the forward solution of everything, by Algorithm 1.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::panic::resume_unwind;
@@ -9,9 +9,9 @@ use lizard_kinematics::Pose;
 use lizard_robot::Robot;
 use rayon::prelude::*;
 
+use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{Poses, Timed};
-use crate::{Failure, PoseArgs, RobotFile};
 
 /// Poses that are solved together; memory is bounded by it.
 const BATCH: usize = 8192;
@@ -19,43 +19,18 @@ const BATCH: usize = 8192;
 /// Blocks of lines, a sixteenth of a batch each, that may wait to be written.
 const AHEAD: usize = 32;
 
-/// The position of every joint, for one pose or for many.
-///
-/// Give one pose with the four flags, or many as CSV on standard input: with the header
-/// theta1,theta4,theta8,theta5 (degrees, chassis frame, any order), or without a header
-/// in that order. A column named seconds is passed through, so that the output of `lizard
-/// gaits --trace` can be solved. A pose is safe if it keeps the robot's limits and each
-/// servo's travel. If a pose is singular or cannot be reached, the reason is printed. A
-/// malformed line ends the run with its line and column, and exit code 2.
-#[derive(clap::Args)]
-#[command(after_help = "Examples:
-  lizard solve --theta1 138.59 --theta4 41.41 --theta8 318.59 --theta5 221.41
-  lizard solve --json < poses.csv > solutions.jsonl
-  lizard gaits --trace walk | lizard solve")]
-pub struct Args {
-    #[command(flatten)]
-    pose: PoseArgs,
-    /// Print one JSON object a line
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    robot: RobotFile,
-}
-
-/// Solves what was asked for.
+/// Solves a pose, or those of standard input if there is none.
 ///
 /// # Errors
-/// A wrong robot.toml, a pose or a line of the stream that is none, an output that
-/// cannot be written.
-pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
-    match args.pose.get() {
-        Some(pose) => Ok(io::stdout().write_all(&one(&robot, &pose, args.json)?)?),
+/// A pose or a line of the stream that is none, an output that cannot be written.
+pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failure> {
+    match pose {
+        Some(pose) => Ok(io::stdout().write_all(&one(robot, pose, json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
             "give a pose with --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
                 .to_string(),
         )),
-        None => stream(&robot, args.json),
+        None => stream(robot, json),
     }
 }
 

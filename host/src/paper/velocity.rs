@@ -1,14 +1,12 @@
-//! `lizard velocity`: passive rates and accelerations from those of the servos.
-
-use std::io::{self, Write};
+//! `lizard pose --show rates`: passive rates and accelerations from those of the servos.
 
 use lizard_kinematics::{Derivatives, Drive, Lizard, Pose, Solution, wrap};
 use serde::Serialize;
 
+use crate::Failure;
 use crate::json;
 use crate::paper::tidy::tidy;
 use crate::pose_args::{acceleration, rate};
-use crate::{Failure, PoseArgs, RobotFile};
 
 /// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;
@@ -17,32 +15,9 @@ const STEP: f64 = 2e-4;
 /// another pose.
 const SWEEP: f64 = 0.04;
 
-/// How fast each passive joint moves when the servos move.
-///
-/// Rates and accelerations follow in closed form from K and K* (the paper announces the
-/// acceleration analysis and omits it). Each is printed with its deviation from finite
-/// differences of the position solution. The default pose is the neutral one.
 #[derive(clap::Args)]
-#[command(
-    allow_negative_numbers = true,
-    after_help = "Example:
-  lizard velocity --omega1 100 --omega4 -100 --alpha5 500"
-)]
-pub struct Args {
-    #[command(flatten)]
-    pose: PoseArgs,
-    #[command(flatten)]
-    drive: DriveArgs,
-    /// Print one JSON array, an object for each joint
-    #[arg(long, help_heading = "Options")]
-    json: bool,
-    #[command(flatten)]
-    robot: RobotFile,
-}
-
-#[derive(clap::Args)]
-#[command(next_help_heading = "Servos, all 0 unless given")]
-struct DriveArgs {
+#[command(next_help_heading = "Servos, for --show rates; all 0 unless given")]
+pub struct DriveArgs {
     /// Rate of theta1 (A1), deg/s
     #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
     omega1: f64,
@@ -83,39 +58,39 @@ struct Row {
     acceleration_deviation: Option<f64>,
 }
 
-/// Computes and prints the motion.
+impl From<DriveArgs> for Drive {
+    fn from(d: DriveArgs) -> Self {
+        Self {
+            rate: [d.omega1, d.omega4, d.omega8, d.omega5],
+            acceleration: [d.alpha1, d.alpha4, d.alpha8, d.alpha5],
+        }
+    }
+}
+
+/// Prints how fast each passive joint moves.
 ///
 /// # Errors
-/// A wrong robot.toml, a pose in which a loop does not close, an output that cannot
-/// be written.
-pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
-    let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
-    let d = &args.drive;
-    let drive = Drive {
-        rate: [d.omega1, d.omega4, d.omega8, d.omega5],
-        acceleration: [d.alpha1, d.alpha4, d.alpha8, d.alpha5],
-    };
-    let solution = robot
-        .lizard()
-        .solve(&pose)
-        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+/// A pose in which rates have no meaning, an output that cannot be written.
+pub fn print(
+    lizard: &Lizard,
+    solution: &Solution,
+    drive: &Drive,
+    json: bool,
+) -> Result<(), Failure> {
     let singular = solution.margins.type2[0].min(solution.margins.type2[1]);
     if singular < 1e-9 {
         return Err(Failure::Impossible(
             "the couplers line up: rates do not follow from the servos'".to_string(),
         ));
     }
-    let rows = rows(robot.lizard(), &solution, &drive);
-    let mut out = io::stdout().lock();
-    if args.json {
-        json::line(&mut out, &rows)?;
-        return Ok(());
-    }
-    writeln!(
-        out,
-        "joint        value          rate 1/s   acceleration 1/s^2   against finite differences"
-    )?;
+    let rows = rows(lizard, solution, drive);
+    json::either(json, &rows, || text(&rows))
+}
+
+fn text(rows: &[Row]) -> String {
+    let mut page =
+        "joint        value          rate 1/s   acceleration 1/s^2   against finite differences\n"
+            .to_owned();
     for row in rows {
         let agrees = |deviation: f64, value: f64| deviation.abs() < 1e-6 * (100.0 + value.abs());
         let verdict = match (row.rate_deviation, row.acceleration_deviation) {
@@ -127,17 +102,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
             (Some(rate), Some(acceleration)) => format!("off by {rate:+.0e}, {acceleration:+.0e}"),
             _ => "no neighbours".to_string(),
         };
-        writeln!(
-            out,
-            "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}",
+        page += &format!(
+            "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}\n",
             row.joint,
             tidy(row.value, 4),
             row.unit,
             tidy(row.rate, 4),
             tidy(row.acceleration, 4)
-        )?;
+        );
     }
-    Ok(())
+    page
 }
 
 /// Joint, unit, value.

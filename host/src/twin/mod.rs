@@ -1,7 +1,6 @@
 //! `lizard twin`: the real firmware on the simulated UNO moves a robot that nobody has
 //! built yet, and shows how it walks.
 
-mod apng;
 pub mod html;
 pub mod replay;
 pub mod report;
@@ -33,7 +32,6 @@ use report::Report;
 #[command(after_help = "Examples:
   lizard twin
   lizard twin dance.txt --html out/dance.html
-  lizard twin --gait walk --apng out/walk.png
   lizard twin --gait crawl --robust 200
 
 A script is a file of lines `<ms since power-on> <command>`.")]
@@ -57,9 +55,6 @@ pub struct Args {
     /// Write a replay for the browser: one file that needs no network
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Write a moving picture (APNG) of the first gait, two cycles of it
-    #[arg(long, value_name = "FILE")]
-    apng: Option<PathBuf>,
     /// Then walk each gait N more times with random friction, loads, mounting, hips,
     /// feet, springs and play, and print the spread of the distances
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
@@ -110,23 +105,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         report.print(&mut out)?;
     }
-    let mut said = Vec::new();
     if let Some(path) = &args.html {
         files::write(path, html::page(&replay, &report)?.as_bytes())?;
-        said.push(("replay", path));
-    }
-    if let Some(path) = &args.apng {
-        files::write(path, &apng::draw(&replay)?)?;
-        said.push(("moving picture", path));
     }
     if let Some(times) = args.robust {
         robust::run(&robot, &replay, model, times, args.json, &mut out)?;
     }
-    if !args.json && !said.is_empty() {
-        writeln!(out)?;
-        for (what, path) in said {
-            writeln!(out, "{what:<14}  {}", path.display())?;
-        }
+    if let (false, Some(path)) = (args.json, &args.html) {
+        writeln!(out, "\nreplay          {}", path.display())?;
     }
     Ok(out.flush()?)
 }

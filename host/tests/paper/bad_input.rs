@@ -41,7 +41,7 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
         ),
     ];
     for (rows, message) in cases {
-        for json in ["solve", "solve --json"] {
+        for json in ["pose", "pose --json"] {
             let outcome = lizard(json, format!("{HEADER}{rows}"));
             assert_eq!(outcome.code, 2, "{rows}");
             assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
@@ -53,7 +53,7 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
 #[test]
 fn rows_before_the_malformed_one_are_answered_whole() {
     let outcome = lizard(
-        "solve --json",
+        "pose --json",
         format!("{HEADER}138,42,318,221\n138,42,318,221\n?,42,318,221\n"),
     );
     assert_eq!((outcome.code, outcome.out.lines().count()), (2, 2));
@@ -90,12 +90,12 @@ fn a_wrong_header_is_refused() {
         ),
     ];
     for (input, message) in cases {
-        let outcome = lizard("solve --json", input);
+        let outcome = lizard("pose --json", input);
         assert_eq!(outcome.code, 2);
         assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
         assert_eq!(outcome.out, "");
     }
-    let endless = lizard("solve", vec![b'1'; 100_000]);
+    let endless = lizard("pose", vec![b'1'; 100_000]);
     assert_eq!(endless.code, 2);
     assert_eq!(
         endless.err.trim_end(),
@@ -106,32 +106,32 @@ fn a_wrong_header_is_refused() {
 #[test]
 fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
     let cases: &[(&str, &str)] = &[
-        ("solve --theta1 138", "--theta4"),
+        ("pose --theta1 138", "--theta4"),
         (
-            "solve --theta1 138 --theta4 42 --theta5 x --theta8 318",
+            "pose --theta1 138 --theta4 42 --theta5 x --theta8 318",
             "it is not a number",
         ),
         (
-            "solve --theta1 138 --theta4 42 --theta5 inf --theta8 318",
+            "pose --theta1 138 --theta4 42 --theta5 inf --theta8 318",
             "it is not a finite number",
         ),
-        ("inverse", "--head"),
-        ("inverse --head 5", "2 values"),
-        ("inverse --head 5 nan", "it is not a finite number"),
+        ("pose --head 5 120 --show rates", "cannot be used with"),
+        ("pose --head 5", "2 values"),
+        ("pose --head 5 nan", "it is not a finite number"),
         (
-            "inverse --head 5 1e308",
+            "pose --head 5 1e308",
             "it is not within -1000000 to 1000000 mm",
         ),
         (
-            "solve --theta1 1e308 --theta4 42 --theta8 318 --theta5 221",
+            "pose --theta1 1e308 --theta4 42 --theta8 318 --theta5 221",
             "it is not within -1000000 to 1000000 degrees",
         ),
         (
-            "velocity --omega8 1e200",
+            "pose --show rates --omega8 1e200",
             "it is not within -1000000 to 1000000 deg/s",
         ),
         (
-            "velocity --alpha5 -1e200",
+            "pose --show rates --alpha5 -1e200",
             "it is not within -1000000000 to 1000000000 deg/s^2",
         ),
         (
@@ -147,8 +147,7 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
             "/dev/zero: is longer than 1 MiB, so it is no robot file",
         ),
         ("gaits --robot /", "cannot be read"),
-        ("velocity --omega1 fast", "it is not a number"),
-        ("singularity --map 0", "it must be 0.1 to 45 degrees"),
+        ("pose --show rates --omega1 fast", "it is not a number"),
         ("design --r1 0.3", "give two or three of --r1, --r2, --r3"),
         (
             "design --r1 0.3 --r2 0.3 --r3 0.1",
@@ -162,7 +161,7 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
         ("design --l0 0", "it must be at least 0.001 mm"),
         ("design --chart --step 0", "it must be 0.002 to 0.2"),
         ("errata --samples 0", "0 is not in"),
-        ("solve --robot no/such/robot.toml", "no/such/robot.toml"),
+        ("pose --robot no/such/robot.toml", "no/such/robot.toml"),
         ("charts", "<DIR>"),
         ("walk", "walk"),
     ];
@@ -178,11 +177,11 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
 fn what_does_not_exist_ends_with_code_1() {
     let cases: &[(&str, &str)] = &[
         (
-            "inverse --head 0 200",
+            "pose --head 0 200",
             "head: the point is 132.877 mm from the left shaft",
         ),
         (
-            "velocity --theta1 70.528779365509308 --theta4 109.47122063449069 --theta5 221 --theta8 318",
+            "pose --show rates --theta1 70.528779365509308 --theta4 109.47122063449069 --theta5 221 --theta8 318",
             "singular",
         ),
         (
@@ -203,7 +202,7 @@ fn a_pipe_that_closes_is_no_failure() {
     input += &"138,42,318,221\n".repeat(50_000);
     std::fs::write(std::env::temp_dir().join("lizard-poses.csv"), input).unwrap();
     let script = format!(
-        "'{}' solve --json < {}/lizard-poses.csv | head -n 1; exit ${{PIPESTATUS[0]}}",
+        "'{}' pose --json < {}/lizard-poses.csv | head -n 1; exit ${{PIPESTATUS[0]}}",
         env!("CARGO_BIN_EXE_lizard"),
         std::env::temp_dir().display()
     );

@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::program::{RobotFile, lizard, paper, paper_text};
+use crate::program::{lizard, paper, paper_text};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -81,7 +81,7 @@ fn the_search_keeps_its_promises() {
 
 #[test]
 fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
-    let all = lizard(&paper("mobility --json"), "").json();
+    let all = lizard(&paper("pose --show freedoms --json"), "").json();
     let freedoms: Vec<(i64, i64)> = all
         .as_array()
         .unwrap()
@@ -97,7 +97,7 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
     assert_eq!(all[0]["rank"], 32);
     // A flat leg gains a freedom, which counting cannot see.
     let flat = lizard(
-        &paper("mobility --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
+        &paper("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
         "",
     )
     .json();
@@ -110,7 +110,9 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
 #[test]
 fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_one() {
     let report = lizard(
-        &paper("singularity --json --theta1 120 --theta4 70 --theta5 230 --theta8 310"),
+        &paper(
+            "pose --show singularities --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
+        ),
         "",
     )
     .json();
@@ -129,7 +131,7 @@ fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_o
             "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
             there[0], there[1], there[2], there[3]
         );
-        let solved = lizard(&paper("solve --json"), pose).json();
+        let solved = lizard(&paper("pose --json"), pose).json();
         let margins: Vec<f64> = match solved["margins"].as_object() {
             Some(margins) => margins.values().map(number).collect(),
             None => vec![0.0],
@@ -141,7 +143,7 @@ fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_o
 
 #[test]
 fn rates_agree_with_differences_of_positions() {
-    let rows = lizard(&paper("velocity --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700"), "").json();
+    let rows = lizard(&paper("pose --show rates --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700"), "").json();
     for row in rows.as_array().unwrap() {
         assert!(number(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number(&row["rate"]).abs()));
         assert!(
@@ -158,7 +160,7 @@ fn rates_of_any_size_agree_with_differences() {
         "--alpha4 1e9",
         "--omega1 1e-3 --alpha5 1e-3",
     ] {
-        let rows = lizard(&paper(&format!("velocity {drive}")), "").out;
+        let rows = lizard(&paper(&format!("pose --show rates {drive}")), "").out;
         let verdicts = rows
             .lines()
             .skip(1)
@@ -177,7 +179,7 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
         ("-22 110", false),
         ("20 105.5", false),
     ] {
-        let report = lizard(&paper(&format!("inverse --json --head {point}")), "").json();
+        let report = lizard(&paper(&format!("pose --json --head {point}")), "").json();
         let ways = report["head"]["working_modes"].as_array().unwrap();
         assert_eq!(ways.len(), 4);
         for way in ways {
@@ -203,37 +205,8 @@ fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
 }
 
 #[test]
-fn numpy_and_the_program_find_the_same_joints() {
-    // Whatever robot.toml says, and a robot without symmetry.
-    let odd = RobotFile::with(
-        "odd",
-        &[
-            ("l5 = 20.0", "l5 = 26.0"),
-            ("l0 = 20.0", "l0 = 18.0"),
-            ("l14 = 30.0", "l14 = 28.0"),
-            ("l19 = 30.0", "l19 = 27.0"),
-            ("l16 = 30.0", "l16 = 31.0"),
-            ("l12 = 45.0", "l12 = 46.0"),
-            ("l17 = 45.0", "l17 = 44.0"),
-            ("\nleg = 0.3 ", "\nleg = 0.2 "),
-        ],
-    );
-    for args in [
-        "speed --json --poses 20000".to_string(),
-        odd.of("speed --json --poses 20000"),
-    ] {
-        let report = lizard(&args, "").json();
-        assert!(number(&report["poses_per_second"]) > 0.0);
-        // Without numpy on the machine there is nothing to compare with.
-        if let Some(numpy) = report["numpy"].as_object() {
-            assert!(number(&numpy["worst_difference"]) < 1e-9, "{args}");
-        }
-    }
-}
-
-#[test]
 fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
-    let at = |pose: &str| lizard(&paper(&format!("mobility --json {pose}")), "").json();
+    let at = |pose: &str| lizard(&paper(&format!("pose --show freedoms --json {pose}")), "").json();
     let home = at("");
     for mechanism in home.as_array().unwrap() {
         assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
@@ -254,7 +227,9 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
         "the tail's end point is loose (type 2)"
     );
     let text = lizard(
-        &paper("mobility --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41"),
+        &paper(
+            "pose --show freedoms --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41",
+        ),
         "",
     );
     assert!(
@@ -285,7 +260,7 @@ fn a_wide_base_has_a_circle() {
 
 #[test]
 fn matrices_name_their_rows_and_columns_in_servo_order() {
-    let report = lizard("singularity --json", "").json();
+    let report = lizard("pose --show singularities --json", "").json();
     assert_eq!(
         report["k"]["columns"],
         serde_json::json!(["theta1", "theta4", "theta8", "theta5"])

@@ -1,4 +1,4 @@
-//! `lizard solve`, by the paper's robot.
+//! `lizard pose`, by the paper's robot.
 
 use lizard_kinematics::wrap;
 use serde_json::Value;
@@ -8,7 +8,7 @@ use crate::program::{RobotFile, lizard, paper};
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
 fn lines(input: &str) -> Vec<Value> {
-    let outcome = lizard(&paper("solve --json"), input);
+    let outcome = lizard(&paper("pose --json"), input);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     outcome
         .out
@@ -149,7 +149,7 @@ fn columns_come_in_any_order_and_line_ends_and_quotes_do_not_matter() {
 #[test]
 fn flags_and_stream_agree() {
     let flags = lizard(
-        &paper("solve --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
+        &paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
         "",
     )
     .json();
@@ -173,7 +173,7 @@ fn a_long_stream_keeps_its_order() {
 #[test]
 fn what_a_reader_sees_is_aligned_and_says_safe() {
     let outcome = lizard(
-        &paper("solve"),
+        &paper("pose"),
         format!("{HEADER}138,42,318,221\n60,60,318,221\n"),
     );
     let lines: Vec<&str> = outcome.out.lines().collect();
@@ -196,7 +196,7 @@ fn a_time_is_passed_through() {
     let with = lines("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
     assert_eq!(with[0]["seconds"], 0.02);
     let table = lizard(
-        &paper("solve"),
+        &paper("pose"),
         "seconds,theta1,theta4,theta8,theta5\n0.02,138,42,318,221\n",
     );
     let rows: Vec<&str> = table.out.lines().collect();
@@ -218,7 +218,7 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
         let gait: Value = serde_json::from_str(gait).expect("JSON");
         let name = gait["gait"].as_str().unwrap();
         let trace = lizard(&format!("gaits --trace {name}"), "");
-        let solved = lizard("solve --json", trace.out.as_bytes());
+        let solved = lizard("pose --json", trace.out.as_bytes());
         assert_eq!(solved.code, 0, "{name}: {}", solved.err);
         assert_eq!(solved.out.lines().count(), trace.out.lines().count() - 1);
         for (line, row) in solved.out.lines().zip(trace.out.lines().skip(1)) {
@@ -246,9 +246,8 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         )],
     );
     let at = |theta8: f64| {
-        let pose = format!(
-            "solve --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41"
-        );
+        let pose =
+            format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
         lizard(&robot.of(&pose), "").json()
     };
     assert_eq!(at(318.590378 + 20.0)["safe"], true, "the end of the travel");
@@ -259,7 +258,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg, its travel is 266.1 to 338.6 deg"
     );
     let page = lizard(
-        &robot.of("solve --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
+        &robot.of("pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
         "",
     );
     assert!(
@@ -267,7 +266,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         "{}",
         page.out
     );
-    let table = lizard(&robot.of("solve"), "138.59,41.41,338.8,221.41\n");
+    let table = lizard(&robot.of("pose"), "138.59,41.41,338.8,221.41\n");
     assert!(table.out.contains("| servo A3 would turn"), "{}", table.out);
     // The tail point of that pose is out of reach by the inverse, too.
     let tail: Vec<f64> = beyond["tail"]
@@ -277,7 +276,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
         .map(|v| v.as_f64().unwrap())
         .collect();
     let inverse = lizard(
-        &robot.of(&format!("inverse --json --tail {} {}", tail[0], tail[1])),
+        &robot.of(&format!("pose --json --tail {} {}", tail[0], tail[1])),
         "",
     )
     .json();
@@ -294,11 +293,11 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
 #[test]
 fn no_zero_has_a_minus() {
     for args in [
-        "solve --theta1 138.59038 --theta4 41.40962 --theta8 318.59038 --theta5 221.40962",
-        "solve --theta1 180 --theta4 0 --theta8 -0 --theta5 -180",
-        "velocity --omega1 -0.00001 --alpha5 -0.00001",
-        "singularity",
-        "inverse --head -0.0001 120 --tail -0.0001 -120",
+        "pose --theta1 138.59038 --theta4 41.40962 --theta8 318.59038 --theta5 221.40962",
+        "pose --theta1 180 --theta4 0 --theta8 -0 --theta5 -180",
+        "pose --show rates --omega1 -0.00001 --alpha5 -0.00001",
+        "pose --show singularities",
+        "pose --head -0.0001 120 --tail -0.0001 -120",
     ] {
         let outcome = lizard(&paper(args), "");
         let zeros = outcome

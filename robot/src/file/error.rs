@@ -324,7 +324,7 @@ pub enum Problem {
     TooNear {
         /// Phase, 0 to 1.
         phase: f64,
-        /// The condition, as `lizard solve` calls it.
+        /// The condition, as `lizard pose` calls it.
         what: &'static str,
     },
     /// A gait sample outside a servo's travel.

@@ -15,7 +15,7 @@ use crate::{Failure, RobotFile};
 use super::recorder::Event;
 use session::Session;
 
-/// Draw a session that `lizard record` has recorded
+/// Draw a session that `lizard console --record` has recorded
 ///
 /// Prints the dialogue and a summary, and draws servo angles and footfalls over
 /// time.

@@ -23,7 +23,7 @@ const LONGEST_MS: u64 = 86_400_000;
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SessionError {
     /// It is another file, or of another format.
-    #[error("this is no session of `lizard record`: its first line has no \"{FORMAT}\"")]
+    #[error("this is no session of `lizard console --record`: its first line has no \"{FORMAT}\"")]
     Format,
     /// A line is no event.
     #[error("line {line}: {problem}")]

@@ -1,18 +1,15 @@
-//! `lizard charts`: the paper's figures, and those that it lacks, as SVG and
-//! PNG.
+//! `lizard charts`: the paper's figures, and those that it lacks, as SVG.
 
 mod performance;
 mod plot;
-mod raster;
 mod singularity;
 mod stroke;
 mod workspace;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::{fs, io};
 
 use lizard_robot::Robot;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::paper::design;
@@ -22,7 +19,7 @@ use crate::{Failure, PoseArgs, RobotFile, draw, files, json};
 const STEP: f64 = 0.005;
 const RINGS: usize = 16;
 
-/// Draw all charts into a folder, each as SVG and PNG.
+/// Draw all charts into a folder, as SVG.
 ///
 /// workspace (with the maximal inscribed circle), conditioning (the LCI map),
 /// performance (over the whole design space), singularity (with the gaits'
@@ -30,13 +27,13 @@ const RINGS: usize = 16;
 /// pose given).
 #[derive(clap::Args)]
 #[command(after_help = "Example:
-  lizard charts docs/charts --svg-only")]
+  lizard charts docs/charts")]
 pub struct Args {
     /// Folder for the files; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Write SVG only, no PNG
-    #[arg(long)]
+    /// Older versions also wrote PNG; there is nothing to leave out any more
+    #[arg(long, hide = true)]
     svg_only: bool,
     /// Print the list of files as JSON
     #[arg(long)]
@@ -68,24 +65,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     fs::create_dir_all(&args.folder).map_err(|error| files::cannot(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
-    let options = (!args.svg_only).then(raster::options);
-    if options
-        .as_ref()
-        .is_some_and(|options| options.fontdb.is_empty())
-    {
-        eprintln!(
-            "lizard: no fonts on this machine, the PNG files have no text (apt install fonts-dejavu-core)"
-        );
-    }
     let drawn: Vec<Drawn> = pictures
-        .par_iter()
+        .iter()
         .map(|(name, svg)| {
-            let mut files = vec![write(&args.folder, name, "svg", svg.as_bytes())?];
-            if let Some(options) = &options {
-                let png = raster::png(svg, options)
-                    .map_err(|fault| Failure::Impossible(format!("{name}.png: {fault}")))?;
-                files.push(write(&args.folder, name, "png", &png)?);
-            }
+            let path = args.folder.join(format!("{name}.svg"));
+            files::write(&path, svg.as_bytes())?;
+            let files = vec![path];
             Ok(Drawn { chart: name, files })
         })
         .collect::<Result<_, Failure>>()?;
@@ -111,10 +96,4 @@ pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
         ("singularity", singularity::singularity(robot)),
         ("stroke", stroke::stroke(robot)),
     ]
-}
-
-fn write(folder: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
-    let path = folder.join(format!("{name}.{ending}"));
-    files::write(&path, bytes)?;
-    Ok(path)
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Command;
 use clap_complete::Shell;
 
-use crate::{Failure, commands, files};
+use crate::{Failure, files};
 
 /// Print what a shell needs to complete commands and options
 #[derive(clap::Args, Debug)]
@@ -34,7 +34,7 @@ pub struct ManArgs {
 /// # Errors
 /// Standard output cannot be written.
 pub fn completions(args: CompletionsArgs) -> Result<(), Failure> {
-    let mut command = commands::program();
+    let mut command = super::program();
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, "lizard", &mut script);
     let mut out = io::stdout().lock();
@@ -47,7 +47,7 @@ pub fn completions(args: CompletionsArgs) -> Result<(), Failure> {
 /// # Errors
 /// A file cannot be written.
 pub fn man(args: ManArgs) -> Result<(), Failure> {
-    let mut command = commands::program().disable_help_subcommand(true);
+    let mut command = super::program().disable_help_subcommand(true);
     command.build();
     let mut count = 1;
     page(&args, "lizard", command.clone())?;

@@ -1,0 +1,95 @@
+//! `lizard pose`: everything about the robot at one pose, or the joints of many poses.
+
+use lizard_kinematics::Vector;
+
+use crate::paper::{inverse, mobility, singularity, solve, velocity};
+use crate::pose_args::length;
+use crate::{Failure, PoseArgs, RobotFile};
+
+/// Compute the robot at a pose: its joints, singularities, freedoms or rates
+///
+/// Give the pose by its servo angles, or by the end points of head and tail; or give many
+/// poses as CSV on standard input: with the header theta1,theta4,theta8,theta5 (degrees,
+/// chassis frame, any order), or without a header in that order. A column named seconds is
+/// passed through, so that the output of `lizard gaits --trace` can be solved. A malformed
+/// line ends the run with its line and column, and exit code 2.
+///
+/// A pose is safe if it keeps the robot's limits and each servo's travel. If a pose is
+/// singular or cannot be reached, the reason is printed. For a point of head or tail, all four
+/// working modes are listed (each arm bent outward or inward), and for each whether this
+/// robot can take it.
+#[derive(clap::Args)]
+#[command(
+    allow_negative_numbers = true,
+    after_help = "Examples:
+  lizard pose --theta1 138.59 --theta4 41.41 --theta8 318.59 --theta5 221.41
+  lizard pose --json < poses.csv > solutions.jsonl
+  lizard gaits --trace walk | lizard pose
+  lizard pose --head 5 120 --tail 0 -125
+  lizard pose --show singularities
+  lizard pose --show rates --omega1 100 --omega4 -100 --alpha5 500"
+)]
+pub struct Args {
+    #[command(flatten)]
+    pose: PoseArgs,
+    /// End point of the head in mm, chassis frame
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
+          help_heading = "Pose", conflicts_with = "theta1")]
+    head: Option<Vec<f64>>,
+    /// End point of the tail in mm, chassis frame
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
+          help_heading = "Pose", conflicts_with = "theta1")]
+    tail: Option<Vec<f64>>,
+    /// What to print of the pose; all but the joints are also printed of the neutral pose, if
+    /// none is given
+    #[arg(long, value_enum, default_value_t, conflicts_with_all = ["head", "tail"])]
+    show: Show,
+    /// Print JSON, of a stream one object a line
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    drive: velocity::DriveArgs,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// The subject of the output.
+#[derive(clap::ValueEnum, Clone, Copy, Default)]
+enum Show {
+    /// Every joint, the margins, and whether the pose is safe
+    #[default]
+    Joints,
+    /// The velocity matrices K (8x4, derivatives of the loop equations by the servo angles) and
+    /// K* (8x8, by the passive joints), their determinants, and the nearest singularities
+    Singularities,
+    /// Degrees of freedom of body and legs, by counting and by the rank of the constraints; what
+    /// can still move with locked servos is named
+    Freedoms,
+    /// Rates and accelerations of the passive joints, each compared with finite differences
+    Rates,
+}
+
+/// Computes and prints.
+///
+/// # Errors
+/// A wrong robot.toml, a pose that the robot cannot have, a line of the stream that is none,
+/// an output that cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let ends = [&args.head, &args.tail].map(|end| end.as_ref().map(|p| Vector::new(p[0], p[1])));
+    if ends.iter().any(Option::is_some) {
+        return inverse::print(&robot, ends, args.json);
+    }
+    let pose = args.pose.get();
+    let lizard = robot.lizard();
+    let solved = || {
+        let solution = lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
+        solution.map_err(|infeasible| Failure::Impossible(infeasible.to_string()))
+    };
+    match args.show {
+        Show::Joints => solve::print(&robot, pose.as_ref(), args.json),
+        Show::Singularities => singularity::print(&robot, &solved()?, args.json),
+        Show::Freedoms => mobility::print(lizard, &solved()?, args.json),
+        Show::Rates => velocity::print(lizard, &solved()?, &args.drive.into(), args.json),
+    }
+}
