@@ -23,7 +23,7 @@ pub enum Fault {
     Late,
     /// The stack has grown into the data.
     Stack,
-    /// The supply broke down several times in a row.
+    /// Several resets in a row by a weak supply or, behind a boot loader, by the button.
     BrownOut,
     /// There is no robot in the flash.
     Robot,

@@ -25,7 +25,7 @@ pub enum State {
 pub enum Event {
     /// Somebody sends `stand`.
     Stand,
-    /// Another gait, `pose` or `center`.
+    /// Somebody sends another motion.
     Move,
     /// `stop`.
     Stop,

@@ -55,7 +55,7 @@ texts! {
     WhyLink = "no line for as long as deadman says, stopped";
     WhyWatchdog = "the program hung and began anew";
     WhyLate = "a pulse came late, stopped";
-    WhyBrownOut = "the supply broke down several times in a row, resting";
+    WhyBrownOut = "reset several times in a row by the button or a weak supply, resting";
     WhyRobot = "no robot in the flash, write one";
     WhyRobotFormat = "the robot in the flash is for another version, write it again";
     WhyRobotDamaged = "the robot in the flash is damaged, write it again";

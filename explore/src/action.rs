@@ -3,6 +3,7 @@
 use std::fmt;
 
 use lizard_core::restart::Cause;
+use lizard_core::word::Word;
 
 /// One thing that happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +34,8 @@ pub enum Action {
     Deaf(bool),
 }
 
-/// Every line that is tried.
-const LINES: [&str; 25] = [
+/// Lines that are tried, beside an example of each other word.
+const LINES: [&str; 24] = [
     "stand",
     "walk",
     "trot",
@@ -43,7 +44,6 @@ const LINES: [&str; 25] = [
     "rest",
     "pose 155 41.41 318.59 221.41",
     "pose 138.59 170 318.59 221.41",
-    "center",
     "speed 50",
     "trim 1 8",
     "dir 2 -",
@@ -74,7 +74,13 @@ impl Action {
             Self::Step,
             Self::Noise,
         ];
+        let is_tried = |word: &&Word| {
+            let mut words = LINES.iter().filter_map(|line| line.split(' ').next());
+            words.any(|tried| tried == word.text())
+        };
+        let others = Word::ALL.iter().filter(|word| !is_tried(word));
         all.extend(LINES.map(Self::Say));
+        all.extend(others.map(|word| Self::Say(word.example())));
         // After the frame before, whose hand-over was 16 ms ago: main is late for
         // nothing, for a hand-over, for three, for five; it is interrupted by the
         // watchdog and continues; it is reset.

@@ -178,6 +178,41 @@ fn sources(folder: &Path) -> String {
         .collect()
 }
 
+/// The files of a folder, or the one file, that have a word by itself.
+fn knowing(path: &Path, word: &str) -> BTreeSet<PathBuf> {
+    if path.is_dir() {
+        let entries = fs::read_dir(path).expect("a folder");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        return paths.flat_map(|path| knowing(&path, word)).collect();
+    }
+    let text = fs::read_to_string(path).expect("a text");
+    let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let knows = words.any(|other| other.eq_ignore_ascii_case(word));
+    let path = path.strip_prefix(root()).expect("below the root");
+    knows.then(|| path.to_path_buf()).into_iter().collect()
+}
+
+/// `center` is the example: it is a command and nothing else. It has no arguments, of which
+/// `deadman` in the sentences is one.
+#[test]
+fn the_files_of_a_console_command_are_those_that_know_one_and_no_more_than_seven() {
+    let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
+    let (_, list) = page.split_once("**A console command.**").expect("its list");
+    let (list, _) = list.split_once("**A gait.**").expect("the next list");
+    let quoted = list.split('`').skip(1).step_by(2);
+    let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
+    let listed: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
+
+    let folders = ["core", "explore", "fuzz", "docs/console.md"];
+    let mut known: BTreeSet<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| knowing(&root().join(folder), "center"))
+        .collect();
+    known.extend(knowing(&root().join("core/src/text.rs"), "deadman"));
+    assert_eq!(listed, known);
+    assert!(listed.len() <= 7, "{listed:?}");
+}
+
 /// README, CONTRIBUTING and the pages of docs/, with their texts.
 fn pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];

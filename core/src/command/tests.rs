@@ -22,7 +22,6 @@ fn word<const N: usize>(word: Word, numbers: [u16; N]) -> Command {
         Word::Watch => return Command::Watch(number),
         Word::Stop => Order::Stop,
         Word::Rest => Order::Rest,
-        Word::Center => Order::Center,
         Word::Save => Order::Save,
         Word::Load => Order::Load,
         Word::Factory => Order::Factory,
@@ -74,14 +73,14 @@ fn every_word_is_its_command() {
 }
 
 /// The readings of a line by a console where words from a number on yield to gaits:
-/// every word, those from `center` on, and none.
+/// every word, those from `cal` on, and none.
 fn yielding(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
-    const CENTER: usize = Word::Center as usize;
+    const CAL: usize = Word::Cal as usize;
     const NONE: usize = Word::ALL.len();
     let line = line.as_bytes();
     [
         parse_among::<0>(line, robot),
-        parse_among::<CENTER>(line, robot),
+        parse_among::<CAL>(line, robot),
         parse_among::<NONE>(line, robot),
     ]
 }
@@ -100,7 +99,7 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         assert_eq!(yielding(example, &other), [command; 3], "{example}");
 
         let named = Sample::paper().with_gait(text).with_gait(&longer);
-        let since = [0, Word::Center as usize, Word::ALL.len()];
+        let since = [0, Word::Cal as usize, Word::ALL.len()];
         for (line, as_gait) in [
             (text, Ok(gait_of(named.id(text)))),
             (&*longer, Ok(gait_of(named.id(&longer)))),
@@ -154,7 +153,6 @@ fn every_setting_is_read_with_its_servo() {
         ("scale 4 20.00", Ok(adjust(Word::Scale, Servo::A4, [2000]))),
         ("scale 1 10.2", Ok(adjust(Word::Scale, Servo::A1, [1020]))),
         ("cal", Ok(word(Word::Cal, []))),
-        ("center", Ok(word(Word::Center, []))),
         ("save", Ok(word(Word::Save, []))),
         ("load", Ok(word(Word::Load, []))),
         ("factory", Ok(word(Word::Factory, []))),
@@ -238,7 +236,7 @@ fn a_setting_that_is_not_wholly_there_or_too_much_is_told_what_it_wants() {
             assert_eq!(read(line), Err(Misread::Wants(wants)), "{line}");
         }
     }
-    for line in ["cal 1", "center 1", "save it", "load 1", "factory reset"] {
+    for line in ["cal 1", "save it", "load 1", "factory reset"] {
         assert_eq!(read(line), Err(Misread::Surplus), "{line}");
     }
 }

@@ -19,7 +19,7 @@ const SUPPLIES: [(Option<Level>, &str); 5] = [
 const fn event_text(event: Event) -> &'static str {
     match event {
         Event::Stand => "`stand`",
-        Event::Move => "another gait, `pose` or `center`",
+        Event::Move => "another motion",
         Event::Stop => "`stop`",
         Event::Rest => "`rest`",
         Event::Save => "`save`",

@@ -1,10 +1,12 @@
 //! The rules, each in the words of a user.
 
+use lizard_core::command::effect;
 use lizard_core::gait::GaitId;
 use lizard_core::guard::Clearance;
 use lizard_core::motion::Activity;
 use lizard_core::pose::Pose;
 use lizard_core::record;
+use lizard_core::robot::Robot;
 use lizard_core::virtual_board::{Eeprom, Running, is_final};
 
 use super::{BELIEVED, Held, World, broken};
@@ -84,7 +86,7 @@ impl World {
         if line == "ok stand" {
             self.seen.order();
             self.stands_after(line)
-        } else if is_order(line) {
+        } else if is_order(line, &self.robot()) {
             self.seen.order();
             self.has_pulses_after(line)
         } else if line == "ok rest" {
@@ -231,7 +233,7 @@ impl World {
             let text = &heard.board.transmitter.text;
             if text
                 .lines()
-                .any(|line| line.starts_with("# boot: ") || is_order(line))
+                .any(|line| line.starts_with("# boot: ") || is_order(line, &self.robot()))
             {
                 self.seen.order();
                 return self.seen_frame(&begun, main_ran);
@@ -299,15 +301,8 @@ impl World {
     }
 }
 
-/// Whether a line answers that a motion which was ordered begins.
-fn is_order(line: &str) -> bool {
-    let orders = [
-        "ok stand",
-        "ok walk",
-        "ok trot",
-        "ok stray",
-        "ok pose",
-        "ok center",
-    ];
-    orders.iter().any(|order| line.starts_with(order))
+/// True if a line answers that a motion which was ordered begins.
+fn is_order(line: &str, robot: &Robot) -> bool {
+    let order = line.strip_prefix("ok ");
+    order.is_some_and(|order| effect(order, robot) == Effect::Moves)
 }

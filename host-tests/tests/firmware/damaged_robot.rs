@@ -6,6 +6,7 @@ use std::mem::offset_of;
 use std::ops::Range;
 
 use lizard_core::section::{Header, Numbers, Part, Place, SPACE, START, seal};
+use lizard_core::word::Word;
 use lizard_host::board::SimulatedBoard;
 use lizard_host::firmware::with_robot;
 use lizard_host_tests::{FRAME, FirmwareBench, rng, robot, root};
@@ -212,26 +213,15 @@ fn is_no_robot(damage: &Damage) {
     let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
     assert!(lines[0].starts_with(&banner), "{lines:?}");
     assert_eq!(lines[1..], [damage.said]);
-    for line in [
-        &moving(),
-        "stand",
-        &pose_at([1.0; 4]),
-        "center",
-        "rest",
-        "stop",
-        "speed 50",
-        "trim 1 2",
-        "limit 1 100 150",
-        "scale 2 10",
-        "dir 1 -",
-        "boot rest",
-        "deadman 1000",
-        "cal",
-        "save",
-        "load",
-        "factory",
-    ] {
-        let (notes, answer) = bench.ask(line);
+    // Only questions are answered.
+    let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
+    let others = Word::ALL.iter().filter(|word| !questions.contains(word));
+    let examples = others.map(|word| word.example().to_owned());
+    for line in [moving(), "stand".to_owned(), pose_at([1.0; 4])]
+        .into_iter()
+        .chain(examples)
+    {
+        let (notes, answer) = bench.ask(&line);
         assert_eq!(answer, "err 10 no robot in the flash", "{line}");
         assert!(notes.is_empty(), "{line}: {notes:?}");
     }

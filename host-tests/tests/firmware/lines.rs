@@ -2,6 +2,7 @@
 //! then perhaps a byte or two changed.
 
 use fastrand::Rng;
+use lizard_core::word::Word;
 use lizard_host_tests::robot;
 
 /// A number as a person would type it, within some range and sometimes beyond.
@@ -55,7 +56,7 @@ fn line(rng: &mut Rng) -> String {
         }
         17 => format!("dir {servo} {}", ['+', '-'][rng.usize(..2)]),
         18 => format!("scale {servo} {}", number(rng, 5.0, 20.0)),
-        19 => "center".into(),
+        19 => rng.choice(Word::ALL).expect("a word").example().into(),
         20 if rng.u8(..4) == 0 => "save".into(),
         20 | 21 => ["load", "factory"][rng.usize(..2)].into(),
         22 => format!(

@@ -1,5 +1,7 @@
 //! Which command was in effect when.
 
+use lizard_core::word::{Effect, Word};
+
 use super::script::Script;
 
 /// A stretch of the run under one command.
@@ -13,11 +15,13 @@ pub struct Span {
     pub to: f64,
 }
 
-/// Commands that begin and end no motion.
-const QUESTIONS: [&str; 14] = [
-    "status", "help", "?", "watch", "cal", "trim", "limit", "dir", "scale", "save", "load",
-    "factory", "boot", "deadman",
-];
+/// True if a command begins, ends or paces a motion. What is no word of the console is the
+/// gait of some robot.
+fn changes_motion(command: &str) -> bool {
+    let word = command.split_whitespace().next().unwrap_or_default();
+    Word::find(word.as_bytes())
+        .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::Calibrates))
+}
 
 /// The commands that changed the motion, in order of time, after the stand that
 /// the robot wakes to. A command that was refused changes nothing: the one
@@ -26,11 +30,10 @@ const QUESTIONS: [&str; 14] = [
 pub fn spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
-        let word = step.command.split_whitespace().next().unwrap_or_default();
         let refused = answer
             .as_ref()
             .is_some_and(|answer| answer.starts_with("err"));
-        if !refused && !QUESTIONS.contains(&word) {
+        if !refused && changes_motion(&step.command) {
             starts.push((step.ms as f64 / 1000.0, step.command.as_str()));
         }
     }

@@ -259,6 +259,7 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
         dialogue.say(line);
     }
     dialogue.run(100);
+    assert!(dialogue.say("center 1").starts_with("err 2 "));
     assert_eq!(dialogue.say("center"), "ok center");
     dialogue.run(200);
     let neutral = Sample::odd().calibration().map(|servo| servo.neutral.0);

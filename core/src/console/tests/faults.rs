@@ -271,18 +271,24 @@ fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
 }
 
 #[test]
-fn brown_outs_in_a_row_end_in_a_rest_that_says_why_until_somebody_orders_a_motion() {
-    for boot_loader in [false, true] {
+fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_somebody_orders_a_motion() {
+    // A boot loader hides which of the two it was.
+    for (boot_loader, cause) in [
+        (false, Cause::BrownOut),
+        (true, Cause::BrownOut),
+        (true, Cause::External),
+    ] {
         let mut dialogue = standing();
         dialogue.board.boot_loader = boot_loader;
         dialogue.lines();
-        for brown_outs in 1..=5 {
-            dialogue.reset(Cause::BrownOut);
+        for resets in 1..=5 {
+            dialogue.reset(cause);
             let said = dialogue.run(17);
             let rests = dialogue.frame() == Pulses::default();
-            assert_eq!(rests, brown_outs >= 3, "{brown_outs}");
-            let why = "# fault: the supply broke down several times in a row, resting";
-            assert_eq!(said.iter().any(|line| line == why), brown_outs >= 3);
+            assert_eq!(rests, resets >= 3, "{resets}");
+            let why =
+                "# fault: reset several times in a row by the button or a weak supply, resting";
+            assert_eq!(said.iter().any(|line| line == why), resets >= 3);
         }
         dialogue.run(300);
         assert_eq!(dialogue.frame(), Pulses::default(), "boot is called off");
