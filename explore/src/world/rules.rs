@@ -8,6 +8,7 @@ use lizard_core::pose::Pose;
 use lizard_core::record;
 use lizard_core::robot::Robot;
 use lizard_core::virtual_board::{Eeprom, Running, is_final};
+use lizard_core::word::Effect;
 
 use super::{BELIEVED, Held, World, broken};
 use crate::fingerprint;
