@@ -14,10 +14,11 @@ pub fn either(
     text: impl FnOnce() -> String,
 ) -> Result<(), crate::Failure> {
     let mut out = io::stdout().lock();
-    Ok(match json {
+    match json {
         true => line(&mut out, value)?,
         false => out.write_all(text().as_bytes())?,
-    })
+    }
+    Ok(())
 }
 
 /// Writes one value as one line of JSON.
