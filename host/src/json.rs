@@ -8,6 +8,7 @@ use serde::Serialize;
 ///
 /// # Errors
 /// Standard output cannot be written.
+#[cfg(feature = "paper")]
 pub fn either(
     json: bool,
     value: &impl Serialize,
