@@ -4,7 +4,7 @@ import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 
-import { chromium } from 'playwright-core';
+import { chromium, firefox } from 'playwright-core';
 
 export const DIST = new URL('../dist/', import.meta.url).pathname;
 const FOLDER = '/somewhere/below/';
@@ -15,8 +15,18 @@ const TYPES = {
   '.wasm': 'application/wasm',
   '.json': 'application/json',
 };
-/** Debian's; CHROMIUM names another. */
-const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+/** Debian's; CHROMIUM and FIREFOX name others. */
+const CHROMIUM = { type: chromium, executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox'] };
+/**
+ * By WebDriver BiDi, which Debian's Firefox speaks itself. playwright-core 1.65 asks it for emulated media features, which only a
+ * newer Firefox has; this one takes them from its preferences.
+ */
+const FIREFOX = {
+  type: firefox,
+  channel: 'moz-firefox',
+  executablePath: process.env.FIREFOX ?? '/usr/bin/firefox-esr',
+  firefoxUserPrefs: { 'ui.prefersReducedMotion': 1 },
+};
 /** A machine may be busy: only what hangs is to fail by time. */
 export const PATIENCE = 300_000;
 
@@ -69,10 +79,13 @@ export async function serve(folder, asked = []) {
   return made;
 }
 
-export async function open() {
+async function start({ type, ...options }) {
   server = await serve(DIST);
-  browser = await chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox'], timeout: PATIENCE });
+  browser = await type.launch({ ...options, timeout: PATIENCE });
 }
+
+export const open = () => start(CHROMIUM);
+export const openFirefox = () => start(FIREFOX);
 
 export async function close() {
   if (browser) await within('the browser to close', browser.close());
