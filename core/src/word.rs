@@ -92,7 +92,7 @@ words! {
         Save = "save" "", None;
         Load = "load" "", Calibrates;
         Factory = "factory" "", Calibrates;
-        Boot = "boot" " stand", None;
+        Boot = "boot" " rest", None;
         Deadman = "deadman" " 2000", None;
     }
     // These yield to a gait of the same name.

@@ -2,7 +2,6 @@
 //! a short look at one robot of many.
 
 use fastrand::Rng;
-use lizard_core::word::Word;
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME, frames, opens, servo_pins};
 use lizard_host_tests::{FirmwareBench, minutes, robot};
@@ -41,10 +40,8 @@ fn line(rng: &mut Rng) -> String {
         14 => "stop".into(),
         15 => ["rest", "rest", "stand", "stand", "stand"][rng.u64(..5) as usize].into(),
         16 => format!("watch {}", [0, 0, 1, 2, 9, 10_000][rng.u64(..6) as usize]),
-        17 if rng.bool() => ["arc", "pose", "speed", "walk on"][rng.u64(..4) as usize].into(),
         17 => {
-            let word = rng.choice(Word::ALL).expect("a word");
-            word.example().into()
+            ["status", "help", "?", "arc", "pose", "speed", "walk on"][rng.u64(..7) as usize].into()
         }
         18 => {
             let length = rng.u64(..90) + 1;
