@@ -8,9 +8,10 @@ use crate::refusal::Refusal;
 
 /// The next line of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum Answer {
     /// `ok` and the line as it was understood.
-    Done,
+    Done = 1,
     /// The gaits from this one on, as many as a line takes.
     Gaits(GaitId),
     /// The words of the console.

@@ -54,7 +54,7 @@ pub struct Counters {
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
-    banner: bool,
+    greeted: bool,
     answer: Option<Answer>,
     watch: Watch,
 }
@@ -70,7 +70,7 @@ impl Console {
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
-            banner: true,
+            greeted: false,
             answer: None,
             watch: Watch::every(0),
         }
@@ -160,7 +160,7 @@ impl Console {
         match self.next_output(control) {
             None => return Ok(()),
             Some(Output::Banner) => {
-                self.banner = false;
+                self.greeted = true;
                 print::banner(out, control.motion().robot())?;
             }
             Some(Output::Answer(answer)) => {
@@ -192,7 +192,7 @@ impl Console {
 
     /// What is to be written next: the one order of everything that may wait.
     const fn next_output(&self, control: &Control) -> Option<Output> {
-        if self.banner {
+        if !self.greeted {
             Some(Output::Banner)
         } else if let Some(answer) = self.answer {
             Some(Output::Answer(answer))

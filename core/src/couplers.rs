@@ -17,8 +17,6 @@
 //! is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over `s` is read from
 //! there on, where it falls, and stays at the largest rise below.
 
-use core::mem::offset_of;
-
 use lizard_avr::Flash;
 
 use crate::curve::{Curve, ENTRIES, OCTAVES, Table, argument};
@@ -65,14 +63,6 @@ lizard_avr::plain! {
 }
 
 impl Coupling {
-    /// Where the fields are, bytes from the beginning.
-    pub(crate) const LEFT: usize = offset_of!(Self, left);
-    pub(crate) const RIGHT: usize = offset_of!(Self, right);
-    pub(crate) const REACH_SQ: usize = offset_of!(Self, reach_sq);
-    pub(crate) const LEAST_SQ: usize = offset_of!(Self, least_sq);
-    pub(crate) const REACH_ZEROS: usize = offset_of!(Self, reach_zeros);
-    pub(crate) const LEAST_ZEROS: usize = offset_of!(Self, least_zeros);
-
     /// None: they never meet.
     pub const NONE: Self = Self {
         left: 0,

@@ -31,7 +31,7 @@ pub fn angles<W>(out: &mut W, pose: &Pose, robot: &Robot) -> Result<(), W::Error
 where
     W: uWrite + ?Sized,
 {
-    for servo in Servo::ALL {
+    for servo in Servo::all() {
         if servo != Servo::A1 {
             out.write_char(',')?;
         }

@@ -21,8 +21,6 @@
 //! sin(2 theta11) = 0, are not used: both hold in the neutral pose, where the
 //! robot stands safely, and miss the real singularity.
 
-use core::mem::offset_of;
-
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::couplers::{Couplers, Coupling, Lean, Tables};
@@ -56,29 +54,6 @@ lizard_avr::plain! {
         scale: Scale,
         /// Nothing: it fills up what the fields above leave of four bytes.
         rest: u16,
-    }
-}
-
-lizard_avr::plain! {
-    /// The least and the greatest value that a number may have, without a sign.
-    #[derive(Debug, PartialEq, Eq)]
-    pub struct Range {
-        /// Where it is, bytes from the beginning of its structure.
-        pub at: u16,
-        /// The least.
-        pub least: u16,
-        /// The greatest.
-        pub most: u16,
-    }
-}
-
-impl Range {
-    const fn of(at: usize, [least, most]: [u16; 2]) -> Self {
-        Self {
-            at: at as u16,
-            least,
-            most,
-        }
     }
 }
 
@@ -151,35 +126,6 @@ impl Bars {
             rest: 0,
         }
     }
-
-    /// What the numbers have to be so that they can be worked with; what follows from the
-    /// bars is not computed again.
-    pub const RANGES: [Range; 12] = {
-        const LENGTH: [u16; 2] = [0, i16::MAX as u16];
-        const COUPLER: [u16; 2] = [SHORTEST_COUPLER as u16, i16::MAX as u16];
-        const AT: usize = offset_of!(Bars, couplers);
-        [
-            Range::of(offset_of!(Bars, base), LENGTH),
-            Range::of(offset_of!(Bars, left), LENGTH),
-            Range::of(offset_of!(Bars, right), LENGTH),
-            Range::of(offset_of!(Bars, square_shift), [1, 17]),
-            Range::of(offset_of!(Bars, area_shift), [0, 9]),
-            Range::of(offset_of!(Bars, scale), [0, Scale::FINEST.bits]),
-            Range::of(AT + Coupling::LEFT, COUPLER),
-            Range::of(AT + Coupling::RIGHT, COUPLER),
-            // The high halves of the squared lengths.
-            Range::of(AT + Coupling::REACH_SQ + 2, [1, 0x3fff]),
-            Range::of(AT + Coupling::LEAST_SQ + 2, [0, 0x3fff]),
-            Range::of(AT + Coupling::REACH_ZEROS, [0, 32]),
-            Range::of(AT + Coupling::LEAST_ZEROS, [0, 32]),
-        ]
-    };
-
-    /// Where the lengths of the couplers are, bytes from the beginning.
-    pub const COUPLERS: [u16; 2] = [
-        (offset_of!(Bars, couplers) + Coupling::LEFT) as u16,
-        (offset_of!(Bars, couplers) + Coupling::RIGHT) as u16,
-    ];
 
     /// The step of the lengths.
     pub const fn scale(&self) -> Scale {

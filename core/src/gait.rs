@@ -41,7 +41,7 @@ impl<'a> Name<'a> {
         Self {
             names,
             at: gait.name_start,
-            left: gait.name_length as u8,
+            left: gait.name_length.min(LONGEST_NAME as u16) as u8,
         }
     }
 

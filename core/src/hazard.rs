@@ -5,9 +5,10 @@ use crate::units::Sine;
 
 /// A margin of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum Margin {
     /// Between the two couplers of an end.
-    Type2(End),
+    Type2(End) = 2,
     /// Between the crank on a servo and its coupler, negative where the elbow is
     /// bent inwards.
     Type1(Servo),

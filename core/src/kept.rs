@@ -88,8 +88,10 @@ pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
     };
     let mut restart = Restart {
         cause,
+        count: 0,
         may_be_supply: cause == Cause::BrownOut || cause == Cause::External && hidden,
-        ..Restart::NONE
+        brown_outs: 0,
+        before: None,
     };
     if survived && cause != Cause::Power {
         restart.count = count.saturating_add(1);

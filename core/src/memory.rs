@@ -66,6 +66,16 @@ pub enum Progress {
     Failed,
 }
 
+/// The byte of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Byte {
+    /// To be written, if the memory does not have it yet.
+    Due = 1,
+    /// Written: the memory has to have it.
+    Written,
+}
+
 /// A record on its way into the memory, a byte at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Writing {
@@ -75,8 +85,7 @@ pub struct Writing {
     step: u8,
     /// The step to end with.
     last: u8,
-    /// Whether the byte of this step has been written.
-    written: bool,
+    byte: Byte,
 }
 
 impl Address {
@@ -117,7 +126,7 @@ impl Address {
             address: self,
             step: 0,
             last: LENGTH as u8,
-            written: false,
+            byte: Byte::Due,
         }
     }
 
@@ -150,16 +159,16 @@ impl Writing {
         };
         let at = self.address.0 + offset;
         if memory.read(at) != byte {
-            if self.written {
+            if self.byte == Byte::Written {
                 return Progress::Failed;
             }
-            self.written = true;
+            self.byte = Byte::Written;
             memory.write(at, byte);
         } else if self.step == self.last {
             return Progress::Done;
         } else {
             self.step += 1;
-            self.written = false;
+            self.byte = Byte::Due;
         }
         Progress::Going
     }

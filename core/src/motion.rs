@@ -55,6 +55,9 @@ mod state;
 /// Servos wake one after the other, 0.1 s apart, to spare the supply.
 const WAKE_APART: u8 = 5;
 
+/// The gaits' own pace, percent.
+const FULL: u8 = 100;
+
 /// The most that a weak supply allows, percent of the gaits' own pace.
 const SLOW: u8 = 50;
 
@@ -85,25 +88,30 @@ impl Motion {
     /// The robot at power-on: waking, then standing.
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unbegun(robot);
+        motion.speed = FULL;
         motion.begin();
-        for servo in Servo::ALL {
+        for servo in Servo::all() {
             motion.calibrate(servo, motion.robot.servo(servo));
         }
         motion
     }
 
-    /// A robot without pulses, of which nothing is known; [`Motion::begin`] and the
-    /// calibration of every servo have to follow.
+    /// Nothing: no robot, and every bit zero, so that it needs no copy in flash.
+    /// [`Motion::take_robot`] or [`Motion::begin`] has to follow, and the calibration of every
+    /// servo.
     pub const fn unbegun(robot: Robot<'static>) -> Self {
         Self {
             calibration: [Calibration::NONE; 4],
             state: State::Resting,
             robot,
             next: None,
-            speed: 100,
+            speed: 0,
             slow: false,
             settling: false,
-            stance: Stance::RESTING,
+            stance: Stance {
+                resting: false,
+                ..Stance::RESTING
+            },
             hazard: None,
             frames: 0,
         }
@@ -115,6 +123,8 @@ impl Motion {
     /// # Errors
     /// Why there is none.
     pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
+        self.speed = FULL;
+        self.stance.resting = true;
         self.robot = Robot::open(flash)?;
         Ok(())
     }

@@ -36,6 +36,11 @@ impl Servo {
     /// All four, in their order.
     pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
 
+    /// The same, one after another, without a table in RAM.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..4).map(Self::at)
+    }
+
     /// The servo at a place of an array of four; past the end, the last one.
     pub const fn at(place: usize) -> Self {
         match place {

@@ -17,7 +17,12 @@ use crate::robot::Robot;
 use crate::settings::{Settings, TURN};
 
 /// The two copies of the settings.
-pub const COPIES: [Address; 2] = [Address(0), Address(64)];
+pub const COPIES: [Address; 2] = [copy(0), copy(1)];
+
+/// The first copy for an even number, the second for an odd one.
+const fn copy(number: usize) -> Address {
+    Address((number as u16 & 1) * 64)
+}
 
 /// The pose.
 pub const RESTED: Address = Address(128);
@@ -50,8 +55,8 @@ struct Copies {
 impl Copies {
     #[inline(never)]
     fn check<M: Memory>(memory: &M) -> Self {
-        let found = COPIES.map(|copy| copy.check(memory));
-        let turn = |copy: usize| COPIES[copy & 1].byte(memory, TURN as u16);
+        let found = [copy(0).check(memory), copy(1).check(memory)];
+        let turn = |copy: usize| self::copy(copy).byte(memory, TURN as u16);
         let latest = match found {
             [Found::Whole, Found::Whole] => usize::from(turn(1).wrapping_sub(turn(0)) < 0x80),
             [Found::Whole, _] => 0,
@@ -65,7 +70,7 @@ impl Copies {
     }
 
     fn address(&self) -> Address {
-        COPIES[self.latest & 1]
+        copy(self.latest)
     }
 }
 
@@ -110,7 +115,7 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
         settings.set_turn(1);
-        return Some(COPIES[0].write());
+        return Some(copy(0).write());
     }
     let latest = copies.address();
     let turn = latest.byte(memory, TURN as u16);
@@ -120,7 +125,7 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
         return None;
     }
     settings.set_turn(turn.wrapping_add(1));
-    Some(COPIES[copies.latest & 1 ^ 1].write())
+    Some(copy(copies.latest ^ 1).write())
 }
 
 /// Where the robot rested last, if it has not moved since.

@@ -56,7 +56,7 @@ pub struct Safety {
     late: u16,
     /// Milliseconds since the last line, up to 65535.
     silence: u16,
-    /// Frames until `boot`; 0 once it is done or called off.
+    /// Frames since power-on, up to [`BOOT_AFTER`]: `boot` is done then, or called off.
     boot: u8,
     /// What is still to be said, a bit for each [`Notice`].
     notices: u8,
@@ -78,14 +78,21 @@ pub enum Notice {
     Boot,
 }
 
-/// In the order in which they are written.
-const NOTICES: [Notice; 5] = [
-    Notice::Memory,
-    Notice::NotKept,
-    Notice::Fault,
-    Notice::Supply,
-    Notice::Boot,
-];
+/// How many notices there are.
+const NOTICES: u8 = 5;
+
+impl Notice {
+    /// The notice at a place of the order in which they are written.
+    const fn at(place: u8) -> Self {
+        match place {
+            0 => Self::Memory,
+            1 => Self::NotKept,
+            2 => Self::Fault,
+            3 => Self::Supply,
+            _ => Self::Boot,
+        }
+    }
+}
 
 /// Milliseconds of a frame.
 const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
@@ -106,10 +113,10 @@ impl Safety {
             supply: Supply::new(),
             fault: None,
             led: Led::new(),
-            lit: true,
+            lit: false,
             late: 0,
             silence: 0,
-            boot: BOOT_AFTER,
+            boot: 0,
             notices: 0,
         }
     }
@@ -161,9 +168,9 @@ impl Safety {
     ) -> Reaction {
         let mut reaction = Reaction::None;
         self.silence = self.silence.saturating_add(FRAME_MS);
-        if self.boot > 0 {
-            self.boot -= 1;
-            if self.boot == 0
+        if self.boot < BOOT_AFTER {
+            self.boot += 1;
+            if self.boot == BOOT_AFTER
                 && self.fault.is_none()
                 && self.response(Event::Boot, state) == Response::Obey
             {
@@ -233,7 +240,7 @@ impl Safety {
 
     /// A byte has come, so a computer is connected, and `boot` is cancelled.
     pub fn byte_came(&mut self) {
-        self.boot = 0;
+        self.boot = BOOT_AFTER;
     }
 
     /// A line has come.
@@ -249,9 +256,9 @@ impl Safety {
     /// What is to be written next, if anything.
     pub const fn notice(&self) -> Option<Notice> {
         let mut place = 0;
-        while place < NOTICES.len() {
+        while place < NOTICES {
             if self.notices & (1 << place) != 0 {
-                return Some(NOTICES[place]);
+                return Some(Notice::at(place));
             }
             place += 1;
         }

@@ -160,9 +160,10 @@ lizard_avr::plain! {
 
 /// Why a section is no robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum Damage {
     /// There is none: no magic.
-    Missing,
+    Missing = 1,
     /// It is for another version of the firmware.
     Format,
     /// It was not written to its end, or has changed since.

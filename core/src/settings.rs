@@ -58,7 +58,7 @@ impl Settings {
     pub fn of(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
         settings.set_head(robot);
-        for servo in Servo::ALL {
+        for servo in Servo::all() {
             settings.set_servo(servo, Adjustment::of(&robot.servo(servo)));
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
@@ -191,7 +191,7 @@ impl Settings {
     /// The first servo whose travel ends short of the neutral angle or of a gait.
     #[inline(never)]
     pub fn unfit(&self, robot: &Robot) -> Option<Servo> {
-        Servo::ALL.into_iter().find(|servo| {
+        Servo::all().find(|servo| {
             let calibration = self.calibration(*servo, robot);
             !robot.reach(*servo).is_within(&calibration)
         })

@@ -234,6 +234,9 @@ mod registers {
         /// Interrupts are off, and nothing else uses Timer1 from now on.
         #[inline(always)]
         pub unsafe fn start(&self) {
+            self.slot.set(Self::TICK_SLOT);
+            self.fall.set(Self::NO_PULSE);
+            self.allowed.set(u8::MAX);
             // SAFETY: these registers are Timer1's, which is ours.
             unsafe {
                 // A boot loader leaves the timer running for its LED: stop it first.

@@ -124,18 +124,18 @@ macro_rules! engine {
         /// Tables are as long as a mask needs them.
         const SIZE: usize = SERVOS.next_power_of_two();
 
-        // Each a variable of its own, so that its address is part of the instruction.
+        // Each a variable of its own, so that its address is part of the instruction; all
+        // zero until `start`, so that none needs a copy in flash.
         static PINS: [[$crate::cells::Byte; 2]; SIZE] = $pins;
         static FRAMES: [[$crate::cells::Word; SIZE]; 2] =
             [const { [const { $crate::cells::Word::new(0) }; SIZE] }; 2];
         static PLAYING: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static FRESH: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static SLOT: $crate::cells::Byte = $crate::cells::Byte::new(SERVOS as u8);
+        static SLOT: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static PORT: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static MASK: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static FALL: $crate::cells::Word =
-            $crate::cells::Word::new($crate::Engine::<SERVOS, SIZE>::NO_PULSE);
-        static ALLOWED: $crate::cells::Byte = $crate::cells::Byte::new(u8::MAX);
+        static FALL: $crate::cells::Word = $crate::cells::Word::new(0);
+        static ALLOWED: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static TICKS: $crate::cells::Byte = $crate::cells::Byte::new(0);
         static LATE: $crate::cells::Counter = $crate::cells::Counter::new();
 

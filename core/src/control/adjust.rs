@@ -12,7 +12,8 @@ impl Control {
     /// Sets something of a servo.
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
-        let mut set = self.settings.servo(servo);
+        let mut settings = self.settings;
+        let mut set = settings.servo(servo);
         match setting {
             Setting::Trim(trim) => set.trim = trim,
             Setting::Direct(direct) => set.set_direct(direct),
@@ -23,25 +24,20 @@ impl Control {
                 set.max = neutral.sweep_to(counter_clockwise);
             }
         }
-        let calibration = set.apply(&self.motion.robot().servo(servo));
-        self.fits(servo, &calibration)?;
-        self.reaches(servo, &calibration)?;
-        self.settings.set_servo(servo, set);
-        self.motion.calibrate(servo, calibration);
-        self.motion.settle();
-        Ok(())
+        settings.set_servo(servo, set);
+        self.replace(&settings)
     }
 
     /// Takes other settings.
     #[inline(never)]
     pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibration = *self.motion.calibration();
-        for servo in Servo::ALL {
+        for servo in Servo::all() {
             let servos = servo.of_mut(&mut calibration);
             *servos = settings.calibration(servo, self.motion.robot());
             self.fits(servo, servos)?;
         }
-        for servo in Servo::ALL {
+        for servo in Servo::all() {
             self.reaches(servo, servo.of(&calibration))?;
         }
         self.settings = *settings;
@@ -70,7 +66,7 @@ impl Control {
 
     /// Gives the motion the calibration that the settings contain.
     pub(super) fn calibrate(&mut self) {
-        for servo in Servo::ALL {
+        for servo in Servo::all() {
             let calibration = self.settings.calibration(servo, self.motion.robot());
             self.motion.calibrate(servo, calibration);
         }

@@ -20,15 +20,17 @@ pub enum Activity {
 
 /// Where a motion leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum Target {
     /// To a pose, to be held.
-    Pose(Pose),
+    Pose(Pose) = 1,
     /// To the first pose of a gait, and through its cycles.
     Gait(GaitId),
 }
 
 /// What the servos follow at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum State {
     /// Nothing: there are no pulses.
     Resting,
