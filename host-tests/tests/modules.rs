@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 11] = [
     "contact",
     "core",
     "host",
@@ -17,6 +17,8 @@ const CRATES: [&str; 9] = [
     "robot",
     "tune",
     "twin",
+    "web/wasm",
+    "web/wasm-parts",
 ];
 
 /// What each module of a folder uses of the others.

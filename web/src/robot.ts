@@ -98,10 +98,6 @@ export interface Floor {
 /** Whether legs can be elsewhere than their servos. */
 export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
 
-/** The line in which WebAssembly takes it. */
-const line = ({ kind, friction, ratio, mass, stiffness, preload, force, rate, play, leaf, twist }: Floor) =>
-  [kind, friction, ratio, mass, stiffness, preload, force, rate, play, leaf, twist].join(' ');
-
 /** What servos may be taken for. */
 export interface ServoModel {
   name: string;
@@ -271,33 +267,8 @@ export type Instead = 'amplitude' | 'size' | 'period';
 interface Exports {
   memory: WebAssembly.Memory;
   lizard_input(length: number): number;
+  lizard_ask(): number;
   lizard_output(): number;
-  lizard_output_length(): number;
-  lizard_read(): void;
-  lizard_edit(value: number): void;
-  lizard_edit_floor(): void;
-  lizard_section(): void;
-  lizard_pulses(a1: number, a2: number, a3: number, a4: number): void;
-  lizard_pose(a1: number, a2: number, a3: number, a4: number, frames: number): void;
-  lizard_restart(): void;
-  lizard_way(x0: number, y0: number, h0: number, x1: number, y1: number, h1: number): void;
-  lizard_set_floor(): void;
-  lizard_set_servos(): void;
-  lizard_predict(gait: number): void;
-  lizard_map(end: number): void;
-  lizard_bars(gait: number): void;
-  lizard_trial(): void;
-  lizard_faster(): void;
-  lizard_faster_step(): void;
-  lizard_faster_found(robots: number): void;
-  lizard_put_gait(): void;
-  lizard_trial_drawn(): void;
-  lizard_put_drawn(): void;
-  lizard_path(): void;
-  lizard_room(end: number): void;
-  lizard_turned_round(): void;
-  lizard_run_core(): void;
-  lizard_core_frame(volts: number): void;
 }
 
 export function isRefused(answer: object): answer is Refused {
@@ -320,165 +291,128 @@ export class Robot {
 
   /** Takes the robot of a robot.toml. If that is refused, the one of before stays. */
   read(toml: string): Description | Refused {
-    this.give(toml);
-    this.wasm.lizard_read();
-    return this.answer();
+    return this.ask('read', toml);
   }
 
   /** A robot.toml with another number at a key, and whether it will do. */
   edit(toml: string, key: string, value: number): { text: string; refusal: Refused | null } | Refused {
-    this.give(`${key}\n${toml}`);
-    this.wasm.lizard_edit(value);
-    return this.answer();
+    return this.ask('edit', [toml, key, value]);
   }
 
   /** A robot.toml with this floor, weight, feet and drive, and whether it will do. */
   editFloor(toml: string, floor: Floor): { text: string; refusal: Refused | null } | Refused {
-    this.give(`${line(floor)}\n${toml}`);
-    this.wasm.lizard_edit_floor();
-    return this.answer();
+    return this.ask('edit_floor', [toml, floor]);
   }
 
   /**
-   * What the robot that was read is to the firmware: its section of flash, with the certified cells of its guard. Takes
-   * some hundredths of a second.
+   * What the robot that was read is to the firmware: its section of flash, with the certified cells of its guard; empty
+   * without a robot. Takes some hundredths of a second.
    */
   section(): Uint8Array {
-    this.wasm.lizard_section();
-    return this.output().slice();
+    return Uint8Array.from(this.ask<number[] | null>('section') ?? []);
   }
 
   /** The next frame's pulse widths, CPU cycles; 0 for none. */
   pulses(widths: Four<number>): Frame | null {
-    this.wasm.lizard_pulses(...widths);
-    return this.answer();
+    return this.ask('pulses', widths);
   }
 
   /** The next pose, deg, so many frames after the one before. */
   pose(angles: Four<number>, frames: number): Frame | null {
-    this.wasm.lizard_pose(...angles, frames);
-    return this.answer();
+    return this.ask('pose', [angles, frames]);
   }
 
   /** Back to the start of the way. */
   restart(): void {
-    this.wasm.lizard_restart();
+    this.ask('restart');
   }
 
   /** The way from one place to another, seen from the first: mm and deg. */
   between(from: Place, to: Place): { forward: number; left: number; turn: number } {
-    this.wasm.lizard_way(from.x, from.y, from.heading, to.x, to.y, to.heading);
-    return this.answer();
+    return this.ask('way', [from, to]);
   }
 
   setFloor(floor: Floor): void {
-    this.give(line(floor));
-    this.wasm.lizard_set_floor();
+    this.ask('set_floor', floor);
   }
 
   /** What its servos are taken for, by its name among the models of the description. */
   setServos(name: string): void {
-    this.give(name);
-    this.wasm.lizard_set_servos();
+    this.ask('set_servos', name);
   }
 
   /** Takes tenths of a second; the page asks its Predictor. */
   predict(gait: number): Outlook | null {
-    this.wasm.lizard_predict(gait);
-    return this.answer();
+    return this.ask('predict', gait);
   }
 
   /** Of the head (0) or the tail (1). */
   map(end: number): SingularityMap | null {
-    this.wasm.lizard_map(end);
-    return this.answer();
+    return this.ask('map', end);
   }
 
   /** The gait whose time runs backwards. */
   turnedRound(bars: Bars): Bars {
-    this.give(JSON.stringify(bars));
-    this.wasm.lizard_turned_round();
-    return this.answer();
+    return this.ask('turned_round', bars);
   }
 
   /** A gait as bars; null for one along a path and one that stands. */
   bars(gait: number): Bars | null {
-    this.wasm.lizard_bars(gait);
-    return this.answer();
+    return this.ask('bars', gait);
   }
 
   /** Tries a gait on the robot of a robot.toml that was read; takes tenths of a second. Null of a line without length. */
   trial(toml: string, made: Made): Trial | NoTrial | null {
-    this.give(`${JSON.stringify(made)}\n${toml}`);
-    if ('points' in made) this.wasm.lizard_trial_drawn();
-    else this.wasm.lizard_trial();
-    return this.answer();
+    return this.ask('points' in made ? 'trial_drawn' : 'trial', [toml, made]);
   }
 
   /** Begins to search a faster gait for the robot of a robot.toml that was read: how many it will try, at which deg/s. */
   makeFaster(toml: string, wish: Wish): { all: number; rate: number } | Refused {
-    this.give(`${JSON.stringify(wish)}\n${toml}`);
-    this.wasm.lizard_faster();
-    return this.answer();
+    return this.ask('faster', [toml, wish]);
   }
 
   /** Tries one more gait; `best` is the score of the best so far. */
   fasterStep(): { done: number; best: number | null } {
-    this.wasm.lizard_faster_step();
-    return this.answer();
+    return this.ask('faster_step');
   }
 
   /** The best so far, compared on so many random robots; null as long as no gait was one that the limits allow. */
   fasterFound(robots: number): Found | null {
-    this.wasm.lizard_faster_found(robots);
-    return this.answer();
+    return this.ask('faster_found', robots);
   }
 
   /** A robot.toml with this gait, in place of the one of its name. */
   putGait(toml: string, made: Made): string {
-    this.give(`${JSON.stringify(made)}\n${toml}`);
-    if ('points' in made) this.wasm.lizard_put_drawn();
-    else this.wasm.lizard_put_gait();
-    return this.answer();
+    return this.ask('points' in made ? 'put_drawn' : 'put_gait', [toml, made]);
   }
 
   /** The line that the point really goes along; null of a line without length. */
   path(drawn: Drawn): [number, number][] | null {
-    this.give(JSON.stringify(drawn));
-    this.wasm.lizard_path();
-    return this.answer();
+    return this.ask('path', drawn);
   }
 
   /** Where the point of an end may be. */
   room(end: End): Room | null {
-    this.wasm.lizard_room(end === 'head' ? 0 : 1);
-    return this.answer();
+    return this.ask('room', end === 'head' ? 0 : 1);
   }
 
   /** Begins to run the firmware's core with this robot's numbers. */
   runCore(): void {
-    this.wasm.lizard_run_core();
+    this.ask('run_core');
   }
 
   /** A frame of the core, 20 ms. */
   coreFrame(line: string, volts: number): Said | null {
-    this.give(line);
-    this.wasm.lizard_core_frame(volts);
-    return this.answer();
+    return this.ask('core_frame', [line, volts]);
   }
 
-  private give(text: string): void {
-    const bytes = this.encoder.encode(text);
-    const at = this.wasm.lizard_input(bytes.length);
-    new Uint8Array(this.wasm.memory.buffer).set(bytes, at);
-  }
-
-  private output(): Uint8Array {
-    const { wasm } = this;
-    return new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), wasm.lizard_output_length());
-  }
-
-  private answer<T>(): T {
-    return JSON.parse(this.decoder.decode(this.output())) as T;
+  /** Asks a `Question` of wasm/src/abi.rs. */
+  private ask<T>(question: string, needs: unknown = null): T {
+    const { wasm, encoder, decoder } = this;
+    const bytes = encoder.encode(JSON.stringify({ [question]: needs }));
+    const at = wasm.lizard_input(bytes.length);
+    new Uint8Array(wasm.memory.buffer).set(bytes, at);
+    const length = wasm.lizard_ask();
+    return JSON.parse(decoder.decode(new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), length))) as T;
   }
 }

@@ -4,9 +4,9 @@ import { file, robot } from './wasm.js';
 
 /** What flash begins with for the robot of a file of the page. */
 export async function imageOf(name) {
-  const { call, said } = await robot();
-  const { start } = said('lizard_read', await file(`${name}.toml`, 'utf8'));
-  const section = call('lizard_section');
+  const { ask } = await robot();
+  const { start } = ask('read', await file(`${name}.toml`, 'utf8'));
+  const section = ask('section');
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   load(await file('code.hex', 'utf8'), flash);
   flash.set(section, start);

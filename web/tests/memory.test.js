@@ -9,7 +9,7 @@ const toml = await file('robot.toml', 'utf8');
 /** How much the memory grows while something is done so many times, after it was done often enough to have its room; bytes. */
 async function grown(times, does) {
   const page = await robot();
-  page.said('lizard_read', toml);
+  page.ask('read', toml);
   const warm = times / 10;
   for (let n = 0; n < warm; n++) does(page, n);
   const before = page.memory.buffer.byteLength;
@@ -21,7 +21,7 @@ test('ten thousand robots with another length each are not kept', async () => {
   // The gaits only take time: a robot that stands has a section of flash, too.
   const standing = toml.slice(0, toml.indexOf('[gait.walk]'));
   const grew = await grown(10_000, (page, n) => {
-    const { text, refusal } = page.said('lizard_edit', `links.l0\n${standing}`, 20 + n / 5000);
+    const { text, refusal } = page.ask('edit', [standing, 'links.l0', 20 + n / 5000]);
     assert.equal(refusal, null);
     assert.ok(text.includes('[gait.stand]') && text.includes('l0 = 2'));
   });
@@ -31,8 +31,8 @@ test('ten thousand robots with another length each are not kept', async () => {
 test('gaits that are refused are not kept, nor those that are tried to offer what would do', async () => {
   let bars;
   const grew = await grown(100, (page, n) => {
-    bars ??= page.said('lizard_bars', '', 1);
-    const { refused, instead } = page.said('lizard_trial', `${JSON.stringify({ ...bars, amplitude: 30 + n / 20 })}\n${toml}`);
+    bars ??= page.ask('bars', 1);
+    const { refused, instead } = page.ask('trial', [toml, { ...bars, amplitude: 30 + n / 20 }]);
     assert.match(refused, /margin/);
     assert.equal(instead[0].what, 'amplitude');
   });

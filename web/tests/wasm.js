@@ -6,17 +6,16 @@ import { DIST } from './browser.js';
 /** A file beside the page; bytes, or text in an encoding. */
 export const file = (name, encoding) => readFile(new URL(`files/${name}`, `file://${DIST}`), encoding);
 
-/** The robot: `call` writes an input, calls a function of web/wasm/src/abi.rs and returns the bytes that it answers. */
+/** The robot: `ask` asks a question of web/wasm/src/abi.rs and returns its answer. */
 export async function robot() {
   const { instance } = await WebAssembly.instantiate(await file('lizard.wasm'), {});
   const wasm = instance.exports;
-  const call = (name, input = '', ...numbers) => {
-    const bytes = new TextEncoder().encode(input);
+  const ask = (question, needs = null) => {
+    const bytes = new TextEncoder().encode(JSON.stringify({ [question]: needs }));
     const at = wasm.lizard_input(bytes.length);
     new Uint8Array(wasm.memory.buffer).set(bytes, at);
-    wasm[name](...numbers);
-    return new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), wasm.lizard_output_length()).slice();
+    const length = wasm.lizard_ask();
+    return JSON.parse(new TextDecoder().decode(new Uint8Array(wasm.memory.buffer, wasm.lizard_output(), length)));
   };
-  const said = (...question) => JSON.parse(new TextDecoder().decode(call(...question)));
-  return { memory: wasm.memory, call, said };
+  return { memory: wasm.memory, ask };
 }

@@ -9,7 +9,7 @@ use lizard_robot::{Ground, Robot};
 use lizard_tune::{Comparison, Kind, NoTuning, Scored, Search, Tuning, trials};
 use serde::{Deserialize, Serialize};
 
-use crate::page::Refused;
+use crate::refused::Refused;
 use crate::trial::{Bars, with, without_gaits};
 
 /// What is wanted: the gait that is to be surpassed, and how long to search.

@@ -1,14 +1,43 @@
 //! What the page's sliders set: floor, weight, feet, and what drives the legs.
 
 use lizard_robot::{Body, Drive, Ground, Kind, Robot, Spring, Stance};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-/// The kinds of drive as robot.toml calls them.
-pub const KINDS: [&str; 3] = ["rigid", "strut", "spring"];
+/// What drives the legs, under the word that robot.toml has for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Legs {
+    /// A bar.
+    Rigid,
+    /// A slotted strut, which yields one way.
+    Strut,
+    /// A spring both ways.
+    Spring,
+}
+
+impl Legs {
+    /// The word in robot.toml.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Strut => "strut",
+            Self::Spring => "spring",
+        }
+    }
+
+    fn of(kind: &Kind) -> Self {
+        match kind {
+            Kind::Rigid => Self::Rigid,
+            Kind::Strut(_) => Self::Strut,
+            Kind::Spring(_) => Self::Spring,
+        }
+    }
+}
 
 /// What a robot stands on, what it weighs and what drives its legs. The rest of the ground is
 /// the robot's own.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Floor {
     /// Friction of a pad that slides forward, above 0.
     pub friction: f64,
@@ -16,8 +45,8 @@ pub struct Floor {
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,
-    /// One of `KINDS`.
-    pub kind: &'static str,
+    /// What drives the legs.
+    pub kind: Legs,
     /// Of an ideal spring, N mm/deg, above 0.
     pub stiffness: f64,
     /// Torque up to which a leg on it does not lag at all, N mm.
@@ -38,45 +67,6 @@ pub struct Floor {
 const STIFFNESS: f64 = 10.0;
 
 impl Floor {
-    /// Reads what JavaScript writes: the kind, and then the numbers in this order, with
-    /// blanks between. None where it is anything else.
-    #[must_use]
-    pub fn read(line: &str) -> Option<Self> {
-        let (kind, numbers) = line.split_once(' ')?;
-        let numbers: Vec<f64> = numbers
-            .split(' ')
-            .map(|word| word.parse().ok())
-            .collect::<Option<_>>()?;
-        let [
-            friction,
-            ratio,
-            mass,
-            stiffness,
-            preload,
-            force,
-            rate,
-            play,
-            leaf,
-            twist,
-        ] = numbers[..]
-        else {
-            return None;
-        };
-        Some(Self {
-            friction,
-            ratio,
-            mass,
-            kind: KINDS.into_iter().find(|known| *known == kind)?,
-            stiffness,
-            preload,
-            force,
-            rate,
-            play,
-            leaf,
-            twist,
-        })
-    }
-
     /// As a robot has it.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
@@ -94,7 +84,7 @@ impl Floor {
             friction: ground.friction,
             ratio: ground.ratio,
             mass: ground.body.mass,
-            kind: ground.drive.word(),
+            kind: Legs::of(&ground.drive.kind),
             stiffness: spring.rate,
             preload: spring.preload,
             force: strut.force,
@@ -153,12 +143,12 @@ impl Floor {
             },
             drive: Drive {
                 kind: match floor.kind {
-                    "strut" => Kind::Strut(robot.strut_with(floor.force, floor.rate)),
-                    "spring" => Kind::Spring(Spring {
+                    Legs::Strut => Kind::Strut(robot.strut_with(floor.force, floor.rate)),
+                    Legs::Spring => Kind::Spring(Spring {
                         rate: floor.stiffness,
                         preload: floor.preload,
                     }),
-                    _ => Kind::Rigid,
+                    Legs::Rigid => Kind::Rigid,
                 },
                 play: floor.play,
             },
@@ -199,34 +189,6 @@ mod tests {
     }
 
     #[test]
-    fn what_javascript_writes_is_read() {
-        let floor = Floor::of(&robot(""));
-        let line = "rigid 0.6 1.1 310 5 0 4 0.4 0.5 2 -0.6";
-        let read = Floor {
-            friction: 0.6,
-            ratio: 1.1,
-            mass: 310.0,
-            stiffness: 5.0,
-            force: 4.0,
-            rate: 0.4,
-            play: 0.5,
-            leaf: 2.0,
-            twist: -0.6,
-            ..floor
-        };
-        assert_eq!(Floor::read(line), Some(read));
-        for wrong in [
-            "",
-            "rigid",
-            "rigid 1 2",
-            "soft 1 1 1 1 1 1 1 1 1 1",
-            "rigid a",
-        ] {
-            assert_eq!(Floor::read(wrong), None, "{wrong}");
-        }
-    }
-
-    #[test]
     fn a_floor_of_a_robot_is_its_ground() {
         for more in [
             "",
@@ -236,7 +198,7 @@ mod tests {
         ] {
             let robot = robot(more);
             assert_eq!(Floor::of(&robot).over(&robot), *robot.ground(), "{more}");
-            assert!(KINDS.contains(&Floor::of(&robot).kind));
+            assert_eq!(Floor::of(&robot).kind.word(), robot.drive().word());
         }
     }
 }

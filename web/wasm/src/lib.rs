@@ -20,6 +20,7 @@ mod page;
 #[cfg(test)]
 mod paper;
 mod place;
+mod refused;
 mod room;
 mod scene;
 mod trial;
@@ -32,10 +33,11 @@ pub use drawn::Drawn;
 pub use edit::{NoSuchLength, with_number};
 #[cfg(feature = "tune")]
 pub use faster::{Begun, Faster, Found, Progress, Wish};
-pub use floor::Floor;
+pub use floor::{Floor, Legs};
 pub use map::{Curve, Map, MapPoint};
-pub use page::{Edited, Frame, Page, Refused};
+pub use page::{Edited, Frame, Page};
 pub use place::Place;
+pub use refused::Refused;
 pub use room::Room;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};
 pub use trial::{Bars, Instead, NoTrial, Trial};

@@ -11,40 +11,19 @@ use serde::Serialize;
 use crate::core_run::{CoreRun, Said};
 use crate::description::{Description, Outlook, SERVO_MODELS};
 use crate::drawn::Drawn;
-use crate::edit::{NoSuchLength, with_number, with_word, without};
+use crate::edit::{with_number, with_word, without};
 #[cfg(feature = "tune")]
 use crate::faster::{Begun, Faster, Wish};
 use crate::floor::Floor;
 use crate::map::Map;
 use crate::place::Place;
+use crate::refused::Refused;
 use crate::room::Room;
 use crate::scene::Scene;
 use crate::trial::{Bars, NoTrial, Trial, trial};
 
 /// CPU cycles in a microsecond.
 const CYCLES_PER_US: f64 = 16.0;
-
-/// Why a robot.toml or a length will not do.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Refused {
-    /// The sentence.
-    pub refused: String,
-    /// Line of the file, from 1, where one is to blame.
-    pub line: Option<usize>,
-    /// The key to blame, such as `links.l2`; may be empty.
-    pub key: String,
-}
-
-impl Refused {
-    /// Of what is wrong with a robot.toml.
-    pub(crate) fn of(error: &lizard_robot::Error) -> Self {
-        Self {
-            refused: error.to_string(),
-            line: error.line,
-            key: error.key.clone(),
-        }
-    }
-}
 
 /// A frame of the robot on the floor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -91,7 +70,7 @@ impl Page {
     /// # Errors
     /// What is wrong with it; the robot of before stays.
     pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
-        let robot = Robot::parse(text).map_err(|error| refused(&error))?;
+        let robot = Robot::parse(text).map_err(|error| Refused::of(&error))?;
         let description = Description::of(&robot);
         self.asked = robot.neutral().into();
         self.run = None;
@@ -120,8 +99,8 @@ impl Page {
     /// # Errors
     /// If the text has no such number.
     pub fn edit(text: &str, key: &str, value: f64) -> Result<Edited, Refused> {
-        let text = with_number(text, key, value).map_err(unwritten)?;
-        let refusal = Robot::parse(&text).err().map(|error| refused(&error));
+        let text = with_number(text, key, value).map_err(Refused::from)?;
+        let refusal = Robot::parse(&text).err().map(|error| Refused::of(&error));
         Ok(Edited { text, refusal })
     }
 
@@ -131,14 +110,14 @@ impl Page {
     /// # Errors
     /// If the text is that of no robot, or has no room for one of the numbers.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
-        let robot = Robot::parse(text).map_err(|error| refused(&error))?;
+        let robot = Robot::parse(text).map_err(|error| Refused::of(&error))?;
         let own = Floor::of(&robot);
         // Out of its range a value is the robot's own.
         let wanted = floor.within(&robot);
         let mut text = text.to_string();
-        let kind = wanted.kind;
-        if kind != own.kind {
-            text = with_word(&text, "leg.drive.kind", kind).map_err(unwritten)?;
+        let kind = wanted.kind.word();
+        if wanted.kind != own.kind {
+            text = with_word(&text, "leg.drive.kind", kind).map_err(Refused::from)?;
         }
         for (of, key, own, wanted) in [
             (
@@ -158,7 +137,7 @@ impl Page {
                 }
                 true => Ok(text),
             }
-            .map_err(unwritten)?;
+            .map_err(Refused::from)?;
         }
         for (key, own, wanted) in [
             ("leg.drive.play", own.play, wanted.play),
@@ -169,10 +148,10 @@ impl Page {
             ("body.mass", own.mass, wanted.mass),
         ] {
             if own != wanted {
-                text = with_number(&text, key, wanted).map_err(unwritten)?;
+                text = with_number(&text, key, wanted).map_err(Refused::from)?;
             }
         }
-        let refusal = Robot::parse(&text).err().map(|error| refused(&error));
+        let refusal = Robot::parse(&text).err().map(|error| Refused::of(&error));
         Ok(Edited { text, refusal })
     }
 
@@ -338,18 +317,6 @@ fn frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
         lag: state.lag,
         errors: state.errors,
     }
-}
-
-fn unwritten(error: NoSuchLength) -> Refused {
-    Refused {
-        refused: error.to_string(),
-        line: None,
-        key: error.0,
-    }
-}
-
-fn refused(error: &lizard_robot::Error) -> Refused {
-    Refused::of(error)
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Where the body is, as the page draws it.
 
 use lizard_robot::{Place as Walked, Travel};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Position and heading of the chassis on the floor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     /// To the right of the start, mm.
     pub x: f64,

@@ -12,7 +12,7 @@ use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 
 use crate::description::Outlook;
-use crate::page::Refused;
+use crate::refused::Refused;
 
 /// Amplitudes that are offered, in tenths of a deg.
 const LEAST_AMPLITUDE: i64 = 5;

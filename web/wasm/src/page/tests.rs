@@ -1,6 +1,7 @@
 use lizard_robot::Travel;
 
 use super::*;
+use crate::floor::Legs;
 
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
@@ -155,7 +156,7 @@ fn springs_that_are_set_act_and_are_predicted() {
     assert_eq!((rigid.lag, rigid.share), (None, None));
     for stiffness in [2.0, 5.0] {
         page.set_floor(Floor {
-            kind: "spring",
+            kind: Legs::Spring,
             stiffness,
             ..Floor::of(page.robot().expect("a robot"))
         });
@@ -183,7 +184,7 @@ fn springs_that_are_set_act_and_are_predicted() {
 fn a_stop_that_bears_the_friction_is_as_good_as_rigid() {
     let mut page = page();
     let floor = Floor {
-        kind: "spring",
+        kind: Legs::Spring,
         stiffness: 1.0,
         preload: 60.0,
         ..Floor::of(page.robot().expect("a robot"))
@@ -195,7 +196,7 @@ fn a_stop_that_bears_the_friction_is_as_good_as_rigid() {
 
 #[test]
 fn weight_and_friction_matter_to_springs_alone() {
-    let walked = |kind: &'static str, mass: f64, friction: f64| {
+    let walked = |kind: Legs, mass: f64, friction: f64| {
         let mut page = page();
         let floor = Floor {
             kind,
@@ -208,7 +209,7 @@ fn weight_and_friction_matter_to_springs_alone() {
         let way = page.predict(index(&page, "walk")).expect("a gait").way;
         way.forward().expect("decided")
     };
-    let [rigid, spring] = ["rigid", "spring"];
+    let [rigid, spring] = [Legs::Rigid, Legs::Spring];
     assert_eq!(walked(rigid, 280.0, 0.7), walked(rigid, 560.0, 0.2));
     let same = walked(spring, 280.0, 0.7) - walked(spring, 140.0, 1.4);
     assert!(same.abs() < 1e-6, "{same}");
@@ -244,7 +245,7 @@ fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
         mass: 412.0,
         leaf: 2.0,
         twist: -0.6,
-        kind: "spring",
+        kind: Legs::Spring,
         stiffness: 5.0,
         preload: 12.0,
         play: 0.5,
@@ -253,7 +254,7 @@ fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
     let sprung = written(PAPER, floor);
     assert_eq!(own(&sprung), floor);
     let strut = Floor {
-        kind: "strut",
+        kind: Legs::Strut,
         force: 2.5,
         rate: 0.25,
         stiffness: own(PAPER).stiffness,
