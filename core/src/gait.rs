@@ -37,7 +37,7 @@ pub struct Name<'a> {
 
 impl<'a> Name<'a> {
     /// The name of a gait among the names of its robot.
-    pub const fn of(gait: &Gait, names: Flash<'a, [u8]>) -> Self {
+    pub fn of(gait: &Gait, names: Flash<'a, [u8]>) -> Self {
         Self {
             names,
             at: gait.name_start,
