@@ -5,7 +5,8 @@
 //! while it writes its memory (3.4 ms a byte), or while an answer waits for room in the
 //! serial line; so it never waits for a listener. It computes one frame for a tick. If it
 //! is too late for a tick, it leaves that tick out: several frames at once would be
-//! played as one, and the servos would leap.
+//! played as one, and the servos would leap. So it does while a frame that it was late
+//! with still waits to be played.
 
 use core::convert::Infallible;
 
@@ -45,10 +46,13 @@ pub trait Board {
     /// Ticks since power-on, modulo 256; one every 20 ms.
     fn ticks(&self) -> u8;
 
-    /// Hands over the pulses of the next frame. Says whether those of the call before
-    /// have been taken over, true at the first call: then the clock and all that makes
-    /// pulses are alive.
-    fn submit(&mut self, pulses: Pulses) -> bool;
+    /// True if the pulses handed over last have been taken over, and before the first:
+    /// then the clock and all that makes pulses are alive.
+    fn is_taken(&self) -> bool;
+
+    /// Hands over the pulses of the next frame, in place of any that have not been taken
+    /// over.
+    fn submit(&mut self, pulses: Pulses);
 
     /// Feeds the watchdog, which restarts the program when it hangs. Once it has
     /// ended the pulses, nothing may put it off, and main must not go on.
@@ -154,14 +158,17 @@ impl Main {
         let ticks = board.ticks();
         if ticks != self.ticks {
             self.ticks = ticks;
+            if board.is_taken() {
+                board.feed();
+            } else if !self.control.motion().is_resting() {
+                return Step::Worked;
+            }
             let health = Health {
                 supply: board.supply(),
                 late: board.counters().late,
                 stack_is_intact: board.stack_is_intact(),
             };
-            if board.submit(self.control.frame(&health)) {
-                board.feed();
-            }
+            board.submit(self.control.frame(&health));
             self.keep(board);
             board.set_led(self.control.is_lit());
             self.console.frame();
@@ -275,6 +282,33 @@ mod tests {
             assert!(works(&mut running));
             running.settle();
             assert_eq!(running.motion().frames(), frames);
+        }
+    }
+
+    #[test]
+    fn a_frame_that_waits_to_be_played_is_followed_and_only_the_end_of_the_pulses_replaces_it() {
+        for rests in [false, true] {
+            let mut running = begun(0, "");
+            running.run(100);
+            // Main is late for a tick: its frame waits until after the next one.
+            running.board.pass(1 + 5);
+            running.settle();
+            let late = running.board.submitted();
+            if rests {
+                running.board.send(b"rest\r");
+                running.settle();
+            }
+            running.board.pass(15);
+            running.settle();
+            assert_eq!(running.motion().frames(), 101 + u32::from(rests));
+            assert!(running.board.unfed() >= 15, "nor is the watchdog fed");
+            running.board.pass(19);
+            let played = if rests { Pulses::default() } else { late };
+            assert_eq!(running.board.begun(), played);
+            running.board.pass(1);
+            running.settle();
+            assert_eq!(running.motion().frames(), 102 + u32::from(rests));
+            assert_eq!(running.board.unfed(), 0);
         }
     }
 

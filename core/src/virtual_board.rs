@@ -166,7 +166,7 @@ impl VirtualBoard {
         self.ms += 1;
         if self.ms == FRAME_MS {
             self.ms = 0;
-            self.tick();
+            self.ticks = self.ticks.wrapping_add(1);
         } else if self.ms.is_multiple_of(SLOT_MS) {
             let servo = usize::from(self.ms / SLOT_MS - 1);
             if servo == 0 {
@@ -179,8 +179,9 @@ impl VirtualBoard {
         }
     }
 
-    /// A tick, however soon after the last one.
+    /// A tick, however soon after the last one, whose frame is taken over in between.
     pub fn tick(&mut self) {
+        self.take_over();
         self.ticks = self.ticks.wrapping_add(1);
     }
 
@@ -315,11 +316,13 @@ impl Board for VirtualBoard {
         self.ticks
     }
 
-    fn submit(&mut self, pulses: Pulses) -> bool {
-        let taken = !self.fresh;
+    fn is_taken(&self) -> bool {
+        !self.fresh
+    }
+
+    fn submit(&mut self, pulses: Pulses) {
         self.submitted = pulses;
         self.fresh = true;
-        taken
     }
 
     fn feed(&mut self) {

@@ -30,8 +30,8 @@ pub struct Seen {
     pub is_sent_to_rest: bool,
     /// Frames in a row, main running, without any pulse; up to 200.
     pub silent: u8,
-    /// Frames for which main was late since its last one.
-    pub late_frames: u16,
+    /// True if main was late for the last frame.
+    pub is_late: bool,
     /// Frames since something stopped the robot, up to 200; 0 for nothing, or since a
     /// person acted.
     pub stopped: u8,
@@ -142,14 +142,14 @@ impl Seen {
             self.since_reset = self.since_reset.saturating_add(1).min(200);
             self.rests |= self.is_sent_to_rest;
             self.is_sent_to_rest = false;
-            self.late_frames = 0;
+            self.is_late = false;
             self.silent = if self.is_on == [false; 4] {
                 self.silent.saturating_add(1).min(200)
             } else {
                 0
             };
         } else {
-            self.late_frames = self.late_frames.saturating_add(1).min(200);
+            self.is_late = true;
         }
         if self.stopped > 0 && main_ran {
             self.stopped = self.stopped.saturating_add(1).min(200);
@@ -193,7 +193,6 @@ impl Seen {
         Self {
             width: self.width.map(|width| width >> 11),
             silent: frames(self.silent),
-            late_frames: self.late_frames.min(2),
             stopped: frames(self.stopped),
             since_told: self.since_told.min(20) / 20,
             since_reset: u8::from(self.since_reset > TAKING_OVER),

@@ -291,7 +291,7 @@ impl World {
         self.written()?;
         self.supply(true);
         let hears = !self.running.board.transmitter.held && !self.running.is_over();
-        if self.seen.stopped > 3 && !self.seen.is_told && hears && self.seen.late_frames == 0 {
+        if self.seen.stopped > 3 && !self.seen.is_told && hears && !self.seen.is_late {
             return broken(
                 "whatever stopped the robot is told on the console",
                 "nothing",

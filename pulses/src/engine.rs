@@ -64,17 +64,12 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// the pins; as `u16` or as a type of the program that becomes one.
     ///
     /// They are taken over together before the first slot opens; a second call before that
-    /// replaces the first. If none comes, the last ones repeat. A width of 0, and
-    /// any that a slot has no room for, gives no pulse: see
-    /// [`LEAST_WIDTH`](crate::LEAST_WIDTH) and [`most_width`](crate::most_width).
-    ///
-    /// Returns whether the frame of the call before has been taken over, true on the
-    /// first call. Who calls this once for every tick sees by it that both handlers
-    /// live: one gives the tick, the other takes the frame. It is false, too, for a
-    /// frame that main was so late with that the next tick came first.
+    /// replaces the first, which is then never played: see [`Engine::is_taken`]. If none
+    /// comes, the last ones repeat. A width of 0, and any that a slot has no room for,
+    /// gives no pulse: see [`LEAST_WIDTH`](crate::LEAST_WIDTH) and
+    /// [`most_width`](crate::most_width).
     #[inline(always)]
-    pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) -> bool {
-        let taken = self.fresh.get() == 0;
+    pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) {
         // Take back what has not been played. From here to the end the handler
         // leaves `playing` alone, so the frame that is filled cannot start to play.
         self.fresh.set(0);
@@ -83,7 +78,18 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
             slot.set(width.into());
         }
         self.fresh.set(1);
-        taken
+    }
+
+    /// True if the frame that was submitted last has been taken over, and before the
+    /// first one.
+    ///
+    /// Ask at every tick. False means that main was so late with the frame that it waits
+    /// for the end of this tick's slot: a servo that must not leap gets no new frame for
+    /// this tick. True at every second tick at least means that both handlers run: one
+    /// gives the tick, the other takes the frame.
+    #[inline(always)]
+    pub fn is_taken(&self) -> bool {
+        self.fresh.get() == 0
     }
 
     /// From now on no pulse begins; one that is under way ends as planned, within a
@@ -385,8 +391,9 @@ mod tests {
         for (servo, width) in widths.iter_mut().enumerate() {
             *width = 24_000 + servo as u16;
         }
-        assert!(engine.submit(widths), "nothing waits before the first");
-        assert!(!engine.submit(widths), "and the first has not been taken");
+        assert!(engine.is_taken(), "nothing waits before the first");
+        engine.submit(widths);
+        assert!(!engine.is_taken(), "and the first has not been taken");
         for frames in 0..3 {
             let played = frame(&engine);
             for (servo, slot) in played.into_iter().enumerate().take(SERVOS) {
@@ -401,7 +408,7 @@ mod tests {
                 "the tick has no pin"
             );
         }
-        assert!(engine.submit(widths), "it has been taken");
+        assert!(engine.is_taken());
     }
 
     #[test]

@@ -90,8 +90,8 @@ pub use pin::Pin;
 pub use timing::{CYCLES_PER_US, LEAD, LEAST_WIDTH, frame_cycles, most_width, slot_cycles};
 
 /// Makes the module in which it stands the owner of Timer1 and of the pins of one to eight
-/// servos. It then has the functions `start`, `submit`, `hush`, `ticks` and `late` of
-/// [`Engine`], and the handlers of both compare interrupts.
+/// servos. It then has the functions `start`, `submit`, `is_taken`, `hush`, `ticks` and
+/// `late` of [`Engine`], and the handlers of both compare interrupts.
 ///
 /// - `engine!(PINS)` with a constant `PINS: [Pin; N]` for pins that are known when the
 ///   program is compiled.
@@ -155,8 +155,15 @@ macro_rules! engine {
 
         /// See `servo_pulses::Engine::submit`.
         #[inline(always)]
-        pub fn submit<W: ::core::convert::Into<u16>>(widths: [W; SERVOS]) -> bool {
-            ENGINE.submit(widths)
+        pub fn submit<W: ::core::convert::Into<u16>>(widths: [W; SERVOS]) {
+            ENGINE.submit(widths);
+        }
+
+        /// See `servo_pulses::Engine::is_taken`.
+        #[inline(always)]
+        #[allow(dead_code)]
+        pub fn is_taken() -> bool {
+            ENGINE.is_taken()
         }
 
         /// See `servo_pulses::Engine::hush`.

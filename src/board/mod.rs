@@ -104,8 +104,13 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn submit(&mut self, pulses: Pulses) -> bool {
-        pulses::submit(pulses.0)
+    fn is_taken(&self) -> bool {
+        pulses::is_taken()
+    }
+
+    #[inline(always)]
+    fn submit(&mut self, pulses: Pulses) {
+        pulses::submit(pulses.0);
     }
 
     #[inline(always)]

@@ -252,10 +252,7 @@ impl World {
         }
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {
-            let most = calibration
-                .slew(slew)
-                .saturating_add(ROUNDING)
-                .saturating_mul(1 + self.seen.late_frames);
+            let most = calibration.slew(slew).saturating_add(ROUNDING);
             let leap = widths[servo].abs_diff(self.seen.width[servo]);
             if widths[servo] > 0 && self.seen.is_there[servo] && leap > most {
                 return broken(

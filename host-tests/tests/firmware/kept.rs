@@ -67,7 +67,8 @@ pub fn way(servo: usize) -> u64 {
 /// The same for a servo with this many us per degree.
 fn way_at(gain: f64) -> u64 {
     // A cycle of rounding at each end, and the limit's own, half a step of an angle.
-    (robot().pace().slew / 50.0 * gain.abs() * 16.0) as u64 + 3
+    let pace = robot().pace();
+    (pace.slew.max(pace.gait_slew) / 50.0 * gain.abs() * 16.0) as u64 + 3
 }
 
 /// Whether no pulse is farther from the one before than the slew limit allows.

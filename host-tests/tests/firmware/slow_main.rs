@@ -1,13 +1,13 @@
 //! Main held up at every instruction where it meets an interrupt: at the hand-over
 //! of a frame, at the LED, in an answer, before it falls asleep.
 
-use lizard_host::sim::frame::FRAME;
-use lizard_host_tests::FirmwareBench;
+use lizard_host::sim::frame::{FRAME, frames, servo_pins};
+use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::kept::{pulses, way};
+use crate::kept::{MS, assert_no_leap, pulses};
 use crate::walk::{SLOT, Walk};
-use crate::{Status, awake, in_both};
+use crate::{Status, awake, doing, for_each, gaits, in_both};
 
 /// Cycles from the return of the function that computes a frame in which main
 /// hands it over and sets the LED, and more. Three frames for each are an odd number
@@ -29,14 +29,13 @@ fn run_to_hand_over(bench: &mut FirmwareBench) {
 #[test]
 fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() {
     // Main stops until A1's pulse has begun: the next frame is taken over in
-    // between, and the pin of A1 rises, which may share its port with the LED. Twice
-    // in a row, so that it stops also while an older frame waits; every third frame
-    // is left alone.
+    // between, and the pin of A1 rises, which may share its port with the LED. Every third
+    // frame: one that comes too late is played next, and gets the tick after it, too.
     in_both(|fidelity| {
         let mut walk = Walk::begin(fidelity);
         let start = walk.next_frame() + FRAME;
         let count = 2 * 3 * HAND_OVER;
-        for n in (0..count).filter(|n| n % 3 != 2) {
+        for n in (0..count).step_by(3) {
             let frame = start + n * FRAME;
             walk.run_to(frame - SLOT - 400);
             run_to_hand_over(&mut walk.bench);
@@ -48,23 +47,50 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
         walk.run_to(start + count * FRAME - SLOT / 2);
         let frames = walk.frames_since(start);
         assert_eq!(frames.len() as u64, count);
-        let mut in_time = 0;
-        for (n, (sent, asked)) in frames.iter().enumerate().skip(3) {
-            let is_asked = sent.all() == Some(*asked);
-            let recent = &frames[n - 2..n];
-            // One that comes too late is played later, unless the next takes it back.
-            let is_old = recent.iter().any(|(_, asked)| sent.all() == Some(*asked));
-            assert!(
-                is_asked || n % 3 != 2 && is_old,
-                "{} cycles in: {sent:?}",
-                n / 3
-            );
-            in_time += usize::from(is_asked);
+        // None is left out: each is the one before it again, or the next that was computed.
+        let asked: Vec<_> = frames.iter().map(|(_, asked)| Some(*asked)).collect();
+        let mut next = 0;
+        for (n, (sent, _)) in frames.iter().enumerate() {
+            let is_next = sent.all() == asked[next];
+            let is_old = next > 0 && sent.all() == asked[next - 1];
+            assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
+            next += usize::from(is_next);
         }
         // Most: at the end of the sweep main has handed over before it stops.
-        assert!((frames.len() / 3 + 40..frames.len() - 40).contains(&in_time));
+        let repeated = frames.len() - next;
+        assert!(
+            (40..frames.len() / 3 - 40).contains(&repeated),
+            "{repeated}"
+        );
         assert_eq!(walk.late(), 0);
     });
+}
+
+#[test]
+fn a_rest_in_place_of_a_frame_that_waits_ends_all_pulses_or_none_wherever_main_stops() {
+    let mut walk = Walk::begin(Fidelity::DataSheet);
+    for n in 0..160 {
+        let frame = walk.next_frame();
+        walk.run_to(frame - SLOT - 400);
+        walk.bench.uno.stall_main(SLOT + 2_400);
+        walk.run_to(frame + 3_000);
+        walk.bench.uno.send(b"rest\n");
+        walk.run_to(frame + FRAME - SLOT - 400);
+        run_to_hand_over(&mut walk.bench);
+        walk.bench.uno.run_cycles(n);
+        let stall = frame + FRAME + 2_000 - walk.bench.uno.cycle();
+        walk.bench.uno.stall_main(stall);
+        walk.run_to(frame + 4 * FRAME - SLOT / 2);
+        let edges = walk.bench.uno.edges();
+        let sent = frames(&edges, servo_pins(robot()), frame, 4);
+        for frame in &sent {
+            let pulses = frame.widths.iter().flatten().count();
+            assert!(pulses % 4 == 0, "{n} cycles in: {frame:?}");
+        }
+        assert_eq!(sent[2].widths, [None; 4], "{n} cycles in");
+        walk.bench.say("stand");
+        walk.bench.run_ms(700);
+    }
 }
 
 #[test]
@@ -126,14 +152,9 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
             walk.bench.uno.stall_main(5 * FRAME);
             walk.bench.run_ms(300);
         }
-        for (servo, pulses) in pulses(&walk.bench).iter().enumerate() {
-            assert!(pulses.len() > 250);
-            for pair in pulses.windows(2) {
-                // What main had computed before may have been replaced unplayed.
-                let leap = pair[0].width.abs_diff(pair[1].width);
-                assert!(leap <= 3 * way(servo), "A{}: {pair:?}", servo + 1);
-            }
-        }
+        let pulses = pulses(&walk.bench);
+        assert!(pulses.iter().all(|pulses| pulses.len() > 250));
+        assert_no_leap(&pulses);
         let frames = Status::of(&mut walk.bench).number("frames") - before;
         let passed = (walk.bench.uno.cycle() - cycle) as f64 / FRAME as f64;
         let missed = passed - frames;
@@ -155,4 +176,35 @@ fn old_widths_repeat_while_main_stands_still() {
             .all(|(frame, _)| frame.all() == last.all())
     );
     assert!(last.all().is_some());
+}
+
+#[test]
+fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
+    // The watchdog's two stages, less the frame in which it was fed last.
+    const HARMLESS: u64 = 105;
+    const SURELY_RESET: u64 = 250;
+    for_each(&gaits(), |gait| {
+        let mut bench = doing(gait, Fidelity::DataSheet);
+        // The shorter ones at more moments: beside the next tick, only these matter.
+        let lengths = (0..6).flat_map(|_| 1..=25).chain(1..=300);
+        for (n, length) in lengths.enumerate() {
+            // Spread over the frame: 7 919 is a prime.
+            bench.uno.run_cycles(FRAME + n as u64 * 7_919 % FRAME);
+            let resets = bench.uno.resets();
+            bench.uno.stall_main(length * MS);
+            // Once its first stage has ended the pulses, the reset is certain.
+            let seen = if length < HARMLESS { length } else { 350 };
+            bench.uno.run_ms(seen + 60);
+            let was_reset = bench.uno.resets() > resets;
+            assert!(length < SURELY_RESET || was_reset, "{length} ms");
+            assert!(length >= HARMLESS || !was_reset, "{length} ms");
+            println!("{gait}, stalled for {length} ms");
+            assert_no_leap(&pulses(&bench));
+            if was_reset {
+                bench.say(gait);
+                bench.run_ms(900);
+            }
+            bench.uno.take_edges();
+        }
+    });
 }

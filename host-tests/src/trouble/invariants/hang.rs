@@ -20,7 +20,7 @@ pub fn held_where_it_was(record: &Record, rules: &Rules) -> Result<(), String> {
         let Some(before) = begin.before else { continue };
         let leap = begin.pulse.width.abs_diff(before.width);
         // One frame may have been computed and not yet played.
-        if is_after_a_hang(record, &begin) && !begin.cut && leap > 2 * rules.way[begin.servo] {
+        if is_after_a_hang(record, &begin) && !begin.cut && leap > rules.way[begin.servo] {
             return Err(format!(
                 "A{} had {} cycles before and {} after, at {} ms",
                 begin.servo + 1,

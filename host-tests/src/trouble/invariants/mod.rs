@@ -78,7 +78,7 @@ impl Rules {
 pub type Holds = fn(&Record, &Rules) -> Result<(), String>;
 
 /// Every invariant.
-pub const INVARIANTS: [(&str, Holds); 26] = [
+pub const INVARIANTS: [(&str, Holds); 25] = [
     ("the program neither crashes nor halts", told::it_lives),
     ("every line has an answer", told::every_line_is_answered),
     (
@@ -138,10 +138,6 @@ pub const INVARIANTS: [(&str, Holds); 26] = [
     (
         "no pulse is farther from the one before than the slew limit",
         pulses::no_leap,
-    ),
-    (
-        "no pulse after a stall is farther from the one before than three frames at the slew limit",
-        pulses::no_leap_after_a_stall,
     ),
     (
         "no reset of a held robot makes a servo leap",

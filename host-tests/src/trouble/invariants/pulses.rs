@@ -34,7 +34,6 @@ pub fn within_travel(record: &Record, rules: &Rules) -> Result<(), String> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Between {
     Nothing,
-    Stall,
     /// A reset that left RAM alone, of a robot that had pulses.
     Reset,
     /// A reset of a robot that rested.
@@ -53,14 +52,7 @@ fn leaps(record: &Record, rules: &Rules, between: Between) -> Result<(), String>
             .collect();
         for pair in whole.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
-            // A frame that main was late for may be replaced before it is played, and the
-            // next, too; one that was computed before a reset may never be played.
-            let frames = match between {
-                Between::Stall => 3,
-                Between::Reset => 2,
-                _ => 1,
-            };
-            if leap > frames * rules.way[servo] && what_came(record, rules, pair) == between {
+            if leap > rules.way[servo] && what_came(record, rules, pair) == between {
                 let ms = pair[1].start as f64 / MS as f64;
                 return Err(format!(
                     "A{} has {} cycles and then {}, at {ms:.3} ms",
@@ -78,15 +70,10 @@ fn what_came(record: &Record, rules: &Rules, pair: &[Pulse]) -> Between {
     let (from, to) = (pair[0].start, pair[1].start);
     let Some(start) = record.starts_in(from, to).next() else {
         let missed = record.holds.iter().any(|hold| hold.overlaps(from, to));
-        let stalled = record
-            .stalls
-            .iter()
-            .any(|stall| stall.overlaps(from.saturating_sub(40 * MS), to));
-        return match (stalled, missed) {
-            (true, _) => Between::Stall,
+        return match missed {
             // Frames went by without a pulse.
-            (_, true) => Between::Unknown,
-            _ => Between::Nothing,
+            true => Between::Unknown,
+            false => Between::Nothing,
         };
     };
     let rested = !may_begin(record, rules, start.cycle);
@@ -132,14 +119,9 @@ fn has_unsaved_settings(record: &Record, until: u64) -> bool {
     })
 }
 
-/// From frame to frame.
+/// From frame to frame, whether main stalls or not.
 pub fn no_leap(record: &Record, rules: &Rules) -> Result<(), String> {
     leaps(record, rules, Between::Nothing)
-}
-
-/// Across a stall that ends by itself.
-pub fn no_leap_after_a_stall(record: &Record, rules: &Rules) -> Result<(), String> {
-    leaps(record, rules, Between::Stall)
 }
 
 /// Across a reset of a robot that had pulses, or was about to have them.
