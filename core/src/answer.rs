@@ -20,10 +20,12 @@ pub enum Answer {
     Hint,
     /// The end of help, `ok help`.
     Helped,
-    /// `ok` and the state of the motion; the next answer continues the line.
+    /// `ok`, the motion and its pose; the next answer continues the line. It is written in
+    /// three parts, so that a frame waits for one of them at most.
     Status,
-    /// Counters, faults, restarts and supplies: apart, so that a frame need not wait for
-    /// both.
+    /// The margin, which takes the guard most of a frame's time; the pace; the frames.
+    Margin,
+    /// Counters, faults, restarts and supplies.
     Health,
     /// A line of what is set, by its number; after the last one `ok cal`.
     Settings(u8),

@@ -26,6 +26,9 @@ mod watch;
 /// `status` whose every number has all its digits.
 pub const LONGEST_LINE: u8 = 250;
 
+/// The longest line of gaits' names, without its line end: a frame may wait for one.
+const LONGEST_NAMES: u8 = 125;
+
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Output {
@@ -143,7 +146,7 @@ impl Console {
     /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
     /// is, once after power-on; an answer or a part of it; a notice; why
     /// the guard holds the robot; the pose, as `watch` asked for it. Of the longest
-    /// line it writes one part, and the next call the other.
+    /// line it writes one part, and the next calls the others.
     ///
     /// # Errors
     /// Those of `out`.
@@ -165,7 +168,7 @@ impl Console {
             }
             Some(Output::Answer(answer)) => {
                 self.answer = print::answer(out, answer, &self.line, control, counters)?;
-                if answer == Answer::Status {
+                if matches!(answer, Answer::Status | Answer::Margin) {
                     return Ok(());
                 }
             }

@@ -10,6 +10,8 @@
 use std::fmt::Write;
 
 use fastrand::Rng;
+use lizard_core::gait::{Gait, SAMPLES};
+use lizard_core::section::SPACE;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 
@@ -48,6 +50,26 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
             moves.then_some((text, robot))
         })
         .expect("one draft in a few is a valid robot")
+}
+
+/// The same robot with as many more gaits as the board has room for, so that none is left
+/// for the maps of certified cells. Their names have `length` characters and differ in the
+/// last two alone.
+///
+/// # Panics
+/// If the robot has no gait that moves, or is not valid.
+#[must_use]
+pub fn crowded(text: &str, length: usize) -> Robot {
+    let robot = Robot::parse(text).expect("a valid robot");
+    let like = robot.gaits().iter().find(|gait| gait.moves());
+    let like = like.expect("a gait that moves").name();
+    // With its own gains, a gait may need a waveform of its own.
+    let room = usize::from(SPACE) - robot.content().section().len() - size_of::<[i16; SAMPLES]>();
+    let gaits = (0..room / (size_of::<Gait>() + length)).map(|n| {
+        let name = format!("{:n<1$}{n:02}", "on-and-o", length - 2);
+        format!("[gait.{name}]\nlike = \"{like}\"\n")
+    });
+    Robot::parse(&format!("{text}{}", gaits.collect::<String>())).expect("more of the same gait")
 }
 
 /// Everything but the gaits.

@@ -2,7 +2,7 @@
 
 use ufmt::uWrite;
 
-use super::{Counters, LONGEST_LINE};
+use super::{Counters, LONGEST_NAMES};
 use crate::answer::Answer;
 use crate::control::Control;
 use crate::digits;
@@ -66,6 +66,10 @@ where
         }
         Answer::Status => {
             status(out, control.motion())?;
+            return Ok(Some(Answer::Margin));
+        }
+        Answer::Margin => {
+            margin(out, control.motion())?;
             return Ok(Some(Answer::Health));
         }
         Answer::Health => health(out, control, counters)?,
@@ -84,8 +88,6 @@ fn gaits<W>(out: &mut W, first: GaitId, robot: &Robot) -> Result<Option<GaitId>,
 where
     W: uWrite + ?Sized,
 {
-    /// Without the line end.
-    const ROOM: u8 = LONGEST_LINE - 2;
     Text::HelpGaits.print(out)?;
     // Whatever is in the flash then is no name.
     if robot.is_none() {
@@ -95,7 +97,7 @@ where
     let mut gait = first;
     loop {
         let name = robot.name(gait);
-        if name.length() >= ROOM - length {
+        if name.length() >= LONGEST_NAMES - length {
             return Ok(Some(gait));
         }
         length += 1 + name.length();
@@ -134,7 +136,18 @@ where
     }
     Text::StatusPhase.print(out)?;
     digits::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
-    pose(out, motion)?;
+    pose(out, motion)
+}
+
+/// ` margin=0.661 speed=100 frames=321`
+fn margin<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    let robot = motion.robot();
+    if robot.is_none() {
+        return Ok(());
+    }
     Text::StatusMargin.print(out)?;
     digits::sine(out, Clearance::of(robot, motion.pose()).smallest())?;
     digits::count(out, Text::StatusSpeed, motion.speed().into())?;

@@ -61,14 +61,25 @@ pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
 
 /// By how many cycles a pulse may change from frame to frame: the slew limit.
 pub fn way(servo: usize) -> u64 {
-    way_at(robot().servos()[servo].us_per_degree)
+    way_at(robot().servos()[servo].us_per_degree, robot().pace().slew)
 }
 
-/// The same for a servo with this many us per degree.
-fn way_at(gain: f64) -> u64 {
+/// The same for a servo with this many us per degree, at so many degrees a second.
+fn way_at(gain: f64, slew: f64) -> u64 {
     // A cycle of rounding at each end, and the limit's own, half a step of an angle.
+    (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
+}
+
+/// Whether no pulse of a gait is farther from the one before than its slew limit allows.
+pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     let pace = robot().pace();
-    (pace.slew.max(pace.gait_slew) / 50.0 * gain.abs() * 16.0) as u64 + 3
+    for (servo, pulses) in robot().servos().iter().zip(pulses) {
+        let most = way_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
+        for pair in pulses.windows(2) {
+            let leap = pair[0].width.abs_diff(pair[1].width);
+            assert!(leap <= most, "{leap} cycles of {most}: {pair:?}");
+        }
+    }
 }
 
 /// Whether no pulse is farther from the one before than the slew limit allows.
@@ -82,7 +93,11 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     for (servo, (pulses, gain)) in pulses.iter().zip(gains).enumerate() {
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
-            assert!(leap <= way_at(gain), "A{}: {pair:?}", servo + 1);
+            assert!(
+                leap <= way_at(gain, robot().pace().slew),
+                "A{}: {pair:?}",
+                servo + 1
+            );
         }
     }
 }

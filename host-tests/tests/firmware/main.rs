@@ -34,6 +34,7 @@ mod led;
 mod line;
 mod lines;
 mod no_pulse;
+mod other_robots;
 mod power_cut;
 mod power_up;
 mod pulses;

@@ -1,5 +1,6 @@
 //! The measurements, each on a board of its own.
 
+use std::iter::zip;
 use std::path::Path;
 use std::time::Instant;
 
@@ -42,11 +43,9 @@ pub struct Figures {
     /// The most cycles from the tick to the end of its computation while the
     /// serial line is saturated both ways, interrupts and answers included.
     pub tick_latency: u64,
-    /// The most cycles that an order takes in one step, settings of the servos and
-    /// those of robot.toml among them, interrupts left out.
-    pub order: u64,
-    /// The most cycles of a step of `load`.
-    pub load: u64,
+    /// The most cycles of any other step of main, interrupts left out: a line that is
+    /// written, a byte that ends a line, a part of a save or load.
+    pub step: u64,
     /// Mean cycles of the guard in a tick of the gait.
     pub guard: Option<f64>,
     /// Mean cycles of all that main does in a frame of the gait, tick included.
@@ -81,11 +80,21 @@ pub struct Figures {
 const TICK: &str = "Control::frame";
 /// The guard.
 const GUARD: &str = "guard::hazard";
-/// The function that takes an order, and the one that does a step for the memory.
-const ORDER: &str = "Control::execute";
-const MEMORY: &str = "Control::write_memory";
-/// Settings that take long: every servo's travel ends where its pulses do.
-const SETTINGS: [&str; 14] = [
+/// The functions of all other steps of main.
+const STEPS: [&str; 3] = [
+    "Console::write_line",
+    "Console::receive",
+    "Control::write_memory",
+];
+/// Lines that take long: every answer of several lines, and settings that end a servo's
+/// travel where its pulses do.
+const LONG_LINES: [&str; 20] = [
+    "status",
+    "help",
+    "cal",
+    "save",
+    "load",
+    "pose 0 0 0 0",
     "trim 1 3.3",
     "trim 2 3.3",
     "trim 3 3.3",
@@ -150,9 +159,8 @@ impl Figures {
         let guard = mean(&times(awake()?, GUARD, &[gait])?.concat());
         progress("the control tick on a saturated line");
         let tick_latency = latency(awake()?, turn)?;
-        progress("settings");
-        let order = longest(awake()?, ORDER, gait, &SETTINGS)?;
-        let load = longest(awake()?, MEMORY, gait, &["save", "load"])?;
+        progress("every other step");
+        let step = longest_step(elf, robot)?;
         progress("serial interrupts");
         let serial_interrupt = longest_serial(awake, turn)?;
         progress("ten minutes of a gait");
@@ -179,8 +187,7 @@ impl Figures {
                 .max()
                 .unwrap_or(0),
             tick_latency,
-            order,
-            load,
+            step,
             guard: of_gait(guard),
             main: of_gait((idle.awake - idle.in_handlers) as f64 / frames),
             servo_interrupts: idle.in_servos as f64 / frames,
@@ -198,6 +205,23 @@ impl Figures {
             gait: gaits.first().cloned(),
         })
     }
+}
+
+/// The most cycles of a step of main that is no frame, interrupts left out.
+///
+/// # Errors
+/// See [`Figures::measure`].
+pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
+    let gait = tour::gaits(robot)
+        .first()
+        .map_or("stand".into(), |gait| command(gait));
+    let mut most = 0;
+    for function in STEPS {
+        let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
+        board.run_ms(1000)?;
+        most = longest(board, function, &gait, &long_lines(robot))?.max(most);
+    }
+    Ok(most)
 }
 
 /// The console command of a gait.
@@ -317,13 +341,34 @@ fn times(
     Ok(calls)
 }
 
+/// Lines that take long. Among those that are no gait's name, the one that is compared
+/// with the most characters of the names.
+fn long_lines(robot: &Robot) -> Vec<String> {
+    let names = || robot.gaits().iter().map(|gait| command(gait.name()));
+    let alike = |line: &String| -> usize {
+        let same = |name: String| {
+            zip(name.bytes(), line.bytes())
+                .take_while(|(a, b)| a == b)
+                .count()
+        };
+        names().map(same).sum()
+    };
+    let nearly = names().max_by_key(alike).unwrap_or_default();
+    let mut lines = LONG_LINES.map(str::to_owned).to_vec();
+    lines.push(format!("boot {nearly}"));
+    lines.push("cal".into());
+    lines.push(format!("{nearly}x"));
+    lines.push(format!("boot {nearly}x"));
+    lines
+}
+
 /// The most cycles of a function while each line is obeyed in a gait. A line may be
 /// refused: that takes as long.
 fn longest(
     mut board: SimulatedBoard,
     function: &str,
     gait: &str,
-    lines: &[&str],
+    lines: &[String],
 ) -> Result<u64, BoardError> {
     board.say(gait)?;
     let mut most = 0;

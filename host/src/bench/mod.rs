@@ -15,7 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{Failure, RobotFile, firmware};
 
 pub use budget::{Bound, Row, rows};
-pub use figures::Figures;
+pub use figures::{Figures, longest_step};
 pub use stack::{StackDepth, StackError};
 
 /// Measure the firmware on a simulated Arduino UNO against its budgets

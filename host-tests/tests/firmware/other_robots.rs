@@ -1,0 +1,80 @@
+//! Robots that nobody has measured: whatever their pins, directions and gaits, no frame of
+//! theirs is late.
+
+use lizard_core::gait::LONGEST_NAME;
+use lizard_host::bench::longest_step;
+use lizard_host::board::SimulatedBoard;
+use lizard_host::sim::core_run;
+use lizard_host::sim::frame::FRAME;
+use lizard_host::sim::tour;
+use lizard_host_tests::random_robot::{crowded, random_robot};
+use lizard_host_tests::{FirmwareBench, rng};
+use lizard_robot::Robot;
+use simulated_uno::Fidelity;
+
+use crate::{SECOND, for_each};
+
+/// Lines that move nothing, each as fast as the line carries it.
+const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
+
+/// How many robots; `make other-robots` tries 100.
+fn count() -> u64 {
+    let given = std::env::var("LIZARD_ROBOTS").ok();
+    given.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
+}
+
+/// The seconds of a gait under a flood, frame by frame as the core computes them.
+fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
+    let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
+    let mut bench = FirmwareBench::with_board(board.expect("the firmware"));
+    bench.run_ms(1000);
+    let first = bench.first_pulse().expect("it stands");
+    bench.say("watch 1");
+    bench.say(&gait.replace('-', " "));
+    let received = bench.uno.received_by_uno().len();
+    bench.uno.flood(flood.as_bytes());
+    let sent = bench.run_for_frames(2 * SECOND);
+    let before = ((sent[0].start - first) / FRAME) as usize;
+    let received = &bench.uno.received_by_uno()[..received];
+    let asked = core_run::play(*robot.firmware(), received, first, before + sent.len());
+    for (frame, asked) in sent.iter().zip(&asked.widths[before..]) {
+        let asked = asked.map(u64::from);
+        assert_eq!(frame.all(), Some(asked), "{what}, {flood:?}: {frame:?}");
+    }
+}
+
+#[test]
+fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
+    for_each(&[0, 1], |half| {
+        for n in (*half..count()).step_by(2) {
+            let mut rng = rng(2_000 + n);
+            let (text, mut robot) = random_robot(&mut rng);
+            // Of three, one as it is, one with many gaits and one with long names.
+            match n % 3 {
+                1 => robot = crowded(&text, 10),
+                2 => robot = crowded(&text, LONGEST_NAME),
+                _ => {}
+            }
+            let what = format!("robot {n}");
+            let gaits = tour::moving(&robot);
+            for flood in FLOODS {
+                let gait = gaits[rng.usize(..gaits.len())];
+                assert_in_time(&robot, gait, flood, &what);
+            }
+        }
+    });
+}
+
+#[test]
+fn no_step_of_main_keeps_a_frame_waiting_for_too_long_however_many_gaits_there_are() {
+    let (text, robot) = random_robot(&mut rng(2_000));
+    let lengths = [4, 10, 24, LONGEST_NAME];
+    for robot in lengths
+        .map(|length| crowded(&text, length))
+        .iter()
+        .chain([&robot])
+    {
+        let took = longest_step(&FirmwareBench::elf(), robot).expect("it runs");
+        println!("{} gaits: {took} cycles", robot.gaits().len());
+    }
+}
