@@ -172,6 +172,14 @@ impl Robot {
         self.with_maps().is_some()
     }
 
+    /// The cycles, at most, that the console takes for a line whose gait is the last of all;
+    /// measured on the simulated UNO, where a test compares them.
+    #[must_use]
+    pub fn longest_search(&self) -> usize {
+        let of_gait = |gait: &CheckedGait| 1_400 + 92 * gait.name().len();
+        6_000 + self.gaits().iter().map(of_gait).sum::<usize>()
+    }
+
     /// Its section with the maps, if that is not too long.
     fn with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {

@@ -42,9 +42,18 @@ pub struct Report {
     pub waves: usize,
     /// What the robot takes of the board's flash, bytes; at most [`SPACE`].
     pub flash: usize,
+    /// True if a line that names a gait may make a frame late.
+    pub searches_long: bool,
     /// The robot's name.
     pub name: String,
 }
+
+/// What main may do for a line without making a frame late, cycles: docs/firmware.md.
+const BESIDE_A_FRAME: usize = 34_000;
+
+/// The note for a robot whose console takes longer to find a gait.
+const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may make a frame 20 ms late; \
+     fewer gaits or shorter names avoid it\n";
 
 /// What a dash in place of a prediction means.
 pub const UNDECIDED: &str =
@@ -67,6 +76,7 @@ impl Report {
             hash: firmware.hash(),
             waves: firmware.waves().len(),
             flash: robot.section().len(),
+            searches_long: robot.longest_search() > BESIDE_A_FRAME,
             name: robot.name().to_string(),
         }
     }
@@ -135,6 +145,9 @@ impl fmt::Display for Report {
         }
         if self.rows.iter().any(|row| !row.way.is_decided()) {
             write!(f, "\n{UNDECIDED}")?;
+        }
+        if self.searches_long {
+            write!(f, "\n{SEARCHES_LONG}")?;
         }
         Ok(())
     }
