@@ -10,7 +10,7 @@
 use std::fmt::Write;
 
 use fastrand::Rng;
-use lizard_core::gait::{Gait, SAMPLES};
+use lizard_core::gait::{Gait, Wave};
 use lizard_core::section::SPACE;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
@@ -64,7 +64,8 @@ pub fn crowded(text: &str, length: usize) -> Robot {
     let like = robot.gaits().iter().find(|gait| gait.moves());
     let like = like.expect("a gait that moves").name();
     // With its own gains, a gait may need a waveform of its own.
-    let room = usize::from(SPACE) - robot.content().section().len() - size_of::<[i16; SAMPLES]>();
+    let taken = robot.content().section().len() + size_of::<Wave>();
+    let room = usize::from(SPACE).saturating_sub(taken);
     let gaits = (0..room / (size_of::<Gait>() + length)).map(|n| {
         let name = format!("{:n<1$}{n:02}", "on-and-o", length - 2);
         format!("[gait.{name}]\nlike = \"{like}\"\n")
