@@ -215,7 +215,8 @@ impl Scratch {
 
     /// Makes a mistake, tests, and puts it right.
     fn judge(&self, mutant: &Mutant) -> Result<Fate, String> {
-        let right = text(&root().join(&mutant.file))?;
+        // Of the copy: the tree may be edited meanwhile.
+        let right = text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
         let fate = match (&mutant.compiled_by, &mutant.package) {
             (Some(test), _) => self.alone(test),
