@@ -102,3 +102,6 @@ impl<'a> Robot<'a> {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -84,7 +84,8 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
         }
         let fate = match scratch.judge(&mutant)? {
             Fate::NoProgram => continue,
-            Fate::Caught(test) => format!("caught by {test}"),
+            // A hundred tests notice some.
+            Fate::Caught(test) => format!("caught by {}", test.split(',').next().unwrap_or(&test)),
             Fate::Lives => "LIVES".to_owned(),
         };
         println!("{}, {}: {fate}", mutant.file, mutant.wrong);
