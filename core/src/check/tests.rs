@@ -4,6 +4,7 @@
 use std::vec::Vec;
 
 use super::*;
+use crate::adjustment::Reach;
 use crate::sample::Sample;
 use crate::section::{Header, seal};
 
@@ -171,7 +172,7 @@ fn gaits_have_names_and_waves_that_there_are_and_the_first_of_at_least_one_stand
             named(names - 1, 1).opens() && !named(names, 1).opens(),
             "{gait}"
         );
-        assert!(!named(names + 1, 0xffff).opens(), "{gait}");
+        assert!(!named(names + 1, 1).opens(), "{gait}");
         let longest = LONGEST_NAME as u16;
         assert!(
             named(0, longest).opens() && !named(0, longest + 1).opens(),
@@ -220,6 +221,19 @@ fn a_servo_bears_the_pulses_of_its_travel_and_the_gaits_do_not_leave_it() {
                 calibration.neutral.0 = most - long;
             };
             assert_eq!(opens(&at_end), bears, "{servo} {most}");
+        }
+        // The neutral angle is within the travel, even if no gait needs it.
+        for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
+            let mut content = Sample::odd().content.clone();
+            let [min, max] = travel.map(Sweep);
+            let calibration = &mut content.calibration[servo];
+            (calibration.min, calibration.max) = (min, max);
+            content.reach[servo] = Reach { min, max };
+            assert_eq!(
+                Changed(content.section()).opens(),
+                has_neutral,
+                "{travel:?}"
+            );
         }
         let reach = Sample::odd().content.reach[servo];
         for (beyond, within) in [(0, true), (1, false)] {
