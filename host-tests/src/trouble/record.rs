@@ -1,6 +1,7 @@
 //! What was seen of a scenario, from the outside: pulses, lines, the LED, resets, what
 //! was written; and what was done to the board.
 
+use lizard_core::word::Effect;
 use lizard_host::sim::lines::Line;
 use simulated_uno::{
     CYCLES_PER_MS, Edge, EepromOperation, Pin, Pulse, Reset, ResetCause, State, pulses,
@@ -33,6 +34,8 @@ pub struct Exchange {
     pub asked: u64,
     /// The line.
     pub line: String,
+    /// Its effect on the servos, if it is done.
+    pub effect: Effect,
     /// The first line that came back and was no information, if one came.
     pub answer: Option<Line>,
 }
@@ -62,6 +65,16 @@ pub struct Heard {
     pub cycle: u64,
     /// The line.
     pub text: String,
+    /// Its effect on the servos, if it is done.
+    pub effect: Effect,
+}
+
+impl Heard {
+    /// True for a line that tells the robot to move, to stop or to rest.
+    fn is_order(&self) -> bool {
+        let ordered = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
+        ordered && self.text != super::scenario::NOWHERE
+    }
 }
 
 /// A servo's pulse, and what kept it from being the one that was asked for.
@@ -269,7 +282,7 @@ impl Record {
     pub fn orders(&self) -> impl Iterator<Item = (&Heard, Option<bool>)> {
         self.heard
             .iter()
-            .filter(|heard| is_order(&heard.text))
+            .filter(|heard| heard.is_order())
             .map(|heard| {
                 let asked = |exchange: &&Exchange| {
                     exchange.line == heard.text && exchange.asked <= heard.cycle
@@ -309,15 +322,4 @@ impl Record {
         let lost = |reset: &Reset| reset.cause == ResetCause::PowerOn;
         self.starts_in(start, end).any(lost)
     }
-}
-
-/// Whether a line tells the robot to move, to stop or to rest; what is not known to be
-/// a question or a setting does.
-fn is_order(line: &str) -> bool {
-    const OTHERS: [&str; 17] = [
-        "", "status", "help", "?", "cal", "watch", "speed", "trim", "dir", "scale", "limit",
-        "boot", "deadman", "save", "load", "factory", "nonsense",
-    ];
-    let word = line.split(' ').next().unwrap_or_default();
-    !OTHERS.contains(&word) && line != super::scenario::NOWHERE
 }

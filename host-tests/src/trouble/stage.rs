@@ -1,5 +1,7 @@
 //! Plays a scenario on a simulated UNO and records all that can be seen of it.
 
+use lizard_core::command::{effect, parse};
+use lizard_core::word::Effect;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::lines::LineReader;
 use lizard_host::sim::supplies;
@@ -24,7 +26,8 @@ const BROWN_OUT: f64 = 2_725.0;
 const RECENT: u64 = 25 * CYCLES_PER_MS;
 
 /// A board, and what has been seen of it.
-struct Stage {
+struct Stage<'a> {
+    robot: &'a Robot,
     uno: Uno,
     pins: [Pin; 4],
     reader: LineReader,
@@ -43,6 +46,7 @@ pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
     uno.set_boot_loader(scenario.boot_loader);
     uno.set_noise_seed(scenario.number);
     let mut stage = Stage {
+        robot,
         uno,
         pins: servo_pins(robot),
         reader: LineReader::default(),
@@ -58,7 +62,7 @@ pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
     stage.finish()
 }
 
-impl Stage {
+impl Stage<'_> {
     fn perform(&mut self, step: &Step) {
         let now = self.uno.cycle();
         match step {
@@ -127,6 +131,7 @@ impl Stage {
         self.record.exchanges.push(Exchange {
             asked,
             line: line.to_owned(),
+            effect: effect(line, self.robot.firmware()),
             answer,
         });
         text
@@ -223,13 +228,29 @@ impl Stage {
                 text.push(byte.byte);
                 continue;
             }
+            let text_heard = String::from_utf8_lossy(&text).into_owned();
             record.heard.push(Heard {
                 cycle: byte.cycle,
-                text: String::from_utf8_lossy(&text).into_owned(),
+                effect: effect_of_an_end(&text_heard, self.robot),
+                text: text_heard,
             });
             text.clear();
         }
         record.see_pulses(self.pins);
         record
     }
+}
+
+/// The effect of a line, or of its longest end that has one: a reset may have cut off what
+/// came before.
+fn effect_of_an_end(line: &str, robot: &Robot) -> Effect {
+    let robot = robot.firmware();
+    if parse(line.as_bytes(), robot).is_ok() {
+        return effect(line, robot);
+    }
+    let ends = line
+        .char_indices()
+        .map(|(at, _)| effect(&line[at..], robot));
+    let mut some = ends.filter(|effect| *effect != Effect::None);
+    some.next().unwrap_or(Effect::None)
 }

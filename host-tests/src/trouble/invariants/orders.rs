@@ -1,5 +1,7 @@
 //! What is answered is done, and what is refused is not.
 
+use lizard_core::word::Effect;
+
 use super::Rules;
 use crate::trouble::record::{Exchange, MS, Record};
 
@@ -22,14 +24,6 @@ fn is_troubled(record: &Record, rules: &Rules, from: u64, to: u64) -> bool {
         || record.low_for(rules.rest + 40.0, from.saturating_sub(400 * MS), to) > 0
 }
 
-fn moves(line: &str) -> bool {
-    let word = line.split(' ').next().unwrap_or_default();
-    let gaits = [
-        "stand", "walk", "trot", "crawl", "back", "left", "right", "arc", "look", "pose", "center",
-    ];
-    gaits.contains(&word)
-}
-
 /// `ok` to a motion: all four servos have pulses soon.
 pub fn done_means_pulses(record: &Record, rules: &Rules) -> Result<(), String> {
     for (exchange, at) in answers(record) {
@@ -37,7 +31,8 @@ pub fn done_means_pulses(record: &Record, rules: &Rules) -> Result<(), String> {
         let next = record
             .orders()
             .any(|(heard, _)| (at..end).contains(&heard.cycle));
-        let judged = moves(&exchange.line) && exchange.is_done() && end < record.end && !next;
+        let judged =
+            exchange.effect == Effect::Moves && exchange.is_done() && end < record.end && !next;
         if !judged || is_troubled(record, rules, at, end) {
             continue;
         }

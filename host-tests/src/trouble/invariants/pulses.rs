@@ -1,5 +1,6 @@
 //! What every pulse is, and how far it may be from the one before.
 
+use lizard_core::word::Effect;
 use simulated_uno::Pulse;
 
 use super::Rules;
@@ -102,12 +103,11 @@ fn what_came(record: &Record, rules: &Rules, pair: &[Pulse]) -> Between {
 
 /// Whether settings that change a pose's pulses may be in use and not saved.
 fn has_unsaved_settings(record: &Record, until: u64) -> bool {
-    let words = ["trim", "dir", "limit", "scale", "factory", "load", "save"];
-    let is_setting = |text: &str| words.iter().any(|word| text.starts_with(word));
+    let sets = |heard: &Heard| heard.effect == Effect::Calibrates || heard.text == "save";
     let set = record
         .heard
         .iter()
-        .filter(|heard| heard.cycle < until && is_setting(&heard.text));
+        .filter(|heard| heard.cycle < until && sets(heard));
     set.max_by_key(|heard| heard.cycle).is_some_and(|heard| {
         let saved = record.exchanges.iter().any(|exchange| {
             exchange.line == "save"

@@ -1,5 +1,6 @@
 //! The reason for a stop is reported: by `status`, on the console, by the LED.
 
+use lizard_core::word::Effect;
 use lizard_host::sim::lines::Line;
 use simulated_uno::{Edge, Pin, ResetCause, State};
 
@@ -46,8 +47,7 @@ pub fn every_line_is_answered(record: &Record, _: &Rules) -> Result<(), String> 
 fn was_told(record: &Record, from: u64, to: u64) -> bool {
     let mut orders = record.orders();
     orders.any(|(heard, done)| {
-        let moves = heard.text != "rest" && heard.text != "stop";
-        moves && done != Some(false) && (from..to).contains(&heard.cycle)
+        heard.effect == Effect::Moves && done != Some(false) && (from..to).contains(&heard.cycle)
     })
 }
 
