@@ -15,6 +15,19 @@
 //! ```
 //!
 //! An end is the same in reverse, then `ret`.
+//!
+//! There are routines for a few lists of registers only. Where a function pushes just one of
+//! these lists, the stack is laid out as before at each point of its body. Else the routine
+//! pushes more registers, so that what the caller put on the stack, the arguments that fit
+//! into no register, is farther above the variables than the body supposes. That is
+//! done only where the body cannot tell: where it
+//!
+//! - never learns an address on the stack, as it has no variables there and does not mention the
+//!   stack pointer; or
+//! - learns addresses of variables only. Their distances from r28 are as before. It reads
+//!   and writes by Y+q within the room for them, or copies r28 and adds at once what leads into
+//!   that room; and it uses r28 and r29 for nothing else. LLVM computes every address on the
+//!   stack anew from r28, so each access to an argument shows a distance beyond the room.
 
 use object::build::elf::SymbolId;
 use object::elf;
@@ -22,8 +35,8 @@ use object::elf;
 use crate::code::Code;
 use crate::edit::{Edit, Reference};
 use crate::instruction::{
-    CALL, JMP, POINTER_FROM_STACK, RET, RETI, STACK_FROM_POINTER, has_stack_pointer, load_r26,
-    popped, pushed,
+    CALL, JMP, POINTER_FROM_STACK, RET, RETI, STACK_FROM_POINTER, has_frame_pointer,
+    has_stack_pointer, load_r26, popped, pushed,
 };
 
 /// Registers that a function leaves as it found them, in the order in which they are pushed.
@@ -73,6 +86,12 @@ impl Frame {
         if has_room && !registers.ends_with(&[28, 29]) {
             return None;
         }
+        let lowest = lowest.min(18);
+        let first = FIRST.iter().rposition(|first| *first <= lowest)?;
+        let is_known = |register: &u8| *register >= FIRST[first];
+        let is_same = registers
+            .iter()
+            .eq(SAVED.iter().filter(|register| is_known(register)));
         let body = registers.len() + words;
         let mut ends = Vec::new();
         let mut index = body;
@@ -87,14 +106,13 @@ impl Frame {
                 || pushed(at.code).is_some()
                 || at.code == RET
                 || at.code == RETI
+                || has_room && !is_same && !is_local(code, index, room)
             {
                 return None;
             } else {
                 index += 1;
             }
         }
-        let lowest = lowest.min(18);
-        let first = FIRST.iter().rposition(|first| *first <= lowest)?;
         Some(Self {
             first,
             room,
@@ -141,6 +159,39 @@ fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
     };
     rest.starts_with(&STACK_FROM_POINTER)
         .then_some((room as u8, count))
+}
+
+/// Whether the instruction of an index does nothing with the frame pointer but use the room
+/// for variables, from Y+1 to Y+room.
+fn is_local(code: &Code, index: usize, room: u8) -> bool {
+    let words: Vec<u16> = code.words(index).take(3).collect();
+    let distance = match *words.as_slice() {
+        [word, ..] if !has_frame_pointer(word) => return true,
+        // ldd and std with Y+q, of other registers than r28 and r29
+        [word, ..] if word & 0xd008 == 0x8008 && word & 0x01e0 != 0x01c0 => {
+            word >> 8 & 0x20 | word >> 7 & 0x18 | word & 7
+        }
+        // movw r30, r28 or another pair, then adiw of the same
+        [copy, add, ..]
+            if copy & 0xffcf == 0x01ce
+                && copy & 0x0070 != 0x0060
+                && add & 0xff30 == 0x9600 | copy & 0x0030 =>
+        {
+            add >> 2 & 0x30 | add & 0x0f
+        }
+        // movw r16, r28 or another pair, then subi and sbci of the same
+        [copy, low, high]
+            if copy & 0xff8f == 0x018e
+                && copy & 0x0070 != 0x0060
+                && low & 0xf0f0 == 0x5000 | copy << 1 & 0x00e0
+                && high & 0xf0f0 == 0x4010 | copy << 1 & 0x00e0 =>
+        {
+            let byte = |word: u16| word >> 4 & 0xf0 | word & 0x0f;
+            (byte(high) << 8 | byte(low)).wrapping_neg()
+        }
+        _ => return false,
+    };
+    (1..=u16::from(room)).contains(&distance)
 }
 
 /// The number of instructions of the end that begins at an index, if it is the one that

@@ -74,6 +74,34 @@ pub const fn has_stack_pointer(code: u16) -> bool {
     code & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
 }
 
+/// Whether it mentions r28 or r29, as an operand or as Y. Of instructions without operands,
+/// `lpm` is taken for one that does.
+pub fn has_frame_pointer(code: u16) -> bool {
+    let is = |register: u16| register == 28 || register == 29;
+    let first = code >> 4 & 0x1f;
+    let second = code >> 5 & 0x10 | code & 0x0f;
+    let upper = 16 + (code >> 4 & 0x0f);
+    match code {
+        // nop and movw, of pairs; products of r16 to r31
+        0x0000..=0x01ff => upper == 16 + 14 || code & 0x0f == 14,
+        0x0200..=0x03ff => is(upper) || is(16 + (code & 0x0f)),
+        // With two registers; mul
+        0x0400..=0x2fff | 0x9c00..=0x9fff => is(first) || is(second),
+        // With a number
+        0x3000..=0x7fff | 0xe000..=0xefff => is(upper),
+        // ldd and std
+        0x8000..=0x8fff | 0xa000..=0xafff => is(first) || code & 8 != 0,
+        // Other loads and stores; with one register; adiw and sbiw
+        0x9000..=0x93ff => is(first) || code & 0x0f == 9 || code & 0x0f == 10,
+        0x9400..=0x95ff => is(first),
+        0x9600..=0x97ff => code & 0x30 == 0x20,
+        // cbi and its like; rjmp, rcall and branches
+        0x9800..=0x9bff | 0xc000..=0xdfff | 0xf000..=0xf7ff => false,
+        // in and out; bld and its like
+        0xb000..=0xbfff | 0xf800..=0xffff => is(first),
+    }
+}
+
 /// Whether r26 has another value after it. Only the usual ways are known; where another
 /// is taken the answer is no, which costs nothing but bytes.
 pub const fn writes_r26(code: u16) -> bool {

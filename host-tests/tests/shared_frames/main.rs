@@ -5,6 +5,8 @@ use lizard_linker::frame::FIRST;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
+mod random_programs;
+
 /// A program that sorts, divides, mixes and recurs with many registers and large frames,
 /// while a timer interrupts it, and leaves what it found.
 const PROGRAM: &str = r#"
@@ -86,10 +88,14 @@ int main(void) {
 }
 "#;
 
+/// Where a variable is in RAM.
+fn address(image: &Image, name: &str) -> u16 {
+    (image.symbol(name).expect("it has one").address - 0x80_0000) as u16
+}
+
 /// The results of the program, and how deep its stack got.
 fn results(image: &Image) -> (Vec<u8>, u16) {
-    let address = |name| (image.symbol(name).expect("it has one").address - 0x80_0000) as u16;
-    let [done, results] = ["done", "results"].map(address);
+    let [done, results] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(200);
     assert_eq!(uno.peek(done), 1, "it came to its end, interrupted often");
@@ -116,6 +122,38 @@ fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
     assert!(plain.iter().any(|byte| *byte != 0));
     // Ten frames of `deep` lie on one another; each may hold a register more.
     assert!(deeper.abs_diff(deep) < 40, "{deep} {deeper}");
+}
+
+/// A function whose last argument lies on the stack, above the registers that it pushed, of
+/// which some are missing between the first and the last; it also has variables there.
+const STACK_ARGUMENT: &str = r#"
+#include <stdint.h>
+volatile uint8_t done, sum;
+volatile uint16_t result;
+uint8_t table[20];
+__attribute__((noinline, noclone)) uint16_t last(uint32_t a, uint32_t b, uint32_t c, uint32_t d,
+    uint16_t e, uint16_t on_the_stack) {
+    uint8_t room[20], all = 0, *p = room, *q = table;
+    for (uint8_t i = 0; i < 20; i++) room[i] = table[i] + (uint8_t)a;
+    asm volatile("" :: "m"(room));
+    for (uint8_t i = 0; i < 20; i++) all ^= *p++ + *q++;
+    sum = all + (uint8_t)(b ^ c ^ d ^ e);
+    return on_the_stack;
+}
+int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
+"#;
+
+#[test]
+fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
+    let image = c_by_way_of_an_object(STACK_ARGUMENT, |object| {
+        let short = shrink(&object).expect("it is an object");
+        (short.expect("of an AVR").0, ROUTINES)
+    });
+    let [done, result] = ["done", "result"].map(|name| address(&image, name));
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    uno.run_ms(10);
+    assert_eq!(uno.peek(done), 1);
+    assert_eq!([uno.peek(result), uno.peek(result + 1)], [0x34, 0x12]);
 }
 
 /// Registers that a function has to leave as they were.

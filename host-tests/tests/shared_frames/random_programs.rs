@@ -1,0 +1,190 @@
+//! Random C functions compute the same whether the linker rewrote them or not.
+//!
+//! Their arguments, up to 30 bytes, are more than fit into registers (18), their arrays lie on
+//! the stack, they call one another, and a timer interrupts them.
+
+use std::cell::Cell;
+use std::panic::catch_unwind;
+
+use fastrand::Rng;
+use lizard_host_tests::avr_gcc::c_by_way_of_an_object;
+use lizard_host_tests::times;
+use lizard_linker::{ROUTINES, shrink};
+use simulated_uno::{Fidelity, Image, Uno};
+
+use crate::address;
+
+/// Functions of one program: what 32 KB hold.
+const FUNCTIONS: usize = 40;
+
+/// A function calls another of its own group only, so that the stack has room.
+const GROUP: usize = 5;
+
+/// Programs at a desk. Five times as many have 10 000 functions.
+const PROGRAMS: u64 = 50;
+
+/// Types of arguments and the bytes that each takes of the 18 in registers.
+const TYPES: [(&str, usize); 5] = [
+    ("uint8_t", 2),
+    ("uint16_t", 2),
+    ("uint32_t", 4),
+    ("int16_t", 2),
+    ("int8_t", 2),
+];
+
+/// An expression of some variables.
+fn expression(random: &mut Rng, names: &[String], depth: u8) -> String {
+    if depth > 1 || random.u8(..4) == 0 {
+        return match random.usize(..=names.len()) {
+            index if index < names.len() => names[index].clone(),
+            _ => format!("{}u", random.u32(..70_000)),
+        };
+    }
+    let [a, b] = [0; 2].map(|_| expression(random, names, depth + 1));
+    match random.usize(..9) {
+        kind @ 0..5 => format!("({a} {} {b})", ["+", "-", "^", "&", "|"][kind]),
+        kind @ 5..7 => format!("({a} {} ({b} & 7))", ["<<", ">>"][kind - 5]),
+        7 => format!("((uint16_t){a} * (uint16_t){b})"),
+        _ => format!("({a} {} {b})", random.choice(["<", "==", "!="]).unwrap()),
+    }
+}
+
+/// A function of that number, which may call an earlier one; adds its types to `signatures`.
+fn function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
+    let number = signatures.len();
+    let (mut types, mut bytes) = (Vec::new(), 0);
+    for _ in 0..random.usize(5..11) {
+        let (name, size) = TYPES[random.usize(..TYPES.len())];
+        bytes += size;
+        if bytes <= 30 {
+            types.push(name);
+        }
+    }
+    let list = types.iter().enumerate();
+    let list: Vec<String> = list
+        .map(|(index, name)| format!("{name} p{index}"))
+        .collect();
+    let mut names: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
+    let arguments = names.clone();
+    let [room, limit] = [random.usize(3..30), random.usize(..60_000)];
+    let last = room - 1;
+    names.push("i".into());
+    let filled = expression(random, &names, 0);
+    names.push("sum".into());
+    let [asked, taken] = [0; 2].map(|_| expression(random, &names, 0));
+    names.retain(|name| name != "i");
+    let first = number / GROUP * GROUP;
+    let call = if number > first && random.u8(..5) > 0 {
+        let other = random.usize(first..number);
+        let values = signatures[other].iter();
+        let values = values.map(|name| format!("({name}){}", expression(random, &names, 1)));
+        let values: Vec<String> = values.collect();
+        format!("sum ^= f{other}({});", values.join(", "))
+    } else {
+        String::new()
+    };
+    let [odd, more] = [0; 2].map(|_| expression(random, &arguments, 0));
+    signatures.push(types);
+    format!(
+        "__attribute__((noinline, noclone)) uint16_t f{number}({list}) {{
+            volatile uint8_t room[{room}]; uint8_t copy[{room}];
+            uint16_t sum = 0; uint8_t flag = 0;
+            for (uint8_t i = 0; i < {room}; i++) {{
+                room[i] = {filled}; copy[i] = room[i] ^ table[i];
+            }}
+            asm volatile(\"\" :: \"m\"(copy));
+            for (uint8_t i = 0; i < {room}; i++) {{
+                sum = sum * 31 + copy[i] + room[{last} - i];
+                if ({asked}) flag = !flag;
+                if (flag && sum > {limit}u) sum -= {taken};
+            }}
+            {call}
+            if (!({odd} & 1)) sum += {more};
+            return sum ^ flag; }}\n",
+        list = list.join(", "),
+    )
+}
+
+/// A program that calls each of its functions twice and keeps what they return.
+fn program(random: &mut Rng) -> String {
+    let mut signatures = Vec::new();
+    let functions: String = (0..FUNCTIONS)
+        .map(|_| function(random, &mut signatures))
+        .collect();
+    let mut calls = String::new();
+    for call in 0..2 * FUNCTIONS {
+        let values = signatures[call / 2].iter();
+        let values: Vec<String> = values.map(|_| random.u16(..).to_string()).collect();
+        let values = values.join(", ");
+        calls += &format!("results[{call}] = f{}({values});\n", call / 2);
+    }
+    format!(
+        "#include <avr/io.h>
+        #include <avr/interrupt.h>
+        #include <stdint.h>
+        #pragma GCC optimize(\"{level}\")
+        volatile uint8_t table[32] = {{1, 2, 3, 9, 8, 7}}, done;
+        volatile uint16_t ticks, results[{count}];
+        ISR(TIMER0_COMPA_vect) {{ ticks++; }}
+        {functions}
+        int main(void) {{
+            OCR0A = 130; TCCR0A = 2; TCCR0B = 1; TIMSK0 = 2; sei();
+            {calls}
+            cli(); done = ticks > 20;
+            for (;;) {{}}
+        }}",
+        level = random.choice(["O1", "O2", "Os"]).unwrap(),
+        count = 2 * FUNCTIONS,
+    )
+}
+
+/// What the functions returned.
+fn results(image: &Image) -> Vec<[u8; 4]> {
+    let [done, results] = ["done", "results"].map(|name| address(image, name));
+    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    for _ in 0..200 {
+        uno.run_ms(5);
+        if uno.peek(done) == 1 {
+            break;
+        }
+    }
+    assert_eq!(uno.peek(done), 1, "it came to its end, interrupted often");
+    let of = |function| [0, 1, 2, 3].map(|byte| uno.peek(results + 4 * function + byte));
+    (0..FUNCTIONS as u16).map(of).collect()
+}
+
+#[test]
+fn random_functions_with_arguments_on_the_stack_compute_the_same() {
+    let rewritten = Cell::new(0);
+    let (mut tried, mut differ) = (0, Vec::new());
+    for seed in 0..times(PROGRAMS) {
+        let source = program(&mut Rng::with_seed(seed));
+        // avr-gcc fails on a few: no register is left, or a branch is too far.
+        let Ok(plain) = catch_unwind(|| c_by_way_of_an_object(&source, |object| (object, "")))
+        else {
+            continue;
+        };
+        let short = c_by_way_of_an_object(&source, |object| {
+            let (new, savings) = shrink(&object)
+                .expect("it is an object")
+                .expect("of an AVR");
+            rewritten.set(rewritten.get() + u64::from(savings.frames > 0));
+            (new, ROUTINES)
+        });
+        let both = results(&plain).into_iter().zip(results(&short));
+        for (number, (plain, short)) in both.enumerate() {
+            tried += 1;
+            if plain != short {
+                differ.push((seed, number));
+            }
+        }
+    }
+    assert!(
+        differ.is_empty(),
+        "{} of {tried} differ: {differ:?}",
+        differ.len()
+    );
+    let programs = tried / FUNCTIONS as u64;
+    assert!(programs >= times(PROGRAMS) * 9 / 10, "{programs} programs");
+    assert_eq!(rewritten.get(), programs, "each has some that are");
+}
