@@ -119,7 +119,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
   assert.equal(await slider.inputValue(), '35');
   await opened.getByRole('button', { name: 'reset' }).click();
   // Nobody has asked for a status yet.
-  await advance(opened, 1000);
+  await advance(opened, 2000);
   assert.equal(await slider.inputValue(), '100');
   assert.equal(await opened.locator('#speed-out').innerText(), '100 %');
   assert.match(await type(opened, 'status', 'ok gait=stand'), / speed=100( |$)/);
