@@ -62,7 +62,7 @@ const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
     ("Console", "answer", Skip),
-    ("Console", "banner", Skip),
+    ("Console", "greeted", Skip),
     ("Safety", "silence", Skip),
     ("Safety", "boot", Skip),
     // Any line shows that a program opened the port, which resets the board.

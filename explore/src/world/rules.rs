@@ -85,7 +85,15 @@ impl World {
     /// What the answer to an order promises.
     fn answer(&mut self, line: &str) -> Held {
         if line == "ok stand" {
+            // A late edge that main has yet to see, because its last frame still waits to be
+            // played, stops the robot after the order.
+            let untold = self.seen.stopped > 0 && !self.seen.is_told;
+            let is_late = untold && self.running.board.late > 0;
             self.seen.order();
+            if is_late {
+                self.seen.stop();
+                return Ok(());
+            }
             self.stands_after(line)
         } else if is_order(line, &self.robot()) {
             self.seen.order();
