@@ -282,9 +282,11 @@ impl World {
             return self.stall(20);
         }
         let was_on = self.seen.is_on;
+        // `stand` and `stop` within a frame leave it held, for a reason that is told.
+        let was_held = self.running.motion().hazard().is_some();
         self.running.frame();
         self.pulses(was_on, true)?;
-        if self.running.motion().hazard().is_some() {
+        if !was_held && self.running.motion().hazard().is_some() {
             self.seen.stop();
         }
         self.listen()?;
