@@ -157,13 +157,16 @@ impl World {
         Ok(())
     }
 
-    /// Whether the robot rests, and where it does is in the memory.
+    /// True if the robot was told to rest, does, and where it does is in the memory. A hang
+    /// before the first frame is left out: it forgets the rest of the time before power-on.
     pub(super) fn rest_is_kept(&self) -> bool {
         let memory = &self.running.board.memory;
         let motion = self.running.motion();
         // A memory that is busy cannot be read; its bytes can.
         let readable = Eeprom::with(*memory.bytes());
-        motion.is_resting() && record::rested(motion.robot(), &readable) == Some(*motion.pose())
+        self.seen.rests
+            && motion.is_resting()
+            && record::rested(motion.robot(), &readable) == Some(*motion.pose())
     }
 
     fn has_pulses_after(&self, line: &str) -> Held {
