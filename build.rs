@@ -23,10 +23,13 @@ fn main() {
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out = PathBuf::from(out);
     write(&out.join("robot.bin"), &robot.section());
-    // Where the section is in flash, as lizard_core::section::START has it.
-    println!("cargo::rustc-link-arg-bins=-Wl,--section-start=.robot={START:#x}");
-    // No instruction names it or the mark of the code, so they would be left out.
-    for name in ["ROBOT", "MARK"] {
+    // Where everything is in flash; the section is where lizard_core::section::START says.
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
+    println!("cargo::rerun-if-changed={}", script.display());
+    println!("cargo::rustc-link-arg-bins=-Wl,-T,{}", script.display());
+    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START:#x}");
+    // No instruction names it, the mark of the code, or what simavr reads.
+    for name in ["ROBOT", "MARK", "SIMAVR"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }
     // OUT_DIR is build/<package>/out in the folder that the firmware goes to.

@@ -11,6 +11,7 @@ use panic_halt as _;
 mod board;
 mod mark;
 mod robot;
+mod simavr;
 
 use board::{Uno, sleep};
 

@@ -1,0 +1,39 @@
+//! What stock simavr asks of an ELF file: chip, clock and voltages. It is in no flash; without
+//! it simavr takes the supply for 3.3 V, at which the firmware does not move.
+
+/// A tag of simavr's `avr_mcu_section.h` with a number of 32 bits.
+const fn number(tag: u8, value: u32) -> [u8; 6] {
+    let [a, b, c, d] = value.to_le_bytes();
+    [tag, 4, a, b, c, d]
+}
+
+/// Bytes of the chip's name, with its end.
+const NAME: usize = 64;
+
+#[repr(C)]
+struct Simavr {
+    name: [u8; 2 + NAME],
+    numbers: [[u8; 6]; 4],
+    end: [u8; 2],
+}
+
+/// Tags 1 to 5: name, clock in Hz, VCC, AVCC and AREF in mV; 0 ends them.
+#[used]
+#[unsafe(no_mangle)]
+#[unsafe(link_section = ".mmcu")]
+static SIMAVR: Simavr = Simavr {
+    name: {
+        let mut name = [0; 2 + NAME];
+        let (head, text) = name.split_at_mut(2);
+        head.copy_from_slice(&[1, NAME as u8]);
+        text.split_at_mut(10).0.copy_from_slice(b"atmega328p");
+        name
+    },
+    numbers: [
+        number(2, 16_000_000),
+        number(3, 5000),
+        number(4, 5000),
+        number(5, 5000),
+    ],
+    end: [0; 2],
+};
