@@ -173,7 +173,7 @@ impl Figures {
         let section = robot.section().len() as u32;
         let width_error = idle_exact.worst().zip(flooded_exact.worst());
         Ok(Self {
-            code: long.board.uno.image().flash_used() - section,
+            code: firmware::code_bytes(long.board.uno.image(), robot),
             section,
             has_maps: robot.has_room_for_maps(),
             static_ram: long.board.uno.image().static_ram(),

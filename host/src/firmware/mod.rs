@@ -18,7 +18,7 @@ use lizard_core::section::{Region, START};
 pub use simulated::{Firmware, Unreadable, inside, read, with_robot};
 
 #[cfg(feature = "simulator")]
-pub(crate) use simulated::of_robot;
+pub(crate) use simulated::{code_bytes, of_robot};
 
 #[cfg(feature = "simulator")]
 mod simulated;

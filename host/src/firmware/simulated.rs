@@ -105,6 +105,13 @@ pub(crate) fn of_robot(
     Ok(Firmware { name, image })
 }
 
+/// Bytes of code in an image with this robot, without the erased flash up to the section.
+pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
+    let end = image.symbol("__code_end").map(|end| end.address as u32);
+    // A HEX file of another program that writes them has a gap there.
+    end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
+}
+
 /// The code inside this program with this robot behind it.
 ///
 /// # Panics

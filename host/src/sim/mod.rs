@@ -155,7 +155,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         way: analysis::way(frames, &spans),
         most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
-        flash: uno.image().flash_used(),
+        flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
         ram: Ram::of(&uno),
         overruns: uno.overruns(),
         resets: uno.resets(),
