@@ -16,6 +16,12 @@
 //!
 //! An end is the same in reverse, then `ret`.
 //!
+//! The routines also change r26, r0 and the flags. By the calling convention of avr-gcc and LLVM a
+//! caller expects nothing of these after a call and hands over nothing in them: arguments are in
+//! r8 to r25 and on the stack, results in r18 to r25. LLVM's `-enable-ipra` lets a caller rely on
+//! what its callee happens to leave alone, so it must never be combined with this program, which
+//! cannot see it. A test reads the flags in .cargo/config.toml.
+//!
 //! There are routines for a few lists of registers only. Where a function pushes just one of
 //! these lists, the stack is laid out as before at each point of its body. Else the routine
 //! pushes more registers, so that what the caller put on the stack, the arguments that fit

@@ -9,24 +9,17 @@
 //! section of its own, and because the linker may shorten calls (`--relax`), each jump
 //! and address is a relocation, so no distance in them is final. This program reads the
 //! object, replaces beginnings and ends by calls of the routines of `frames.S`
-//! ([`frame`]), replaces jumps over jumps by the opposite branch ([`branch`]), leaves out
-//! comparisons whose result is known ([`compare`]), turns a truth value that is tested at
-//! once into a branch ([`truth`]), writes only the bytes that are not zero of variables
-//! that are nearly zero ([`sparse`]), puts functions near their callers ([`order`]), and
-//! hands the result to avr-gcc. A function that differs in any way from the shapes known
+//! ([`frame`]), replaces jumps over jumps by the opposite branch ([`branch`]), puts functions
+//! near their callers ([`order`]), and hands the result to avr-gcc. A function that differs in any way from the shapes known
 //! to be safe stays as it is.
 
 pub mod branch;
 mod code;
-pub mod compare;
 mod edit;
-mod flow;
 pub mod frame;
 mod instruction;
 mod object;
 pub mod order;
-pub mod sparse;
-pub mod truth;
 
 pub use object::{Savings, ShrinkError, shrink};
 

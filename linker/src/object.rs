@@ -5,11 +5,10 @@ use std::fmt;
 use object::build::elf::{Builder, Relocation, Section, SectionData, SectionId, SymbolId};
 use object::elf;
 
+use crate::branch;
 use crate::code::Code;
 use crate::edit::{Edit, Edits, Reference};
 use crate::frame::{FIRST, Frame, Routines};
-use crate::instruction::{is_call, writes_flags, writes_r26};
-use crate::{branch, compare, sparse, truth};
 
 mod layout;
 
@@ -38,12 +37,6 @@ pub struct Savings {
     pub frames: i64,
     /// By opposite branches.
     pub branches: i64,
-    /// By comparisons left out.
-    pub comparisons: i64,
-    /// By truth values that are branches.
-    pub truths: i64,
-    /// By variables of which only what is not zero is in flash.
-    pub data: i64,
     /// By functions near those that call them, as far as it can be told before linking.
     pub calls: i64,
 }
@@ -70,16 +63,7 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
             savings.branches += edits.gain();
             object.apply(section, &edits);
         }
-        while let Some(edits) = object.next(section, compare::edit) {
-            savings.comparisons += edits.gain();
-            object.apply(section, &edits);
-        }
-        while let Some(edits) = object.next(section, truth::edit) {
-            savings.truths += edits.gain();
-            object.apply(section, &edits);
-        }
     }
-    savings.data = object.sparse();
     savings.calls = object.order();
     let mut new = Vec::new();
     object.0.write(&mut new)?;
@@ -202,53 +186,15 @@ impl Object<'_> {
         targets
     }
 
-    /// The functions that certainly change r26 and the flags: what their callers know
-    /// (`-enable-ipra`), so that the routines may, too.
-    fn changing(&self, codes: &[(SectionId, Code)]) -> Vec<SectionId> {
-        let has =
-            |code: &Code, what: fn(u16) -> bool| code.instructions.iter().any(|at| what(at.code));
-        let mut changing = Vec::new();
-        loop {
-            let calls_one = |code: &Code| {
-                code.instructions.iter().any(|at| {
-                    let called = is_call(at.code)
-                        .then(|| code.reference(at.offset))
-                        .flatten();
-                    let section =
-                        called.and_then(|called| self.0.symbols.get(called.symbol).section);
-                    section.is_some_and(|section| changing.contains(&section))
-                })
-            };
-            let changes =
-                |code: &Code| has(code, writes_r26) && has(code, writes_flags) || calls_one(code);
-            let more = codes
-                .iter()
-                .filter(|(section, code)| !changing.contains(section) && changes(code));
-            let more: Vec<SectionId> = more.map(|(section, _)| *section).collect();
-            if more.is_empty() {
-                return changing;
-            }
-            changing.extend(more);
-        }
-    }
-
     /// What shared beginnings and ends do to each function that gets shorter by them.
     fn frames(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
-        let codes = self.functions().into_iter();
-        let codes: Vec<_> = codes
-            .filter_map(|section| Some((section, self.code(section)?)))
-            .collect();
-        let changing = self.changing(&codes);
-        let edits = |(section, code): &(SectionId, Code)| {
-            let frame = changing
-                .contains(section)
-                .then(|| Frame::of(code))
-                .flatten()?;
+        let edits = |section| {
+            let frame = Frame::of(&self.code(section)?)?;
             let edits = frame.edits(routines[frame.first]);
-            let edits = Edits::new(edits, &self.targets(*section))?;
-            (edits.gain() > 0).then_some((*section, edits))
+            let edits = Edits::new(edits, &self.targets(section))?;
+            (edits.gain() > 0).then_some((section, edits))
         };
-        codes.iter().filter_map(edits).collect()
+        self.functions().into_iter().filter_map(edits).collect()
     }
 
     /// The next of some edits of a section.
@@ -311,92 +257,6 @@ impl Object<'_> {
         let code = self.0.sections.get_mut(section);
         code.sh_size = bytes.len() as u64;
         code.data = SectionData::Data(bytes.into());
-    }
-
-    /// Clears each variable that is zero but for a few bytes, and writes those. One that holds
-    /// an address, which only the linker knows, stays as it is.
-    fn sparse(&mut self) -> i64 {
-        let is_data = |section: &&Section| {
-            let flags = elf::SHF_ALLOC | elf::SHF_WRITE;
-            section.name.starts_with(b".data.")
-                && section.sh_type == elf::SHT_PROGBITS
-                && section.sh_flags == flags
-                && self.references(section.id()).is_empty()
-        };
-        let all: Vec<SectionId> = self
-            .0
-            .sections
-            .iter()
-            .filter(is_data)
-            .map(Section::id)
-            .collect();
-        let mut saved = 0;
-        for section in all {
-            let bytes = self.bytes(section);
-            let mut symbols = self.0.symbols.iter();
-            let symbol = symbols.find(|symbol| symbol.section == Some(section));
-            let variable = symbol.map(|symbol| (symbol.id(), -(symbol.st_value as i64)));
-            let (Some(variable), Some(table)) = (variable, sparse::table(&bytes)) else {
-                continue;
-            };
-            let name = self.0.sections.get(section).name.to_vec();
-            let name = name.strip_prefix(b".data").unwrap_or(&name);
-            let size = table.len();
-            let place = self.add(&[b".progmem.data", name].concat(), elf::SHF_ALLOC, table);
-            let label = self.0.symbols.add();
-            label.name = [b"__not_zero", name].concat().into();
-            label.set_st_info(elf::STB_LOCAL, elf::STT_OBJECT);
-            label.st_size = size as u64;
-            label.section = Some(place);
-            let label = label.id();
-            let (code, references) = sparse::code(variable, (label, size));
-            let code: Vec<u8> = code.iter().flat_map(|word| word.to_le_bytes()).collect();
-            saved += bytes.len() as i64 - size as i64 - code.len() as i64;
-            let startup = self.add(b".init5", elf::SHF_ALLOC | elf::SHF_EXECINSTR, code);
-            self.refer(startup, &references);
-            let cleared = self.0.sections.get_mut(section);
-            cleared.name = [b".bss", name].concat().into();
-            cleared.sh_type = elf::SHT_NOBITS;
-            cleared.data = SectionData::UninitializedData(bytes.len() as u64);
-            self.need(b"__do_clear_bss");
-        }
-        saved
-    }
-
-    /// A new section of the program.
-    fn add(&mut self, name: &[u8], flags: elf::SectionFlags, bytes: Vec<u8>) -> SectionId {
-        let section = self.0.sections.add();
-        section.name = name.to_vec().into();
-        section.sh_type = elf::SHT_PROGBITS;
-        section.sh_flags = flags;
-        section.sh_addralign = 1;
-        section.sh_size = bytes.len() as u64;
-        section.data = SectionData::Data(bytes.into());
-        section.id()
-    }
-
-    /// Says what the bytes of a new section refer to.
-    fn refer(&mut self, section: SectionId, references: &[Reference]) {
-        let is_table = |table: &&Section| matches!(table.data, SectionData::Symbol);
-        let symbols = self.0.sections.iter().find(is_table).map(Section::id);
-        let table = self.0.sections.add();
-        table.name = ".rela.init5".into();
-        table.sh_type = elf::SHT_RELA;
-        table.sh_flags = elf::SHF_INFO_LINK;
-        table.sh_addralign = 4;
-        table.sh_entsize = 12;
-        table.sh_link_section = symbols;
-        table.sh_info_section = Some(section);
-        table.data = SectionData::Relocation(references.iter().map(relocation).collect());
-    }
-
-    /// Has a library's routine linked.
-    fn need(&mut self, name: &[u8]) {
-        if !self.0.symbols.iter().any(|symbol| *symbol.name == *name) {
-            let symbol = self.0.symbols.add();
-            symbol.name = name.to_vec().into();
-            symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
-        }
     }
 }
 
