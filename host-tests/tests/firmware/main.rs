@@ -41,6 +41,7 @@ mod pulses;
 mod same_pulses;
 mod serial;
 mod slow_main;
+mod stock_simavr;
 mod stopping;
 mod supply;
 mod ten_minutes;

@@ -1,0 +1,191 @@
+//! Debian's own `simavr` runs the ELF file and the HEX file as they are: both start, and the
+//! robot that was told to walk after power-on walks.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use lizard_core::units::CYCLES_PER_US;
+use lizard_core::virtual_board::Running;
+use lizard_host_tests::{FirmwareBench, robot};
+
+/// simavr sleeps as long as the chip does, so this is also the robot's time: power-on,
+/// three seconds until `boot`, a second to wake, and two cycles of a gait.
+const RUN: Duration = Duration::from_secs(8);
+
+/// The gait that the robot walks: its first behind `stand`.
+fn gait() -> String {
+    robot().gaits()[1].name().replace('-', " ")
+}
+
+/// What an EEPROM holds after `boot` and `save`, as a HEX file.
+fn eeprom(folder: &Path) {
+    let mut running = Running::power_on(*robot().firmware());
+    running.run(50);
+    let boot = format!("boot {}", gait());
+    assert_eq!(running.say(&boot), format!("ok {boot}"));
+    running.board.send(b"save\r");
+    running.run(200);
+    let said = running.lines().join("\n");
+    assert!(said.is_empty() || said.contains("ok save"), "{said}");
+    let bytes = *running.board.memory.bytes();
+    assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
+    fs::write(folder.join("eeprom.bin"), bytes).expect("a folder");
+    objcopy(
+        &["-I", "binary", "-O", "ihex", "eeprom.bin", "eeprom.hex"],
+        folder,
+    );
+}
+
+fn objcopy(arguments: &[&str], folder: &Path) {
+    let done = Command::new("avr-objcopy")
+        .args(arguments)
+        .current_dir(folder)
+        .status();
+    assert!(done.expect("avr-objcopy").success(), "{arguments:?}");
+}
+
+/// What simavr prints in [`RUN`], ended by SIGTERM so that it closes its files.
+fn simavr(arguments: &[&str], folder: &Path) -> String {
+    let child = Command::new("simavr")
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("simavr, which scripts/setup installs");
+    sleep(RUN);
+    let pid = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
+    let output = child.wait_with_output().expect("it ends");
+    // The serial line is on one of the two, by version.
+    let all = [output.stdout, output.stderr].concat();
+    String::from_utf8_lossy(&all).into_owned()
+}
+
+/// Tags of simavr's `avr_mcu_section.h`: a file of traces, and a pin to be traced.
+fn traces(pins: [u8; 4]) -> Vec<u8> {
+    let mut name = vec![12, 64];
+    name.extend(b"pins.vcd");
+    name.resize(2 + 64, 0);
+    let mut tags = name;
+    for (servo, pin) in pins.into_iter().enumerate() {
+        let (port, bit) = match pin {
+            0..8 => (b'D', pin),
+            8..14 => (b'B', pin - 8),
+            _ => (b'C', pin - 14),
+        };
+        let mut tag = vec![15, 35, port, bit, 0];
+        tag.extend(format!("A{}", servo + 1).bytes());
+        tag.resize(2 + 35, 0);
+        tags.extend(tag);
+    }
+    tags
+}
+
+/// Widths of each servo's pulses in us, from a file of traces in ns.
+fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
+    let (mut names, mut rises, mut now) = (HashMap::new(), HashMap::new(), 0.0);
+    let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
+    for line in vcd.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let ["$var", _, _, sign, name, ..] = words[..] {
+            names.insert(sign.to_owned(), name.to_owned());
+        } else if let Some(time) = line.strip_prefix('#') {
+            now = time.trim().parse::<f64>().expect("a time") / 1000.0;
+        } else if let Some(sign) = line.strip_prefix('1') {
+            rises.insert(sign.trim().to_owned(), now);
+        } else if let Some(sign) = line.strip_prefix('0')
+            && let Some(rise) = rises.remove(sign.trim())
+        {
+            let name = names.get(sign.trim()).expect("a signal").clone();
+            widths.entry(name).or_default().push(now - rise);
+        }
+    }
+    widths
+}
+
+#[test]
+fn the_elf_file_walks_in_debians_simavr() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    eeprom(folder);
+    fs::copy(FirmwareBench::elf(), folder.join("lizard.elf")).expect("the firmware");
+    // The same file with four pins to be traced in addition to what it asks for.
+    objcopy(
+        &[
+            "-O",
+            "binary",
+            "-j",
+            ".mmcu",
+            "--set-section-flags",
+            ".mmcu=alloc",
+            "lizard.elf",
+            "mmcu.bin",
+        ],
+        folder,
+    );
+    let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("what simavr reads");
+    let end = mmcu.len() - 2;
+    mmcu.splice(end..end, traces(robot().firmware().pins()));
+    fs::write(folder.join("mmcu.bin"), mmcu).expect("a folder");
+    objcopy(
+        &[
+            "--update-section",
+            ".mmcu=mmcu.bin",
+            "lizard.elf",
+            "traced.elf",
+        ],
+        folder,
+    );
+    let said = simavr(&["-m", "atmega328p", "-f", "16000000", "-ee", "eeprom.hex", "traced.elf"], folder);
+    assert!(said.contains(&format!("# boot: {}", gait())), "{said}");
+    assert!(
+        !said.contains("fault") && !said.contains("supply"),
+        "{said}"
+    );
+    let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
+    let widths = widths(&vcd);
+    for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
+        let all = &widths[&format!("A{}", servo + 1)];
+        let [least, most] =
+            [f64::min, f64::max].map(|pick| all.iter().copied().reduce(pick).expect("pulses"));
+        assert!(all.len() > 200, "{} pulses", all.len());
+        assert!(
+            most - least > 50.0,
+            "A{} turns: {least} to {most} us",
+            servo + 1
+        );
+        let ends = [calibration.min, calibration.max]
+            .map(|end| f64::from(calibration.pulse(end)) / f64::from(CYCLES_PER_US));
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        assert!(
+            low - 0.1 <= least && most <= high + 0.1,
+            "A{}: {least} to {most} us",
+            servo + 1
+        );
+    }
+}
+
+/// A HEX file cannot tell simavr the voltage, and it takes 3.3 V: too little for servos, which
+/// the firmware says.
+#[test]
+fn the_hex_files_start_with_their_robot_in_debians_simavr_and_say_that_it_has_too_little_voltage() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let elf = FirmwareBench::elf();
+    fs::copy(elf.with_extension("hex"), folder.join("made.hex")).expect("the firmware");
+    let image = lizard_host::firmware::with_robot(&elf, robot()).expect("the firmware");
+    let image = lizard_host::flash::image::Image::new(image.flash()).expect("an image");
+    fs::write(folder.join("image.hex"), image.to_hex()).expect("a folder");
+    for file in ["made.hex", "image.hex"] {
+        let said = simavr(&["-m", "atmega328p", "-f", "16000000", file], folder);
+        let name = lizard_host::firmware::named(robot().firmware());
+        assert!(said.contains(&format!("robot {name},")), "{file}: {said}");
+        assert!(said.contains("3.30 V"), "{file}: {said}");
+    }
+}
