@@ -36,12 +36,12 @@ pub struct Name<'a> {
 }
 
 impl<'a> Name<'a> {
-    /// The name of a gait among the names of its robot.
-    pub fn of(gait: &Gait, names: Flash<'a, [u8]>) -> Self {
+    /// The name that begins at `start` among the names of a robot's gaits.
+    pub fn of(start: u16, length: u16, names: Flash<'a, [u8]>) -> Self {
         Self {
             names,
-            at: gait.name_start,
-            left: gait.name_length.min(LONGEST_NAME as u16) as u8,
+            at: start,
+            left: length.min(LONGEST_NAME as u16) as u8,
         }
     }
 
