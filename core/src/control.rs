@@ -16,7 +16,7 @@ use crate::order::{Order, Taken};
 use crate::pose::{Pose, Pulses};
 use crate::record::{self, Outcome, RESTED};
 use crate::refusal::Refusal;
-use crate::restart::{Cause, Restart};
+use crate::restart::{Cause, Restart, Stance};
 use crate::robot::Robot;
 use crate::safety::{Health, Notice, Reaction, Safety};
 use crate::section::Damage;
@@ -127,15 +127,19 @@ impl Control {
             (Beginning::Hold, Some(stance)) => self.motion.resume(stance, false),
             _ => false,
         };
-        if !began {
-            self.motion.resume_rest(stance);
+        if began {
+            self.rested = Some(RESTED.forget());
+            return;
         }
-        self.rested = if !began && before != Before::Nothing {
-            // Where it rests is known, and may not have reached the memory.
-            (rested.as_ref() != Some(self.motion.pose())).then(|| RESTED.write())
-        } else {
-            Some(RESTED.forget())
-        };
+        // A program that hung before its first frame has moved nothing since the rest.
+        let at_rest = rested.map(|pose| Stance {
+            pose,
+            ..Stance::RESTING
+        });
+        self.motion.resume_rest(stance.or(at_rest.as_ref()));
+        // The pose may not have reached the memory yet.
+        let kept = before == Before::Nothing || rested.as_ref() == Some(self.motion.pose());
+        self.rested = (!kept).then(|| RESTED.write());
     }
 
     /// The robot's motion.

@@ -41,7 +41,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
         let rise = |n: u64| begin + 3 * n * FRAME + SLOT;
         let mut written = 150_000;
         for n in 1..6 {
-            written = second_part(&mut walk, rise(n) - 2_800 - written);
+            written = last_part(&mut walk, rise(n) - 2_800 - written);
         }
         // It stops anywhere around there, and meanwhile A2's rise is late.
         for n in 0..500 {
@@ -87,13 +87,13 @@ fn ask_at(walk: &mut Walk, comes: u64) {
     walk.bench.uno.send(b"\n");
 }
 
-/// Cycles from the last byte of `status`, which comes at cycle `comes`, to the second part
+/// Cycles from the last byte of `status`, which comes at cycle `comes`, to the last part
 /// of its answer, the one with the counts.
-fn second_part(walk: &mut Walk, comes: u64) -> u64 {
+fn last_part(walk: &mut Walk, comes: u64) -> u64 {
     ask_at(walk, comes);
     let parts = walk.bench.time_calls("print::answer", 30);
-    assert_eq!(parts.len(), 2, "{parts:?}");
-    parts[1].enter - comes
+    assert_eq!(parts.len(), 3, "{parts:?}");
+    parts[2].enter - comes
 }
 
 #[test]

@@ -64,16 +64,6 @@ fn put(section: &mut [u8], offset: usize, word: u16) {
     section[at..at + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// The place of a part.
-fn place(section: &[u8], part: Part) -> Place {
-    let at = size_of::<Header>() + offset_of!(Numbers, parts) + part as usize * size_of::<Place>();
-    let word = |at: usize| u16::from_le_bytes([section[at], section[at + 1]]);
-    Place {
-        at: word(at),
-        count: word(at + 2),
-    }
-}
-
 /// Nothing, a part, a section for another version.
 fn missing() -> Vec<Damage> {
     let mut all = vec![
@@ -100,7 +90,7 @@ fn missing() -> Vec<Damage> {
         let what = format!("cut at byte {end}");
         all.push(changed(what, said, |section| section.truncate(end)));
     }
-    for format in [0u16, 2, 0xffff] {
+    for format in [0u16, lizard_core::section::FORMAT - 1, lizard_core::section::FORMAT + 1, 0xffff] {
         all.push(changed(format!("version {format}"), FORMAT, |section| {
             section[4..6].copy_from_slice(&format.to_le_bytes());
         }));
@@ -141,7 +131,6 @@ fn flipped() -> Vec<Damage> {
 
 /// What somebody may write who has the checksum right and nothing else.
 fn wrong() -> Vec<Damage> {
-    let part = |part: Part| offset_of!(Numbers, parts) + part as usize * size_of::<Place>();
     vec![
         impossible("a servo on the serial line", |section| {
             section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
@@ -152,31 +141,6 @@ fn wrong() -> Vec<Damage> {
         }),
         impossible("a rail on a pin that measures nothing", |section| {
             put(section, offset_of!(Numbers, rail), 20);
-        }),
-        impossible("no gait", |section| put(section, part(Part::Gaits) + 2, 0)),
-        impossible("more gaits than there is flash", |section| {
-            put(section, part(Part::Gaits) + 2, 0xffff);
-        }),
-        impossible("waveforms behind the end", |section| {
-            put(section, part(Part::Waves), 0xfff0);
-        }),
-        impossible("a curve behind the end", |section| {
-            put(section, offset_of!(Numbers, curves), SPACE);
-        }),
-        impossible("maps of more rows than there are", |section| {
-            put(section, part(Part::Rows) + 2, 1);
-        }),
-        impossible("a name behind the names", |section| {
-            let gait = usize::from(place(section, Part::Gaits).at);
-            section[gait + 28..gait + 30].fill(0xff);
-        }),
-        impossible("a waveform that there is not", |section| {
-            let gait = usize::from(place(section, Part::Gaits).at);
-            section[gait + 4..gait + 6].fill(0xff);
-        }),
-        impossible("a stand that moves", |section| {
-            let gait = usize::from(place(section, Part::Gaits).at);
-            section[gait + 8] = 1;
         }),
         impossible("a neutral pulse that no servo bears", |section| {
             put(section, offset_of!(Numbers, calibration), 60_000);

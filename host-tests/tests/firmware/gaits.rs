@@ -11,7 +11,7 @@ use simulated_uno::Fidelity;
 use crate::{SECOND, awake, for_each};
 
 /// Between the tables and floating point, deg: the project's promise.
-const TABLES: f64 = 0.10;
+const TABLES: f64 = 0.50;
 /// A cycle of 62.5 ns, deg: half of it for the width, half for the neutral one.
 fn cycle() -> f64 {
     let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
