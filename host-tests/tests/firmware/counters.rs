@@ -35,13 +35,13 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
         walk.bench.run_ms(20_000);
         let begin = walk.next_frame();
         let mut seen = [0, 0];
-        // Main reads the count shortly before it writes the answer's second part, for which
-        // it waits until most of the first is sent. Ticks and edges that come meanwhile take
+        // Main reads the count shortly before it writes the answer's last part, for which it
+        // waits until most of those before are sent. Ticks and edges that come meanwhile take
         // time, so that is measured at the place where it will be.
         let rise = |n: u64| begin + 3 * n * FRAME + SLOT;
         let mut written = 150_000;
         for n in 1..6 {
-            written = last_part(&mut walk, rise(n) - 2_800 - written);
+            written = last_part(&mut walk, rise(n) - 2_800 - written); eprintln!("{fidelity:?} {written}");
         }
         // It stops anywhere around there, and meanwhile A2's rise is late.
         for n in 0..500 {
@@ -52,7 +52,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             walk.bench.uno.poke(late + 1, 0);
             let said = walk.bench.lines().len();
             ask_at(&mut walk, rise - 2_800 - written);
-            walk.run_to(rise - 3_300 + 2 * n);
+            walk.run_to(rise - 5_600 + 10 * n);
             let now = walk.bench.uno.cycle();
             walk.bench.uno.stall_main(rise + 1_000 - now);
             walk.run_to(rise - 600);

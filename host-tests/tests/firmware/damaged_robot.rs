@@ -90,7 +90,12 @@ fn missing() -> Vec<Damage> {
         let what = format!("cut at byte {end}");
         all.push(changed(what, said, |section| section.truncate(end)));
     }
-    for format in [0u16, lizard_core::section::FORMAT - 1, lizard_core::section::FORMAT + 1, 0xffff] {
+    for format in [
+        0u16,
+        lizard_core::section::FORMAT - 1,
+        lizard_core::section::FORMAT + 1,
+        0xffff,
+    ] {
         all.push(changed(format!("version {format}"), FORMAT, |section| {
             section[4..6].copy_from_slice(&format.to_le_bytes());
         }));

@@ -35,7 +35,16 @@ fn eeprom(folder: &Path) {
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
     fs::write(folder.join("eeprom.bin"), bytes).expect("a folder");
     objcopy(
-        &["-I", "binary", "-O", "ihex", "eeprom.bin", "eeprom.hex"],
+        &[
+            "-I",
+            "binary",
+            "-O",
+            "ihex",
+            "--change-addresses",
+            "0x810000",
+            "eeprom.bin",
+            "eeprom.hex",
+        ],
         folder,
     );
 }
@@ -87,7 +96,7 @@ fn traces(pins: [u8; 4]) -> Vec<u8> {
     tags
 }
 
-/// Widths of each servo's pulses in us, from a file of traces in ns.
+/// Widths of each servo's pulses in us, from a file of traces in steps of 10 ns.
 fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
     let (mut names, mut rises, mut now) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
@@ -96,7 +105,7 @@ fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
         if let ["$var", _, _, sign, name, ..] = words[..] {
             names.insert(sign.to_owned(), name.to_owned());
         } else if let Some(time) = line.strip_prefix('#') {
-            now = time.trim().parse::<f64>().expect("a time") / 1000.0;
+            now = time.trim().parse::<f64>().expect("a time") / 100.0;
         } else if let Some(sign) = line.strip_prefix('1') {
             rises.insert(sign.trim().to_owned(), now);
         } else if let Some(sign) = line.strip_prefix('0')
@@ -142,13 +151,25 @@ fn the_elf_file_walks_in_debians_simavr() {
         ],
         folder,
     );
-    let said = simavr(&["-m", "atmega328p", "-f", "16000000", "-ee", "eeprom.hex", "traced.elf"], folder);
+    let said = simavr(
+        &[
+            "-m",
+            "atmega328p",
+            "-f",
+            "16000000",
+            "traced.elf",
+            "-ee",
+            "eeprom.hex",
+        ],
+        folder,
+    );
     assert!(said.contains(&format!("# boot: {}", gait())), "{said}");
     assert!(
         !said.contains("fault") && !said.contains("supply"),
         "{said}"
     );
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
+    assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
     let widths = widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let all = &widths[&format!("A{}", servo + 1)];
