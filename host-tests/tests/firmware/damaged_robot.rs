@@ -5,7 +5,7 @@
 use std::mem::offset_of;
 use std::ops::Range;
 
-use lizard_core::section::{Header, Numbers, Part, Place, SPACE, START, seal};
+use lizard_core::section::{Header, Numbers, SPACE, START, seal};
 use lizard_core::word::Word;
 use lizard_host::board::SimulatedBoard;
 use lizard_host::firmware::with_robot;
