@@ -8,6 +8,7 @@ use crate::refusal::Refusal;
 
 /// The next line of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Answer {
     /// `ok` and the line as it was understood.

@@ -179,7 +179,7 @@ impl Console {
             Some(Output::Held) => {
                 if let Some(hazard) = control.take_held() {
                     Text::Held.print(out)?;
-                    refusal::print_hazard(hazard, control.motion().robot(), out)?;
+                    refusal::print_hazard(hazard, control.motion(), out)?;
                 }
             }
             Some(Output::Report) => {

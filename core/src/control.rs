@@ -366,7 +366,7 @@ impl Control {
 
     fn go_to(&mut self, pose: &Pose) -> Result<(), Refusal> {
         if let Some(servo) = pose.beyond(self.motion.calibration()) {
-            return Err(Refusal::Travel(servo));
+            return Err(Refusal::Unsafe(Hazard::Travel(servo)));
         }
         self.may(Event::Move)?;
         self.motion.go_to(pose).map_err(Refusal::Unsafe)?;

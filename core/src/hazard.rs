@@ -5,10 +5,11 @@ use crate::units::Sine;
 
 /// A margin of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 3 on, since no hazard at all has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Margin {
     /// Between the two couplers of an end.
-    Type2(End) = 2,
+    Type2(End) = 3,
     /// Between the crank on a servo and its coupler, negative where the elbow is
     /// bent inwards.
     Type1(Servo),
@@ -28,6 +29,8 @@ impl Margin {
 /// The first condition that a pose breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hazard {
+    /// This servo does not turn so far.
+    Travel(Servo),
     /// A margin is below its limit.
     Margin {
         /// Which one.

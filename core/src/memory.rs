@@ -68,6 +68,7 @@ pub enum Progress {
 
 /// The byte of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 enum Byte {
     /// To be written, if the memory does not have it yet.

@@ -234,7 +234,7 @@ impl Motion {
     }
 
     fn may_hold(&self, pose: &Pose) -> bool {
-        pose.beyond(&self.calibration).is_none() && self.hazard_of(pose).is_none()
+        self.hazard_of(pose).is_none()
     }
 
     /// Begins a gait, by way of its first pose. The gait that is already under
@@ -380,7 +380,10 @@ impl Motion {
 
     /// What is wrong with a pose.
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
-        guard::hazard(&self.robot, pose)
+        match pose.beyond(&self.calibration) {
+            Some(servo) => Some(Hazard::Travel(servo)),
+            None => guard::hazard(&self.robot, pose),
+        }
     }
 
     fn head_for(&mut self, target: Target) {
@@ -434,8 +437,7 @@ impl Motion {
             }
         };
         let hazard = self.hazard_of(&pose);
-        // A gait is within the travel, if its section says the truth of what it reaches.
-        if hazard.is_some() || pose.beyond(&self.calibration).is_some() {
+        if hazard.is_some() {
             self.freeze(State::Holding { asked: false });
             self.hazard = hazard;
             return;

@@ -20,9 +20,7 @@ use crate::text::Text;
 pub enum Refusal {
     /// Codes 1, 2, 3: not a command.
     Misread(Misread),
-    /// Code 3: the travel of this servo does not reach its angle.
-    Travel(Servo),
-    /// Codes 4 and 5: the pose is not safe.
+    /// Codes 3, 4 and 5: a servo does not reach the pose, or it is not safe.
     Unsafe(Hazard),
     /// Code 1: a byte of the line came garbled.
     Garbled,
@@ -51,7 +49,7 @@ impl Refusal {
         match self {
             Self::Misread(Misread::Unknown) | Self::Garbled => 1,
             Self::Misread(Misread::Range(_) | Misread::PoseRange(_))
-            | Self::Travel(_)
+            | Self::Unsafe(Hazard::Travel(_))
             | Self::Unfit(_)
             | Self::Elsewhere(_) => 3,
             Self::Misread(_) => 2,
@@ -75,8 +73,7 @@ impl Refusal {
     {
         match self {
             Self::Misread(misread) => print_misread(*misread, motion, out),
-            Self::Travel(servo) => print_travel(*servo, motion, out),
-            Self::Unsafe(hazard) => print_hazard(*hazard, motion.robot(), out),
+            Self::Unsafe(hazard) => print_hazard(*hazard, motion, out),
             Self::Garbled => Text::Garbled.print(out),
             Self::TooLong => Text::TooLong.print(out),
             Self::Resting => Text::Resting.print(out),
@@ -138,11 +135,13 @@ where
 /// # Errors
 /// Those of `out`.
 #[inline(never)]
-pub fn print_hazard<W>(hazard: Hazard, robot: &Robot, out: &mut W) -> Result<(), W::Error>
+pub fn print_hazard<W>(hazard: Hazard, motion: &Motion, out: &mut W) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
 {
+    let robot = motion.robot();
     match hazard {
+        Hazard::Travel(servo) => print_travel(servo, motion, out),
         Hazard::Margin { margin, value } => {
             let limits = robot.limits();
             let least = match margin {
@@ -268,9 +267,18 @@ mod tests {
                 Refusal::Misread(Misread::PoseRange(A1)),
                 "3 A1 reaches 61.37..215.36",
             ),
-            (Refusal::Travel(A2), "3 A2 reaches 341.92..135.91"),
-            (Refusal::Travel(A3), "3 A3 reaches 235.64..18.64"),
-            (Refusal::Travel(A4), "3 A4 reaches 134.18..307.18"),
+            (
+                Refusal::Unsafe(Hazard::Travel(A2)),
+                "3 A2 reaches 341.92..135.91",
+            ),
+            (
+                Refusal::Unsafe(Hazard::Travel(A3)),
+                "3 A3 reaches 235.64..18.64",
+            ),
+            (
+                Refusal::Unsafe(Hazard::Travel(A4)),
+                "3 A4 reaches 134.18..307.18",
+            ),
             (Refusal::TooLong, "6 a line has at most 63 characters"),
             (Refusal::Resting, "7 servos are resting, send stand first"),
         ] {

@@ -160,6 +160,7 @@ lizard_avr::plain! {
 
 /// Why a section is no robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Damage {
     /// There is none: no magic.

@@ -117,6 +117,9 @@ impl Default for Main {
 
 impl Main {
     /// No robot yet; [`Main::begin`] has to follow.
+    ///
+    /// Every bit of it is zero, so that a firmware's `Main` needs no copy in flash; its linker
+    /// script refuses one that does.
     pub const fn new() -> Self {
         Self {
             control: Control::new(),

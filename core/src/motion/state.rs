@@ -20,6 +20,7 @@ pub enum Activity {
 
 /// Where a motion leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Target {
     /// To a pose, to be held.
@@ -30,6 +31,7 @@ pub enum Target {
 
 /// What the servos follow at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// `Resting` is zero, whatever the others hold: see `Main::new`.
 #[repr(u8)]
 pub enum State {
     /// Nothing: there are no pulses.

@@ -159,6 +159,7 @@ fn place(hazard: Hazard) -> usize {
             place.expect("one of ten")
         }
         Hazard::Stroke { side, .. } => 10 + side as usize,
+        Hazard::Travel(_) => unreachable!("a clearance knows no travel"),
     }
 }
 
@@ -238,6 +239,7 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
                     assert_eq!(value, core.margins[place.expect("one of ten")], "{name}");
                     reasons[0] += 1;
                 }
+                Some(Hazard::Travel(_)) => unreachable!("a clearance knows no travel"),
                 Some(Hazard::Stroke { side, length }) => {
                     assert_eq!(length, root(core.sliders_sq[side as usize]), "{name}");
                     reasons[1] += 1;

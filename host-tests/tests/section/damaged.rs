@@ -7,6 +7,7 @@ use std::mem::offset_of;
 use fastrand::Rng;
 use lizard_core::calibration::Calibration;
 use lizard_core::gait::GaitId;
+use lizard_core::hazard::Hazard;
 use lizard_core::limits::Limits;
 use lizard_core::motion::Activity;
 use lizard_core::robot::Robot;
@@ -212,7 +213,12 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
             let name: String = robot.name(id).map(char::from).collect();
             assert_eq!(running.say(&name), format!("ok {name}"));
             frames(&mut running, 300);
-            held += usize::from(running.motion().activity() == Activity::Stop);
+            if running.motion().activity() == Activity::Stop {
+                let hazard = running.motion().hazard();
+                assert!(matches!(hazard, Some(Hazard::Travel(_))), "{hazard:?}");
+                assert_eq!(running.status("guard"), "held");
+                held += 1;
+            }
         }
     }
     assert!(held > 50, "{held} gaits were held");

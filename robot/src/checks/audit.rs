@@ -149,6 +149,7 @@ fn condition(hazard: &Hazard) -> Check {
             Margin::Leg(servo) => Check::LEG[servo.index()],
         },
         Hazard::Stroke { side, .. } => Check::STROKE[side as usize],
+        Hazard::Travel(_) => unreachable!("the guard knows no servo's travel"),
     }
 }
 
