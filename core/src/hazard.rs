@@ -29,8 +29,6 @@ impl Margin {
 /// The first condition that a pose breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hazard {
-    /// This servo does not turn so far.
-    Travel(Servo),
     /// A margin is below its limit.
     Margin {
         /// Which one.
@@ -45,4 +43,6 @@ pub enum Hazard {
         /// Its length, in its own steps.
         length: u16,
     },
+    /// This servo does not turn so far.
+    Travel(Servo),
 }
