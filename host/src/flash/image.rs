@@ -259,9 +259,9 @@ mod tests {
         assert_eq!(image.bytes().len(), 20);
         assert_eq!(image.bytes()[..3], [0x0c, 0x94, 0x34]);
         assert_eq!(image.bytes()[16..], [1, 2, 3, 4]);
-        let apart = HEX.replace(":0400100001020304E2", ":026A0000AABB2F");
+        let apart = HEX.replace(":0400100001020304E2", ":026E0000AABB2B");
         let image = Image::from_hex(&apart).expect("it is an image");
-        assert_eq!(image.bytes().len(), 0x6a02);
+        assert_eq!(image.bytes().len(), 0x6e02);
         assert!(image.bytes()[16..0x6e00].iter().all(|&byte| byte == 0xff));
         assert_eq!(image.bytes()[0x6e00..], [0xaa, 0xbb]);
     }
@@ -290,12 +290,12 @@ mod tests {
         let robot = Image::robot_alone(vec![5; 130]).expect("it fits");
         let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
         assert_eq!(addresses, [0x6e00, 0x6e80]);
-        assert_eq!(robot.end(), 0x6a82);
+        assert_eq!(robot.end(), 0x6e82);
         assert!(robot.is_robot_alone());
-        assert!(robot.to_hex().starts_with(":106A0000"));
+        assert!(robot.to_hex().starts_with(":106E0000"));
         assert_eq!(Image::robot_alone(Vec::new()), Err(ImageError::NoRobot));
-        assert!(Image::robot_alone(vec![0; 0x1400]).is_ok());
-        assert!(Image::robot_alone(vec![0; 0x1401]).is_err());
+        assert!(Image::robot_alone(vec![0; 0x1000]).is_ok());
+        assert!(Image::robot_alone(vec![0; 0x1001]).is_err());
     }
 
     #[test]
