@@ -127,7 +127,7 @@ fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_behind_it() 
     assert!(recording.frames.widths.len() > 2700);
     let code = Image::parse_hex(CODE).expect("it is Intel HEX").flash();
     assert!(
-        (26_000..=usize::from(START)).contains(&code.len()),
+        (20_000..=usize::from(START)).contains(&code.len()),
         "{} bytes",
         code.len()
     );
