@@ -7,7 +7,7 @@ use lizard_host::sim::frame::{FRAME, frames, opens, servo_pins};
 use lizard_host_tests::{FirmwareBench, minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Status, awake, for_each};
+use crate::{Status, awake, comparable, for_each};
 
 /// Cycles of a sender's byte, rounded up.
 const BYTE: u64 = 1400;
@@ -131,11 +131,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         // And the same answers, but for the counters of faults, which are 0 here.
         // Which frame a report is told in also depends on the room in the line.
         let is_answer = |line: &&str| !line.starts_with('#');
-        // Stock simavr has a reference of 1.1 V, whatever the robot's own is.
-        let told = |line: &'_ str| match fidelity {
-            Fidelity::Stock => line.split(" vcc=").next().unwrap_or(line).to_owned(),
-            Fidelity::DataSheet => line.to_owned(),
-        };
+        let told = |line: &'_ str| comparable(line, fidelity);
         let asked = commands.written.lines().filter(is_answer).map(told);
         let asked: Vec<String> = asked.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());

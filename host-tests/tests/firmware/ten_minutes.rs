@@ -1,5 +1,6 @@
 //! AVR against host: the same core, the same commands, the same bits.
 
+use crate::comparable;
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -101,10 +102,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
         // Stock simavr has a reference of its own, whatever robot.toml says.
-        let told = |line: &str| match fidelity {
-            Fidelity::Stock => line.split(" vcc=").next().unwrap_or(line).to_owned(),
-            Fidelity::DataSheet => line.to_owned(),
-        };
+        let told = |line: &str| comparable(line, fidelity);
         for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
             assert_eq!(told(here), told(there), "{fidelity:?}, line {n}");
         }

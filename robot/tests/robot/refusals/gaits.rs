@@ -259,6 +259,6 @@ duty = 0.95"#,
         "amplitude = 15.0",
         r#"amplitude = 15.0
 amplitude = 15.0"#,
-        "`amplitude` is there twice, first in line 163; keep one of them",
+        "`amplitude` is there twice, first in line 162; keep one of them",
     ),
 ];
