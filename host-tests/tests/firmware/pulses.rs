@@ -60,7 +60,8 @@ pub fn commanded(
 fn every_width_is_the_one_that_was_asked_for() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // A line that ends just before a tick is read before it or after it.
+            // When nothing is being written any more; and a line that ends just before a tick is
+            // read before it or after it.
             let asked_in = |ms| {
                 let mut bench = awake(*fidelity);
                 let first = first_pulse(&bench);
@@ -73,7 +74,7 @@ fn every_width_is_the_one_that_was_asked_for() {
                     .next()
                     .is_none()
             };
-            let (mut bench, first) = (0..20).map(asked_in).find(is_decided).expect("a time");
+            let (mut bench, first) = (200..220).map(asked_in).find(is_decided).expect("a time");
             let frames = bench.run_for_frames(6 * SECOND);
             assert_in_step(&bench, &frames);
             let received = bench.uno.received_by_uno().len();

@@ -28,7 +28,7 @@ const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
 /// Cycles that the AVR takes to compute a frame, about.
 const FRAME_TAKES: u64 = 8_000;
 /// Cycles that the AVR takes to read the end of a line and to act on it, at most.
-const READING_TAKES: u64 = 1_600;
+const READING_TAKES: u64 = 3_000;
 /// The robot wakes within this many frames of power-on.
 const WAKES: usize = 500;
 
