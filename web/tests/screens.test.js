@@ -178,9 +178,8 @@ test('robots that say that they are for the tests come last, under that name', a
 test('a word that the core spells otherwise is said to be unknown', async () => {
   const opened = await blank();
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
-  const list = 'load|factory|boot';
-  assert.ok(wasm.includes(list));
-  const body = Buffer.from(wasm.replaceAll(list, 'load|faktory|boot'), 'latin1');
+  assert.ok(wasm.includes('factory'));
+  const body = Buffer.from(wasm.replaceAll('factory', 'faktory'), 'latin1');
   await opened.route('**/lizard.wasm', (route) => route.fulfill({ body, contentType: 'application/wasm' }));
   await opened.goto(address());
   await opened.locator('#trouble', { hasText: 'The core does not know these words of the page: factory.' }).waitFor();
