@@ -44,7 +44,7 @@ test('walk moves the body by the predicted way', async () => {
   const opened = await standing();
   const { predicted, measured } = await walks(opened, 'walk');
   // The waveforms' corners are cut, which tells in so short a way.
-    near(measured.forward, predicted.forward, 0.04, 'mm ahead in a cycle');
+    near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
   assert.ok(Math.abs(measured.turn) < 0.3, `it goes straight: ${measured.turn} deg`);
   await opened.waitForFunction(() => / mm$/.test(document.querySelector('#cycle').textContent));
   assert.equal(await gait(opened, 'walk').getAttribute('aria-pressed'), 'true');
@@ -288,7 +288,8 @@ test('weak springs take of the way what the contact model says', async () => {
     await advance(opened, 4000);
     const { predicted, measured } = await ways(opened, 'walk');
     near(predicted.forward, mm, 0.01, 'mm predicted, as the docs have it');
-    near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+    // The waveforms' corners are cut, which tells in so short a way.
+    near(measured.forward, predicted.forward, 0.04, 'mm ahead in a cycle');
     near(measured.lag, lag, 0.15, 'deg of lag');
     near(predicted.share, predicted.forward / rigid, 0.03, 'share of rigid legs');
     await opened.locator('#share', { hasText: `${(100 * predicted.share).toFixed(0)} %` }).waitFor();
