@@ -43,8 +43,7 @@ test('the banner of the image is seen', async () => {
 test('walk moves the body by the predicted way', async () => {
   const opened = await standing();
   const { predicted, measured } = await walks(opened, 'walk');
-  // The waveforms' corners are cut, which tells in so short a way.
-    near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+  near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
   assert.ok(Math.abs(measured.turn) < 0.3, `it goes straight: ${measured.turn} deg`);
   await opened.waitForFunction(() => / mm$/.test(document.querySelector('#cycle').textContent));
   assert.equal(await gait(opened, 'walk').getAttribute('aria-pressed'), 'true');
