@@ -2,8 +2,8 @@
 MAKEFLAGS += --no-print-directory
 ELF := target/avr-atmega328p/release/lizard.elf
 # Cargo puts what it builds for the host under the host's name.
-HOST := host/target/$$(rustc --print host-tuple)
-LIZARD := host/target/release/lizard
+HOST := crates/target/$$(rustc --print host-tuple)
+LIZARD := crates/target/release/lizard
 -include target/toolchain.mk
 
 # Another robot than robot.toml: make firmware ROBOT=robots/x.toml. LIZARD_ROBOT
@@ -37,7 +37,7 @@ sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
 	$(call prepared,.sim)
 test: ## every test, on the host and on the simulated UNO
 	$(call prepared,.test)
-sweep: ## the example of pulses/, eight servos beside serial traffic, as an .elf for the UNO
+sweep: ## the example of crates/pulses/, eight servos beside serial traffic, as an .elf for the UNO
 	$(call prepared,.sweep)
 firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and every gait's margins
 	$(call prepared,.gaits)
@@ -53,7 +53,7 @@ lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
 parts-test: ## check the files of `lizard parts` with ezdxf, FreeCAD, admesh, PrusaSlicer and trimesh
 	$(call prepared,.parts-test)
-cli: ## build the host program, host/target/release/lizard
+cli: ## build the host program, crates/target/release/lizard
 	$(call prepared,.cli)
 bench: ## measured budgets, beside the Arduino Servo library's; poses solved per second
 	$(call prepared,.bench)
@@ -90,7 +90,7 @@ release-test: ## build a release twice, in different folders; compare the bytes,
 parallel-test: ## long computations in parts by GNU parallel, merged, compared with one process
 	$(call prepared,.parallel-test)
 clean: ## remove everything that was built
-	rm -rf target host/target out dist judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
+	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
 
 # RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
 .firmware:
@@ -98,7 +98,7 @@ clean: ## remove everything that was built
 	@avr-objcopy -O ihex -R .eeprom $(ELF) $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
 
-# The example of pulses/: servos and serial line without a lizard.
+# The example of crates/pulses/: servos and serial line without a lizard.
 .sweep:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release --example sweep --quiet
 
@@ -118,8 +118,8 @@ clean: ## remove everything that was built
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
-	@cd host && cargo build --workspace --bin lizard --quiet
-	@cd host && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test --workspace --features lizard-host-tests/flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
+	@cd crates && cargo build --workspace --bin lizard --quiet
+	@cd crates && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test --workspace --features lizard-host-tests/flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web
@@ -130,18 +130,18 @@ clean: ## remove everything that was built
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
 	@scripts/build-web
-	@cd host && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build --workspace --bin lizard --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=1 --test-timeout=900000 web/tests/*.test.js
 
 # The second line puts the program where the documentation says it is.
 .cli:
-	@cd host && cargo build --release
+	@cd crates && cargo build --release
 	@mkdir -p $(dir $(LIZARD))
 	@ln -f $(HOST)/release/lizard $(LIZARD)
 
 # What a simulation needs of the host program, in a profile that compiles fast.
 .simulator:
-	@cd host && $(CARGO) build --profile sim --no-default-features --features simulator
+	@cd crates && $(CARGO) build --profile sim --no-default-features --features simulator
 
 # Both builds at once: each has phases that keep only one core busy.
 .sim:
@@ -153,13 +153,13 @@ TESTS ?= --workspace
 
 # The tests, compiled beside the firmware: each has phases that keep one core busy.
 .tests:
-	@cd host && $(CARGO) test $(TESTS) --no-run --quiet
+	@cd crates && $(CARGO) test $(TESTS) --no-run --quiet
 
 # The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others. One that
 # fails a test is written to a folder proptest-regressions, is tried first from then on,
 # and belongs into the repository.
 .workspace:
-	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test $(TESTS) --no-fail-fast --quiet
+	@cd crates && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test $(TESTS) --no-fail-fast --quiet
 
 # Beside the tests above, many of which wait; what it says is shown at the end.
 WALKS := target/walks.log
@@ -177,16 +177,16 @@ WALKS := target/walks.log
 # FreeCAD and PrusaSlicer are large, so they are set up here alone.
 .parts-test:
 	@scripts/setup-parts
-	@cd host && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build --workspace --bin lizard --quiet
 	@scripts/parts-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
 	@$(LIZARD) bench --elf $(ELF) $(FOR_ROBOT)
 	@echo
-	@cd host && cargo bench --quiet -p lizard-kinematics
+	@cd crates && cargo bench --quiet -p lizard-kinematics
 
 .prove:
-	@cd host && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build --workspace --bin lizard --quiet
 	@$(HOST)/debug/lizard prove $(FOR_ROBOT)
 
 .fit: .cli
@@ -195,12 +195,12 @@ WALKS := target/walks.log
 # Apart from the other tests, because MuJoCo is installed here alone.
 .physics: .firmware
 	@scripts/setup-physics
-	@cd host && cargo clippy -p lizard-physics --features engine --all-targets --quiet -- -D warnings
-	@cd host && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo clippy -p lizard-physics --features engine --all-targets --quiet -- -D warnings
+	@cd crates && cargo build --workspace --bin lizard --quiet
 	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
-	@target/physics/bin/python physics/judge.py target/physics/walk.xml
-	@cd host && cargo build --workspace --features lizard-physics/engine --bin lizard-physics --quiet
-	@cd host && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
+	@target/physics/bin/python tools/physics/judge.py target/physics/walk.xml
+	@cd crates && cargo build --workspace --features lizard-physics/engine --bin lizard-physics --quiet
+	@cd crates && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
 # ONLY=serial.rs narrows it down.
 .mutants:
@@ -211,10 +211,10 @@ WALKS := target/walks.log
 
 # ONLY=4711 plays one scenario of the seed again, and says all that was said.
 .trouble: .firmware
-	@cd host && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
+	@cd crates && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
 
 .explore:
-	@cd host && cargo run --release --quiet -p lizard-explore -- $(or $(STATES),10000000)
+	@cd crates && cargo run --release --quiet -p lizard-explore -- $(or $(STATES),10000000)
 
 .fuzz:
 	@for target in $(or $(TARGET),console memory); do scripts/fuzz $$target $(or $(MINUTES),1) || exit 1; done
@@ -227,7 +227,7 @@ WALKS := target/walks.log
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) charts docs/charts
-	@cd host && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --quiet
+	@cd crates && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --quiet
 	@BLESS_GAITS=1 $(MAKE) .docs-check
 	@scripts/walk-through $(LIZARD)
 	@scripts/setup-book
@@ -236,13 +236,13 @@ WALKS := target/walks.log
 
 # Tests that `make test` leaves out; BLESS_GAITS=1 writes the pages.
 .docs-check:
-	@cd host && $(CARGO) test --workspace --quiet --test robot -- docs:: --ignored
+	@cd crates && $(CARGO) test --workspace --quiet --test robot -- docs:: --ignored
 
 # Also what is not committed, so that it can be tried before.
 .package:
-	@rm -f host/target/package/*.crate
-	@cd host && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
-	@cd host && for package in target/package/*.crate; do echo "$$package"; done
+	@rm -f crates/target/package/*.crate
+	@cd crates && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
+	@cd crates && for package in target/package/*.crate; do echo "$$package"; done
 
 # The code is the same for every robot: see firmware/README.md.
 .code-image: .firmware
@@ -259,17 +259,17 @@ PREFIX ?= $(HOME)/.local
 	@scripts/release-test
 
 .parallel-test:
-	@cd host && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build --workspace --bin lizard --quiet
 	@scripts/parallel-test $(HOST)/debug/lizard
 
 .lint:
 	@cargo fmt --check
-	@cd host && cargo fmt --all --check
+	@cd crates && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
-	@cd host && cargo clippy --workspace --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
-	@cd host && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
-	@cd host && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
-	@cd host && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
-	@cd host && cargo clippy -p lizard-web --no-default-features --quiet -- -D warnings
-	@cd host && RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+	@cd crates && cargo clippy --workspace --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
+	@cd crates && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
+	@cd crates && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
+	@cd crates && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
+	@cd crates && cargo clippy -p lizard-web --no-default-features --quiet -- -D warnings
+	@cd crates && RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 	@echo "lint: clean"

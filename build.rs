@@ -14,7 +14,7 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
     // Nothing of it is used here, but the image is linked by it.
-    println!("cargo::rerun-if-changed=linker/src");
+    println!("cargo::rerun-if-changed=tools/linker/src");
     println!("cargo::rerun-if-env-changed=LIZARD_PLAIN_LINK");
     let given = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
     let file = given.map_or_else(|| PathBuf::from("robot.toml"), PathBuf::from);

@@ -145,7 +145,7 @@ pub fn own_tests() -> Result<String, String> {
 }
 
 fn judge_folder() -> PathBuf {
-    root().join("judge")
+    root().join("tools/judge")
 }
 
 /// Node, if all that the judge needs of it is there.
@@ -176,7 +176,7 @@ fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, Stri
     Err(format!("{program} fails: {}\n{said}", complaint.trim()))
 }
 
-/// Reads what judge/run.js prints; its head explains the lines.
+/// Reads what tools/judge/run.js prints; its head explains the lines.
 fn read(said: &str) -> Option<Verdict> {
     let mut verdict = Verdict::default();
     for line in said.lines() {

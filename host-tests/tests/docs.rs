@@ -23,7 +23,10 @@ fn every_fault_in_the_documentation_has_a_test_that_exists() {
         let [.., file, _, test, _] = parts[..] else {
             panic!("no test: {row}");
         };
-        let places = [root().join("host-tests/tests"), root().join("core/src")];
+        let places = [
+            root().join("host-tests/tests"),
+            root().join("crates/core/src"),
+        ];
         let source = places
             .iter()
             .find_map(|place| fs::read_to_string(place.join(file)).ok());
@@ -121,18 +124,21 @@ fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
     let (_, said) = license.split_once("therefore licensed").expect("libsimavr");
     let (with, without) = said.split_once("The firmware").expect("both sides");
     let (with, without) = (words(with), words(without));
-    let workspace = fs::read_to_string(root().join("host/Cargo.toml")).expect("the workspace");
+    let workspace = fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
     let (_, members) = workspace.split_once("members = [").expect("its members");
     let (members, _) = members.split_once(']').expect("their end");
     let folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
     assert!(folders.len() > 9, "{folders:?}");
     for folder in folders {
-        let name = folder.strip_prefix("../").unwrap_or("host");
-        let manifest = fs::read_to_string(root().join(name).join("Cargo.toml")).expect(name);
-        let has = name == "simulated-uno" || manifest.contains("\nsimulated-uno = ");
+        let name = match folder.strip_prefix("../") {
+            Some(name) => name.to_owned(),
+            None => format!("crates/{folder}"),
+        };
+        let manifest = fs::read_to_string(root().join(&name).join("Cargo.toml")).expect(&name);
+        let has = name == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
         let word = &*format!("{name}/");
         let said = [
-            with.contains(word) || name == "simulated-uno",
+            with.contains(word) || name == "crates/simulated-uno",
             without.contains(word),
         ];
         assert_eq!(said, [has, !has], "LICENSE and {name}/Cargo.toml");
@@ -153,7 +159,7 @@ fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
             else {
                 continue;
             };
-            let sources = sources(&root().join(of).join("src"));
+            let sources = sources(&root().join("crates").join(of).join("src"));
             for name in item.split("::") {
                 let declared = ["fn", "mod", "struct", "enum", "trait", "const", "type"]
                     .iter()
@@ -203,12 +209,17 @@ fn the_files_of_a_console_command_are_those_that_know_one_and_no_more_than_seven
     let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
     let listed: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
 
-    let folders = ["core", "explore", "fuzz", "docs/console.md"];
+    let folders = [
+        "crates/core",
+        "tools/explore",
+        "tools/fuzz",
+        "docs/console.md",
+    ];
     let mut known: BTreeSet<PathBuf> = folders
         .iter()
         .flat_map(|folder| knowing(&root().join(folder), "center"))
         .collect();
-    known.extend(knowing(&root().join("core/src/text.rs"), "deadman"));
+    known.extend(knowing(&root().join("crates/core/src/text.rs"), "deadman"));
     assert_eq!(listed, known);
     assert!(listed.len() <= 7, "{listed:?}");
 }

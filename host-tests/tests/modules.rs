@@ -8,15 +8,15 @@ use lizard_host_tests::root;
 
 /// The crates whose modules are read.
 const CRATES: [&str; 11] = [
-    "contact",
-    "core",
-    "host",
-    "kinematics",
-    "linker",
-    "parts",
-    "robot",
-    "tune",
-    "twin",
+    "crates/contact",
+    "crates/core",
+    "crates/host",
+    "crates/kinematics",
+    "crates/parts",
+    "crates/robot",
+    "crates/tune",
+    "crates/twin",
+    "tools/linker",
     "web/wasm",
     "web/wasm-parts",
 ];

@@ -102,7 +102,8 @@ fn what_the_readme_says_of_cost_is_what_the_example_costs() {
     let before = (cost(&uno), uno.cycle());
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
     let per_frame = (cost(&uno) - before.0) as f64 / 100.0;
-    let readme = std::fs::read_to_string(root().join("pulses/README.md")).expect("it is there");
+    let readme =
+        std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("it is there");
     let row = |name: &str| -> Vec<String> {
         let row = readme
             .lines()

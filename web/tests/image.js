@@ -1,5 +1,5 @@
 // Images of robots as the page makes them, made here from the files that it is served with.
-import { load } from '../../judge/src/hex.js';
+import { load } from '../../tools/judge/src/hex.js';
 import { file, robot } from './wasm.js';
 
 /** What flash begins with for the robot of a file of the page. */

@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { load } from '../../judge/src/hex.js';
+import { load } from '../../tools/judge/src/hex.js';
 import { PATIENCE, close, complaints, open, page, tidy } from './browser.js';
 
 before(open);

@@ -102,7 +102,7 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
 }
 
 // What floating point says of them is held to figures from elsewhere in the tests of
-// robot/.
+// crates/robot/.
 #[test]
 fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre_at_any_pace() {
     let named = Named {

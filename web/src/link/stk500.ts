@@ -1,6 +1,6 @@
 // Writing an image by the boot loader of an UNO, optiboot: STK500 version 1, as avrdude's
 // `-c arduino` speaks it.
-import { load } from '../../../judge/src/hex.js';
+import { load } from '../../../tools/judge/src/hex.js';
 import { BOOT } from '../uno/board';
 import { WORDS } from '../words';
 import type { Link } from './link';

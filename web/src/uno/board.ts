@@ -1,11 +1,11 @@
 // An Arduino UNO that can be reset, flashed and left without bytes: the judge's chip, which
 // avr8js simulates, in a board that outlives it.
-import { corrections } from '../../../judge/src/corrections/index.js';
-import { load } from '../../../judge/src/hex.js';
-import { receiveBuffer } from '../../../judge/src/receive-buffer.js';
-import { Scope } from '../../../judge/src/scope.js';
-import { selfProgramming } from '../../../judge/src/self-programming.js';
-import { Uno } from '../../../judge/src/uno.js';
+import { corrections } from '../../../tools/judge/src/corrections/index.js';
+import { load } from '../../../tools/judge/src/hex.js';
+import { receiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
+import { Scope } from '../../../tools/judge/src/scope.js';
+import { selfProgramming } from '../../../tools/judge/src/self-programming.js';
+import { Uno } from '../../../tools/judge/src/uno.js';
 
 export const FREQUENCY = 16_000_000;
 

@@ -54,7 +54,7 @@ const SWAPS: [(&str, &str); 19] = [
 /// True if the file has code that fresh mistakes are made in.
 #[must_use]
 pub fn is_firmware(file: &str) -> bool {
-    let ours = ["core/src/", "src/board/", "pulses/src/"];
+    let ours = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
     let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
     file.ends_with(".rs") && ours.iter().any(|folder| file.starts_with(folder)) && !host_only
 }
@@ -62,7 +62,7 @@ pub fn is_firmware(file: &str) -> bool {
 /// True if a mistake in the file can move a servo or change a saved value.
 #[must_use]
 pub fn moves(file: &str) -> bool {
-    let name = file.strip_prefix("core/src/").unwrap_or(file);
+    let name = file.strip_prefix("crates/core/src/").unwrap_or(file);
     !TEXT.iter().any(|part| name.starts_with(part))
 }
 
@@ -83,7 +83,9 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
             mutants.push(Mutant {
                 file: file.into(),
                 wrong: format!("line {}: {wrong}", n + 1),
-                package: file.starts_with("core/").then(|| "lizard-core".into()),
+                package: file
+                    .starts_with("crates/core/")
+                    .then(|| "lizard-core".into()),
                 is_fresh: true,
                 line: n + 1,
                 old: lines[first..=n].join("\n"),
@@ -176,7 +178,7 @@ mod tests {
     fn every_place_of_a_line_that_can_be_another_is_found_once() {
         let text =
             "fn f() {\n    a.b(1); // 2 < 3\n    if x < 17 && y {}\n}\n#[cfg(test)]\n1 < 2\n";
-        let mut made: Vec<String> = all("core/src/motion.rs", text)
+        let mut made: Vec<String> = all("crates/core/src/motion.rs", text)
             .iter()
             .map(|mutant| mutant.make(text).expect("it is there once"))
             .collect();
@@ -196,7 +198,7 @@ mod tests {
     #[test]
     fn a_line_that_is_there_twice_is_told_by_the_lines_before_it() {
         let text = "one\na = b + c;\ntwo\na = b + c;\n";
-        let made: Vec<String> = all("pulses/src/lib.rs", text)
+        let made: Vec<String> = all("crates/pulses/src/lib.rs", text)
             .iter()
             .map(|mutant| mutant.make(text).expect("it is there once"))
             .collect();

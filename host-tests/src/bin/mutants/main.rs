@@ -288,7 +288,7 @@ impl Scratch {
             Command::new("cargo")
                 .args(["test", "-p", package])
                 .args(arguments)
-                .current_dir(self.folder.join("tree/host"))
+                .current_dir(self.folder.join("tree/crates"))
                 .env("CARGO_TARGET_DIR", self.folder.join("host")),
             PATIENCE_ALONE,
         )
@@ -323,7 +323,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         Command::new("cargo")
             .args(["test", "-p", "lizard-host-tests"])
             .args(["--test", "firmware", "--test", "trouble", "--", filter])
-            .current_dir(root().join("host"))
+            .current_dir(root().join("crates"))
             .env("LIZARD_ELF", elf)
             .env("LIZARD_FUZZ", "5"), // as long as in continuous integration
         PATIENCE,

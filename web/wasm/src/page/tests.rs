@@ -128,7 +128,7 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     let sg90 = forward(&page).expect("decided");
     page.set_servos("ideal");
     let ideal = forward(&page).expect("decided");
-    // A degree of 40, as twin/tests/stream.rs has it; and up to 2 % where the samples of a
+    // A degree of 40, as crates/twin/tests/stream.rs has it; and up to 2 % where the samples of a
     // waveform cut its corners, which ideal servos are predicted without.
     assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.02, "{sg90} {ideal}");
 }

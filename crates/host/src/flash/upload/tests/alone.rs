@@ -1,0 +1,137 @@
+//! A robot that is written alone, behind the code that the board has.
+
+use super::*;
+
+#[test]
+fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_last() {
+    let run = run_with(with_robot("paper"), &alone("unequal"));
+    let done = run.result.expect("it is written");
+    let section = robot("unequal").section();
+    let pages: Vec<usize> = (0x6e00..0x6e00 + section.len()).step_by(128).collect();
+    assert_eq!(done.written, pages.len(), "each byte of the robots differs");
+    let order = [&pages[..], &[0x6e00]].concat();
+    assert_eq!(run.board.written, order);
+    let whole = file::image(&robot("unequal")).expect("it fits");
+    assert!(run.board.flash[..whole.end()] == *whole.bytes());
+    assert!(run.board.left, "the firmware is started");
+    let [found] = &run.found[..] else {
+        panic!("{:?}", run.found)
+    };
+    assert!(found.contains(" robot paper "), "{found}");
+}
+
+#[test]
+fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/paper.toml");
+    let text = std::fs::read_to_string(path).expect("it is there");
+    let slower = text.replacen("period = 1.25", "period = 1.5", 1);
+    assert_ne!(slower, text);
+    let slower = Robot::parse(&slower).expect("it is right");
+    let run = run_with(
+        with_robot("paper"),
+        &file::robot_alone(&slower).expect("it fits"),
+    );
+    let done = run.result.expect("it is written");
+    assert!((1..=3).contains(&done.written), "{done:?}");
+    // Ten bits a byte.
+    let seconds = (run.board.received + run.board.sent) as f64 * 10.0 / 115_200.0;
+    assert!((0.2..0.6).contains(&seconds), "{seconds} s");
+}
+
+#[test]
+fn a_robot_that_the_board_has_is_not_written() {
+    let run = run_with(with_robot("paper"), &alone("paper"));
+    assert_eq!(run.result.expect("it is right").written, 0);
+    assert!(run.board.written.is_empty() && run.board.left);
+    assert!(run.found[0].ends_with(" already"), "{:?}", run.found);
+}
+
+#[test]
+fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
+    let (before, large) = (with_robot("own-gaits").flash, alone("large"));
+    let code = before[..0x6e00].to_vec();
+    for written in 1..=large.pages().len() {
+        let mut board = Double::with(&before);
+        board.unplugged_after = Some(written);
+        let cut = run_with(board, &large);
+        let words = cut.words();
+        assert!(words.starts_with("the port is gone"), "{words}");
+        assert!(words.contains("fault=robot and moves no servo"), "{words}");
+        assert!(cut.board.flash[..0x6e00] == code, "the code");
+        assert_eq!(its_robot(&cut.board), None, "after {written} pages");
+        let mut board = cut.board;
+        board.unplugged_after = None;
+        let mended = run_with(board, &large);
+        assert!(
+            mended.found[0].contains(" without a robot"),
+            "{:?}",
+            mended.found
+        );
+        assert!(mended.result.is_ok(), "{}", mended.words());
+        assert_eq!(its_robot(&mended.board).as_deref(), Some("large"));
+    }
+}
+
+#[test]
+fn any_one_byte_that_is_lost_while_a_robot_is_written_is_made_up_for() {
+    let (before, paper) = (with_robot("own-gaits").flash, alone("paper"));
+    let right = file::image(&robot("paper")).expect("it fits");
+    let whole = run_with(Double::with(&before), &paper).board;
+    let is_right = |run: &Run, at: usize| {
+        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
+        assert!(
+            run.board.flash[..right.end()] == *right.bytes(),
+            "byte {at}"
+        );
+    };
+    for at in (0..whole.received).step_by(17) {
+        let mut board = Double::with(&before);
+        board.lost_to = Some(at);
+        is_right(&run_with(board, &paper), at);
+    }
+    for at in (0..whole.sent).step_by(101) {
+        let mut board = Double::with(&before);
+        board.lost_from = Some(at);
+        is_right(&run_with(board, &paper), at);
+    }
+}
+
+#[test]
+fn a_robot_alone_is_refused_where_the_code_is_none_that_reads_it() {
+    let (before, large) = (with_robot("paper").flash, alone("large"));
+    let refused = |change: &dyn Fn(&mut Double)| {
+        let mut board = Double::with(&before);
+        change(&mut board);
+        let before = board.flash.clone();
+        let run = run_with(board, &large);
+        assert!(run.board.flash == before && run.board.written.is_empty());
+        run.words()
+    };
+    let why = "a robot alone moves nothing: write both, without --only-robot. Nothing was written";
+    assert_eq!(
+        refused(&|board| board.flash[..BOOT].fill(0xff)),
+        format!("the board has no program, and {why}")
+    );
+    // Another sketch, shorter than the firmware, most of which is still there.
+    assert_eq!(
+        refused(&|board| board.flash[..1000].fill(0x95)),
+        format!("the board has another program, and {why}")
+    );
+    assert_eq!(
+        refused(&|board| {
+            board.flash[..PAGE].fill(0xff);
+            board.flash[..2].copy_from_slice(&IDLE);
+        }),
+        format!("the board has half a program, which does nothing, and {why}")
+    );
+    let words = refused(&|board| board.flash[AT + 4] += 1);
+    assert!(
+        words.ends_with(&format!(
+            ", whose robots are of format {}; this program's are of format {FORMAT}. Write both, \
+             without --only-robot. Nothing was written",
+            FORMAT + 1
+        )),
+        "{words}"
+    );
+    assert!(words.starts_with("the board has lizard "), "{words}");
+}

@@ -1,0 +1,610 @@
+//! `lizard console` and its kin as a user meets them, with a simulated UNO at a
+//! pseudo terminal. Time is real here, so a test is a few seconds long.
+#![cfg(target_os = "linux")]
+
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
+use std::time::Duration;
+
+use lizard_time_limit::LIMIT;
+use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
+use rustix::termios::{Winsize, tcsetwinsize};
+
+/// The robot of the simulated board, as the other tests find it: the file that
+/// `LIZARD_ROBOT` names, seen from the root of the project, or robot.toml.
+fn robot() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    root.join(given.unwrap_or_else(|| "robot.toml".into()))
+}
+
+fn lizard(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(arguments);
+    if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
+        command.arg("--robot").arg(robot());
+    }
+    command
+        .current_dir(folder)
+        .env("XDG_STATE_HOME", folder)
+        .env("TERM", "xterm");
+    command
+}
+
+/// Standard output, standard error, exit code.
+fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = LIMIT
+        .output(&mut lizard(folder, arguments), input.as_bytes())
+        .expect("the program ends");
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    (text(stdout), text(stderr), status.code())
+}
+
+/// `lizard sim --pty`: a board with an EEPROM that lasts as long as it runs.
+struct Uno {
+    child: Child,
+    link: PathBuf,
+}
+
+impl Uno {
+    fn at(folder: &Path) -> Self {
+        let link = folder.join("uno");
+        let name = link.display().to_string();
+        let child = lizard(folder, &["sim", "--pty", &name])
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let mut uno = Self { child, link };
+        LIMIT.until("a board of `lizard sim --pty`, or its end", || {
+            uno.link.exists() || uno.has_ended()
+        });
+        assert!(!uno.has_ended(), "no board, run `make firmware`");
+        uno
+    }
+
+    fn port(&self) -> String {
+        self.link.display().to_string()
+    }
+
+    fn has_ended(&mut self) -> bool {
+        self.child.try_wait().expect("it is ours").is_some()
+    }
+}
+
+impl Drop for Uno {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = LIMIT.end_of(&mut self.child);
+        let _ = fs::remove_file(&self.link);
+    }
+}
+
+/// A pseudo terminal: our end, and the one for a program.
+fn terminal() -> (File, OwnedFd, PathBuf) {
+    let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
+    let ours = ours.expect("a pseudo terminal");
+    unlockpt(&ours).expect("it is ours");
+    let path = ptsname(&ours, Vec::new()).expect("it has a name");
+    let path = PathBuf::from(path.to_string_lossy().into_owned());
+    let theirs = File::options()
+        .read(true)
+        .write(true)
+        .open(&path)
+        .expect("it opens");
+    (File::from(ours), theirs.into(), path)
+}
+
+/// [`terminal`], 100 columns wide.
+fn wide_terminal() -> (File, OwnedFd) {
+    let (ours, theirs, _) = terminal();
+    let size = Winsize {
+        ws_row: 30,
+        ws_col: 100,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    };
+    tcsetwinsize(&theirs, size).expect("it takes a size");
+    (ours, theirs)
+}
+
+/// A program at a terminal of its own, 100 columns wide.
+struct AtTerminal {
+    child: Child,
+    keys: File,
+    seen: std::sync::mpsc::Receiver<Vec<u8>>,
+    text: String,
+}
+
+impl AtTerminal {
+    fn start(mut command: Command) -> Self {
+        let (ours, theirs) = wide_terminal();
+        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+        let child = command
+            .stdin(end())
+            .stdout(end())
+            .stderr(end())
+            .spawn()
+            .expect("the program starts");
+        let mut screen = ours.try_clone().expect("another of it");
+        let (send, seen) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while let Ok(count @ 1..) = screen.read(&mut bytes) {
+                if send.send(bytes[..count].to_vec()).is_err() {
+                    break;
+                }
+            }
+        });
+        Self {
+            child,
+            keys: ours,
+            seen,
+            text: String::new(),
+        }
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).expect("it takes keys");
+    }
+
+    /// Waits until the screen has shown this, after what was waited for before.
+    fn wait_for(&mut self, words: &str) {
+        let (mut found, mut ended) = (None, false);
+        LIMIT.comes(|| {
+            ended = loop {
+                match self.seen.try_recv() {
+                    Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
+                    Err(reason) => break reason == TryRecvError::Disconnected,
+                }
+            };
+            found = self.text.find(words);
+            found.is_some() || ended
+        });
+        let Some(at) = found else {
+            panic!("waited up to {LIMIT} for `{words}`, but {:?}", self.text);
+        };
+        self.text.drain(..at + words.len());
+    }
+
+    fn exit_code(mut self) -> Option<i32> {
+        LIMIT.end_of(&mut self.child).expect("it ends").code()
+    }
+}
+
+#[test]
+fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["console", "--sim"];
+    let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
+    assert_eq!(code, Some(1), "a line was refused: {error}");
+    assert!(
+        error.ends_with(
+            "lizard: the robot did not take 1 of 3 lines, the first `fly`: err 1 unknown command, \
+             send help for the list\n"
+        ),
+        "{error}"
+    );
+    assert!(out.starts_with("# lizard "), "{out}");
+    let answers: Vec<&str> = out.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(
+        answers,
+        [
+            "ok cal",
+            "err 1 unknown command, send help for the list",
+            "ok stop"
+        ]
+    );
+    assert!(out.contains("\n# A4 trim 0.00 limit "), "{out}");
+    assert!(error.contains("(a simulated UNO)"), "which port: {error}");
+
+    let (_, error, code) = run(folder.path(), &arguments, "cal\nstop\n");
+    assert_eq!(code, Some(0), "all lines were taken: {error}");
+}
+
+#[test]
+fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let uno = Uno::at(here);
+    let port = uno.port();
+    let (_, error, code) = run(here, &["backup", "a.toml", &port], "");
+    assert_eq!(code, Some(0), "{error}");
+    let first = fs::read_to_string(here.join("a.toml")).expect("it was written");
+
+    let changed = first.replacen("trim = 0.0", "trim = -1.75", 1);
+    fs::write(here.join("b.toml"), &changed).expect("it is written");
+    let (out, error, code) = run(here, &["restore", "b.toml", &port], "");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(
+        out.ends_with("has the calibration of b.toml and has saved it\n"),
+        "{out}"
+    );
+
+    let scale = first.lines().find(|line| line.starts_with("scale = "));
+    let refused = changed.replacen(scale.expect("A1 has one"), "scale = 99.0", 1);
+    fs::write(here.join("c.toml"), refused).expect("it is written");
+    let (out, error, code) = run(here, &["restore", "c.toml", &port], "");
+    assert_eq!(code, Some(1), "{error}");
+    assert!(
+        error.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
+        "{error}"
+    );
+    assert_eq!(out, "");
+
+    let (_, error, code) = run(here, &["backup", "d.toml", &port], "");
+    assert_eq!(code, Some(0), "{error}");
+    let last = fs::read_to_string(here.join("d.toml")).expect("it was written");
+    assert_eq!(last, changed, "what was saved last, after a reset");
+}
+
+#[test]
+fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let mut person = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
+    person.wait_for("# lizard ");
+    person.wait_for("no fault");
+    // Ctrl-A, and a letter that was forgotten.
+    person.press("top\x01s\r");
+    person.wait_for("> stop");
+    person.wait_for("ok stop");
+    person.wait_for("stop  A1..A4");
+    person.press("\x1b[A\r");
+    person.wait_for("ok stop");
+    drop(uno);
+    person.wait_for("the port is gone: the board was unplugged, or its cable is loose");
+    person.wait_for("waiting for the board");
+    let _uno = Uno::at(folder.path());
+    person.wait_for("is there again: # lizard ");
+    person.press("stand\r");
+    person.wait_for("ok stand");
+    person.press("\x04");
+    assert_eq!(person.exit_code(), Some(0));
+    let history = fs::read_to_string(folder.path().join("lizard/history"));
+    assert_eq!(history.expect("it is kept"), "stop\nstand\n");
+}
+
+#[test]
+fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["calibrate", "--sim"];
+    let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
+    person.wait_for("before you begin");
+    person.press("\r");
+    person.wait_for("fit the horns");
+    person.press("\r");
+    person.wait_for("which way does A1");
+    person.press(" ");
+    person.wait_for("A1 has moved");
+    person.press("n");
+    person.wait_for("The sign of A1 is `");
+    person.press("q");
+    person.wait_for("left: the robot has what it had before");
+    assert_eq!(person.exit_code(), Some(0));
+}
+
+#[test]
+fn a_kept_session_is_drawn_and_summed_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let mut child = lizard(here, &["console", "--record", "a.jsonl", "--sim"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("it has an input");
+    stdin.write_all(b"speed 50\nfly\n").expect("it is read");
+    let file = here.join("a.jsonl");
+    LIMIT.until("a refusal and a second of poses in the file", || {
+        let kept = fs::read_to_string(&file).unwrap_or_default();
+        kept.contains(r#""answer":"err "#) && kept.matches(r#""pose":"#).count() > 50
+    });
+    drop(stdin);
+    let status = LIMIT.end_of(&mut child).expect("it ends");
+    assert_eq!(status.code(), Some(1), "a line was refused");
+
+    let (out, error, code) = run(here, &["replay", "a.jsonl", "--svg", "a.svg"], "");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(
+        out.contains(" >  speed 50\n") || out.contains(" > speed 50\n"),
+        "{out}"
+    );
+    assert!(
+        out.contains("commands    2, of these refused: 1\n"),
+        "{out}"
+    );
+    assert!(out.contains("trouble     none\n"), "{out}");
+    let picture = fs::read_to_string(here.join("a.svg")).expect("it was drawn");
+    // A machine that pauses for a second breaks all four curves.
+    let curves = picture.matches("<polyline").count();
+    assert!(
+        curves >= 4 && curves.is_multiple_of(4),
+        "{curves}: a curve for each servo"
+    );
+
+    let (_, error, code) = run(here, &["console", "--record", "a.jsonl", "--sim"], "");
+    assert_eq!(code, Some(2));
+    assert!(error.contains("a.jsonl is there already"), "{error}");
+}
+
+#[test]
+fn a_port_that_another_program_has_open_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let other = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
+    let mut other = other;
+    other.wait_for("# lizard ");
+    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &uno.port()], "");
+    let who = format!("is open in lizard (process {})", other.child.id());
+    other.press("\x03");
+    assert_eq!(code, Some(1));
+    assert!(error.contains(&who), "{error}");
+    assert!(!folder.path().join("a.toml").exists());
+}
+
+#[test]
+fn what_is_no_lizard_is_named_by_what_it_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut ours, theirs, path) = terminal();
+    // Else this test would be the program that has the port open.
+    drop(theirs);
+    let (heard, until) = mpsc::channel::<()>();
+    let talks = std::thread::spawn(move || {
+        let pause = Duration::from_millis(50);
+        while until.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+            // Nobody may have it open.
+            let _ = ours.write_all(b"Grbl 1.1h ['$' for help]\r\n");
+        }
+    });
+    let port = path.display().to_string();
+    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &port], "");
+    drop(heard);
+    LIMIT
+        .within("the end of what talks", || talks.join())
+        .expect("it has ended");
+    assert_eq!(code, Some(1), "{error}");
+    let words = "this is no lizard: it says `Grbl 1.1h ['$' for help]`";
+    assert!(error.contains(words), "{error}");
+    assert!(
+        !folder.path().join("a.toml").exists(),
+        "nothing half written"
+    );
+}
+
+#[test]
+fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut ours, theirs, path) = terminal();
+    drop(theirs);
+    let (heard, until) = mpsc::channel::<()>();
+    let board = std::thread::spawn(move || {
+        let pause = Duration::from_millis(20);
+        let mut asked: Vec<u8> = Vec::new();
+        // Nobody may have it open; then reading fails.
+        while until.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+            let mut bytes = [0; 64];
+            let count = ours.read(&mut bytes).unwrap_or_default();
+            asked.extend(&bytes[..count]);
+            if asked == b"status\n" {
+                let _ = ours.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
+            }
+        }
+    });
+    let arguments = [
+        "console",
+        "--record",
+        "a.jsonl",
+        &path.display().to_string(),
+    ];
+    let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
+    drop(heard);
+    LIMIT
+        .within("the end of the board", || board.join())
+        .expect("it has ended");
+    assert_eq!(code, Some(1), "{error}");
+    let words = "lizard: the robot did not take 3 of 3 lines, the first `walk`: no answer\n";
+    assert!(error.ends_with(words), "{error}");
+}
+
+#[test]
+fn wrong_input_is_a_sentence_and_starts_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    fs::write(here.join("no.toml"), "trim: 5\n").expect("it is written");
+    fs::write(here.join("other.toml"), "[links]\nl0 = 20.0\n").expect("it is written");
+    let complaint = |arguments: &[&str]| {
+        let (out, error, code) = run(here, arguments, "");
+        assert_eq!(out, "");
+        (error.trim().to_owned(), code)
+    };
+    for (arguments, words) in [
+        (
+            ["console", "/dev/no-such-port"],
+            "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ",
+        ),
+        (
+            ["restore", "no.toml"],
+            "lizard: no.toml: line 1: this is not TOML: ",
+        ),
+        (
+            ["restore", "other.toml"],
+            "lizard: other.toml: the key format = \"lizard calibration 1\" is missing",
+        ),
+        (["restore", "none.toml"], "lizard: cannot read none.toml: "),
+        (
+            ["replay", "other.toml"],
+            "lizard: other.toml: this is no session of `lizard console --record`: its first line has no",
+        ),
+        (
+            ["calibrate", "/dev/no-such-port"],
+            "lizard: calibrate asks for single keys; run it in a terminal",
+        ),
+    ] {
+        let (error, code) = complaint(&arguments);
+        assert!(error.starts_with(words), "{error}");
+        assert_eq!(code, Some(2), "{error}");
+    }
+}
+
+#[test]
+fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_board() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
+    std::os::unix::fs::symlink("a-file", &other).expect("a link");
+    let name = other.display().to_string();
+    let (_, error, code) = run(folder.path(), &["sim", "--pty", &name], "");
+    assert_eq!(
+        error.trim(),
+        format!("lizard: {name} is there already and no link to a pseudo terminal")
+    );
+    assert_eq!(code, Some(2));
+    assert_eq!(
+        fs::read_link(&other).expect("it is left"),
+        Path::new("a-file")
+    );
+
+    // What a run that was killed leaves behind.
+    std::os::unix::fs::symlink("/dev/pts/999999", &own).expect("a link");
+    let name = own.display().to_string();
+    let mut child = lizard(folder.path(), &["sim", "--pty", &name])
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    LIMIT.until("a port at the end of the link", || own.exists());
+    let id = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs");
+    let status = LIMIT.end_of(&mut child).expect("it ends");
+    let signal = std::os::unix::process::ExitStatusExt::signal(&status);
+    assert_eq!(signal, Some(15), "as it ends without a link");
+    assert!(!own.is_symlink(), "the link is gone");
+}
+
+#[test]
+fn a_picture_is_not_poured_over_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut person = AtTerminal::start(lizard(folder.path(), &["draw", "--wiring"]));
+    person.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
+    assert!(!person.text.contains("<svg"));
+    assert_eq!(person.exit_code(), Some(2));
+}
+
+/// The state of a process, as `ps` has it: S asleep, R running, T stopped.
+fn state(child: &Child) -> char {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("it is there");
+    let (_, after) = stat.rsplit_once(") ").expect("its name ends");
+    after.chars().next().expect("a letter")
+}
+
+/// Whether keys come line by line and are shown, as a shell wants its terminal.
+fn is_cooked(terminal: &File) -> bool {
+    let modes = rustix::termios::tcgetattr(terminal)
+        .expect("it is a terminal")
+        .local_modes;
+    modes.contains(rustix::termios::LocalModes::ICANON | rustix::termios::LocalModes::ECHO)
+}
+
+#[test]
+fn control_z_gives_the_terminal_back_and_fg_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let port = uno.port();
+    for (command, first, keys, then) in [
+        ("console", "no fault", "stop\r", "ok stop"),
+        ("calibrate", "before you begin", "\r", "fit the horns"),
+    ] {
+        let mut person = AtTerminal::start(lizard(folder.path(), &[command, &port]));
+        person.wait_for(first);
+        assert!(!is_cooked(&person.keys), "{command}");
+        person.press("\x1a");
+        LIMIT.until("a stopped program", || state(&person.child) == 'T');
+        assert!(is_cooked(&person.keys), "{command}");
+        let id = rustix::process::Pid::from_child(&person.child);
+        rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("it is there");
+        LIMIT.until("keys one by one", || !is_cooked(&person.keys));
+        person.press(keys);
+        person.wait_for(then);
+        person.press(if command == "console" { "\x04" } else { "q" });
+        assert_eq!(person.exit_code(), Some(0), "{command}");
+    }
+}
+
+#[test]
+fn a_program_whose_terminal_goes_away_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::at(folder.path());
+    let port = uno.port();
+    for (command, first) in [("console", "no fault"), ("calibrate", "before you begin")] {
+        let (mut ours, theirs) = wide_terminal();
+        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+        let mut child = lizard(folder.path(), &[command, &port])
+            .stdin(end())
+            .stdout(end())
+            .stderr(end())
+            .spawn()
+            .expect("the program starts");
+        let seen = LIMIT.within(first, move || {
+            let (mut text, mut bytes) = (String::new(), [0; 4096]);
+            while !text.contains(first) {
+                let count = ours.read(&mut bytes).expect("it is shown");
+                text.push_str(&String::from_utf8_lossy(&bytes[..count]));
+            }
+            // And the terminal is gone: nobody else has this end.
+            drop(ours);
+            text
+        });
+        assert!(seen.contains(first));
+        let status = LIMIT.end_of(&mut child).expect("it ends");
+        assert_eq!(status.code(), Some(0), "{command}");
+    }
+}
+
+#[test]
+fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["console", "--sim"];
+    let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
+    person.wait_for("no fault");
+    // The first gait that moves, whatever robot it is.
+    let gaits = run(folder.path(), &arguments, "help\n").0;
+    let gaits = gaits
+        .lines()
+        .find_map(|line| line.strip_prefix("# gaits: "));
+    let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
+    let gait = gait.expect("it has one").to_owned();
+    person.press(&format!("{gait}\r"));
+    person.wait_for(&format!("ok {gait}"));
+    person.wait_for(&format!("{gait}  "));
+    person.press("\x04");
+    LIMIT.until("the end of the program", || {
+        person.child.try_wait().expect("it is ours").is_some()
+    });
+    LIMIT.comes(|| {
+        while let Ok(bytes) = person.seen.try_recv() {
+            person.text.push_str(&String::from_utf8_lossy(&bytes));
+        }
+        person.text.contains("\x1b[?2004l")
+    });
+    assert!(!person.text.contains("goes on"), "{:?}", person.text);
+}
+
+#[test]
+fn what_a_robots_file_says_cannot_command_the_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = include_str!("../../../robots/paper.toml");
+    let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
+    fs::write(folder.path().join("bad.toml"), text).expect("it is written");
+    let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
+    assert_eq!(code, Some(2));
+    assert!(error.contains("]0;owned"), "{error}");
+    let controls = error.trim_end().matches(|c: char| c.is_control()).count();
+    assert_eq!(controls, 0, "{error:?}");
+}

@@ -1,0 +1,88 @@
+//! The robot as parts: from robot.toml to bodies with layers and places.
+//!
+//! The mechanism is flat and all its joints are upright, so a part is a stack of layers,
+//! each a flat shape between two heights, and one table has the heights of the whole
+//! robot ([`Stack`]). A pose turns and shifts each body in the plane; nothing moves up or
+//! down.
+//!
+//! # How it is meant
+//! ```
+//! let robot = lizard_robot::Robot::parse(include_str!("../../../robots/paper.toml"))?;
+//! let assembly = lizard_parts::Assembly::new(&robot);
+//! let pose = robot.lizard().solve(&robot.neutral()).expect("it closes");
+//! for body in assembly.bodies() {
+//!     let place = assembly.place(body.mount, &pose);
+//!     for prism in &body.prisms {
+//!         let _shapes: Vec<_> = prism.add.iter().map(|shape| shape.placed(&place)).collect();
+//!     }
+//! }
+//! # Ok::<(), lizard_robot::Error>(())
+//! ```
+//! - A [`Body`] is rigid: a printed part, a servo, a screw, a nut, a spring, the board,
+//!   the battery. Its layers ([`Prism`]) are given in its own frame; z is the robot's.
+//! - A [`Mount`] says what a body moves with, hence on which servos its place depends:
+//!   `Link`, `Crank`, `Follower`, `Foot` and `Strut` on their servo alone, `Coupler` on
+//!   both servos of its end, `Sleeve` and `Rod` on both of their side, `Chassis` on none.
+//!   Links, cranks and followers turn about a fixed point by the servo's angle; feet and
+//!   struts do not turn. [`Assembly::place`] has this rule.
+//! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
+//!   union of its shapes less its holes, so the shapes without the holes are a safe hull
+//!   for collision proofs: what is clear of the hull is clear of the part.
+//!   [`Shape::distance`] is exact.
+//! - [`Assembly::meet`] says which pairs touch by design: bodies that move together, and
+//!   bodies that name the other in [`Body::meets`], as a screw names what it passes
+//!   through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
+//! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
+//!   accepts; [`Assembly::nearest`] only checks some poses.
+//! - [`Assembly::instead`] has bodies that may replace others: the kind of strut that
+//!   robot.toml does not choose.
+//! - [`Layout`] has pivots and anchors seen from above. Those of the legs are
+//!   [`lizard_robot::LegPlan`], which the drawings use as well.
+
+mod bill;
+mod bodies;
+mod decimals;
+mod files;
+mod guide;
+mod hold;
+mod layers;
+mod mjcf;
+mod order;
+mod part;
+mod proof;
+mod unfit;
+mod weight;
+
+pub use bill::{Bill, Item};
+pub use bodies::assembly::Assembly;
+pub use bodies::layout::Layout;
+pub use bodies::sliders::SliderLengths;
+pub use files::coupon::coupon;
+pub use files::dxf::dxf;
+pub use files::mesh::Mesh;
+pub use files::sheet::{Layer, Sheet, extent, sheets};
+pub use files::solid::{Edge, Face, Solid, Surface};
+pub use files::step::step;
+pub use files::stl::stl;
+pub use files::svg::sheet_svg;
+pub use files::{File, part_files};
+pub use guide::ink::Label;
+pub use guide::papers::papers;
+pub use guide::picture::{Drawn, View, labelled, picture, whole};
+pub use guide::placements::placements;
+pub use guide::{CORNER, guide};
+pub use hold::{Hold, STALL};
+pub use layers::body::{Body, Kind, Mount, Prism};
+pub use layers::fitting::Fitting;
+pub use layers::outline::{Loop, Outline, Side};
+pub use layers::placement::Placement;
+pub use layers::shape::Shape;
+pub use layers::stack::{Span, Stack};
+pub use mjcf::{Course, Motor, Pieces, Pull, Scene, mjcf};
+pub use order::reach::{Act, Aside, Blocked, KEY, SOCKET};
+pub use order::steps::Near as NearView;
+pub use order::steps::{Stage, Step, Where, steps};
+pub use part::{Lies, Part};
+pub use proof::clearance::Clearance;
+pub use proof::{Answer, Clash, ENOUGH, LEAST, Near, Proof, Questions};
+pub use unfit::Unfit;

@@ -1,0 +1,207 @@
+//! The bill counts what the assembly has, and the spring is the strut's.
+
+use lizard_parts::{Assembly, Bill, Hold, Item, Kind};
+
+use crate::STRUT;
+
+fn bill(name: &str) -> (Assembly, Bill) {
+    bill_with(name, "")
+}
+
+fn bill_with(name: &str, more: &str) -> (Assembly, Bill) {
+    let robot = crate::with(name, more);
+    let assembly = Assembly::new(&robot);
+    let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
+    let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+    (assembly, bill)
+}
+
+#[test]
+fn every_body_is_printed_or_bought() {
+    for name in ["paper", "large", "unequal"] {
+        let (assembly, bill) = bill(name);
+        let count = |is: fn(&Kind) -> bool| {
+            let bodies = assembly.bodies().iter();
+            bodies.filter(|body| is(&body.kind)).count()
+        };
+        let printed: usize = bill.printed.iter().map(|item| item.count).sum();
+        assert_eq!(printed, count(|kind| *kind == Kind::Printed), "{name}");
+        assert_eq!(
+            bill.count("screw M3"),
+            count(|kind| matches!(kind, Kind::Screw(_) | Kind::HexScrew(_)))
+        );
+        assert_eq!(bill.count("lock nut"), count(|kind| *kind == Kind::Nut));
+        assert_eq!(bill.count("servo SG-90"), 4);
+        assert_eq!(bill.count("tension spring"), 0, "{name}");
+    }
+}
+
+#[test]
+fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
+    let (_, paper) = bill("paper");
+    // All but the board, whose holes are not.
+    assert!(paper.centre[0].abs() < 0.5 && paper.centre[1].abs() < 0.5);
+    assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
+    let (_, large) = bill("large");
+    assert!(large.grams > paper.grams);
+}
+
+#[test]
+fn every_file_of_robots_weighs_what_its_bill_says() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+    let files = std::fs::read_dir(folder).expect("robots/");
+    let paths = files.map(|file| file.expect("a file").path());
+    let mut count = 0;
+    for path in paths.filter(|path| path.extension().is_some_and(|end| end == "toml")) {
+        let name = path
+            .file_stem()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        // Springs are among what the files' masses count.
+        let (assembly, bill) = bill_with(name, STRUT);
+        let body = assembly.robot().ground().body;
+        let off = (body.mass - bill.grams).abs();
+        assert!(
+            off <= 1.0,
+            "{name}: mass {}, bill {}",
+            body.mass,
+            bill.grams
+        );
+        for (file, bill) in body.centre.into_iter().zip(bill.centre) {
+            assert!((file - bill).abs() <= 1.0, "{name}: {file} {bill}");
+        }
+        assert!(!bill.differs(&body), "{name}");
+        count += 1;
+    }
+    assert!(count >= 4);
+    let (assembly, _) = bill("paper");
+    assert_eq!(lizard_robot::Body::DEFAULT, assembly.robot().ground().body);
+}
+
+#[test]
+fn a_mass_centre_is_told_in_words_and_as_robot_toml_has_it() {
+    let (_, mut bill) = bill("paper");
+    (bill.grams, bill.centre) = (308.4, [-0.06, -0.11, 9.7]);
+    assert_eq!(bill.beside(), "0.1 mm behind and 0.1 mm to the right of");
+    assert_eq!(bill.body_toml(), "[body]\nmass = 308.0\n");
+    bill.centre = [4.26, 0.04, 9.7];
+    assert_eq!(bill.beside(), "4.3 mm ahead and 0.0 mm to the left of");
+    let body = bill.body();
+    assert_eq!(
+        bill.body_toml(),
+        "[body]\nmass = 308.0\ncentre = [4.3, 0.0]\n"
+    );
+    assert!(!bill.differs(&body));
+    for (mass, centre) in [
+        (280.0, [4.0, 0.0]),
+        (308.0, [0.0, 0.0]),
+        (330.0, [4.0, 0.0]),
+    ] {
+        assert!(
+            bill.differs(&lizard_robot::Body { mass, centre }),
+            "{mass} {centre:?}"
+        );
+    }
+}
+
+#[test]
+fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
+    let (assembly, bill) = bill_with("paper", STRUT);
+    let hold = bill.hold.expect("springs");
+    let strut = 28.5f64.hypot(10.0);
+    assert!((assembly.layout().legs[0].strut_length - strut).abs() < 1e-9);
+    assert!((hold.installed - strut - 3.0).abs() < 1e-9);
+    // At neutral the strut stands at 60.8 deg to the anchor's arm; walk swings a leg by
+    // 20 deg to either side, look one a little more.
+    let between = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
+    let lever = |swing: f64| 22.0 * (between + swing).to_radians().sin();
+    let [least, most] = hold.lever;
+    assert!(lever(-24.0) < least && least < lever(-20.0) + 0.01);
+    assert!(lever(20.0) - 0.01 < most && most < 22.0);
+    assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
+    assert!(hold.friction * 2.0 < hold.preload);
+    // With foot and body held the slot ends long before the 40 deg of a walk, at more than
+    // seven tenths of what stalls an SG-90.
+    assert!(12.0 < hold.way[0] && hold.way[1] < 25.0, "{:?}", hold.way);
+    assert!((131.0..160.0).contains(&hold.end[1]) && !hold.spares());
+    // By the triangle of arm, line and strut, 5 mm longer, with the longest lever.
+    let robot = assembly.robot();
+    let stretched = |lag: f64| {
+        let angle = robot.servos()[1].neutral + 20.0;
+        let [from, to] = robot.legs()[1].at(angle, angle - lag).strut;
+        (to - from).length() - strut
+    };
+    let (way, torque) = robot.drive().strut().expect("a strut").end(1, 20.0);
+    assert!((stretched(way) - 5.0).abs() < 1e-6, "{way}");
+    let by = (stretched(way + 0.01) - stretched(way - 0.01)) / 0.02f64.to_radians();
+    let force = hold.force + 5.0 * hold.rate;
+    assert!((torque / (force * by) - 1.0).abs() < 1e-4, "{torque}");
+    // A spring as weak as walking allows does spare one.
+    let (_, weak) = bill_with(
+        "paper",
+        "[leg.drive]\nkind = \"strut\"\nforce = 2.0\nrate = 0.2",
+    );
+    assert!(weak.hold.expect("springs").spares());
+}
+
+#[test]
+fn a_held_foot_stretches_its_spring_one_way_only() {
+    for name in ["paper", "large", "unequal"] {
+        let (assembly, _) = bill(name);
+        let robot = assembly.robot();
+        for (servo, plan) in robot.legs().iter().enumerate() {
+            let neutral = robot.servos()[servo].neutral;
+            let front = servo < 2;
+            let forward = lizard_robot::servo::FORWARD[servo];
+            let longer = |by: f64| {
+                let [from, to] = plan.at(neutral + forward * by, neutral).strut;
+                (to - from).length() - plan.strut_length
+            };
+            assert_eq!(longer(5.0) > 0.5, front, "{name} {servo}");
+            assert_eq!(longer(-5.0) > 0.5, !front, "{name} {servo}");
+        }
+    }
+}
+
+#[test]
+fn rigid_struts_are_printed_instead_and_need_no_springs() {
+    let (_, sprung) = bill_with("paper", STRUT);
+    let (assembly, rigid) = bill_with("paper", "");
+    assert_eq!(sprung.count("tension spring"), 4);
+    assert_eq!(rigid.count("tension spring"), 0);
+    // The same screws and nuts.
+    for what in ["screw M3", "lock nut"] {
+        assert_eq!(rigid.count(what), sprung.count(what));
+    }
+    let names = |items: &[Item]| -> Vec<_> {
+        let items = items.iter();
+        items.map(|item| (item.count, item.what.clone())).collect()
+    };
+    // Each bill has the other's struts aside.
+    let [slotted, bar] = ["strut", "rigid strut"].map(|what| (4, what.to_owned()));
+    assert_eq!(names(&sprung.instead).first(), Some(&bar));
+    assert_eq!(names(&rigid.instead).first(), Some(&slotted));
+    assert!(names(&sprung.printed).contains(&slotted) && names(&rigid.printed).contains(&bar));
+    assert_eq!(rigid.hold, None);
+    assert!(!assembly.robot().drive().lags());
+    let said = rigid.to_string();
+    assert!(
+        said.contains("A foot that is caught can stall its servo"),
+        "{said}"
+    );
+    assert!(said.contains("[leg.drive]\nkind = \"rigid\"\n"), "{said}");
+    let said = sprung.to_string();
+    let table = said
+        .split("```")
+        .nth(1)
+        .and_then(|text| text.strip_prefix("toml\n"));
+    let drive = table
+        .expect("a table")
+        .split("\n\n")
+        .next()
+        .expect("the drive");
+    // What it says to write there makes the same robot.
+    let (again, _) = bill_with("paper", drive);
+    let [was, is] = [sprung.hold, Hold::of(&again)].map(|hold| hold.expect("springs"));
+    assert!((was.force - is.force).abs() < 0.01 && (was.rate - is.rate).abs() < 0.001);
+}

@@ -1,0 +1,38 @@
+//! robot.toml and the gaits, from the outside. What is not said of every robot is
+//! said of the paper's, by its file.
+
+use std::sync::LazyLock;
+
+use lizard_robot::{CheckedGait, Error, Robot};
+
+mod docs;
+mod drives;
+mod golden;
+mod predictions;
+mod refusals;
+mod robots;
+mod springs;
+mod standing;
+
+const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
+
+fn paper_text() -> String {
+    std::fs::read_to_string(PAPER).expect(PAPER)
+}
+
+fn paper() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> =
+        LazyLock::new(|| Robot::load(PAPER).unwrap_or_else(|error| panic!("{error}")));
+    &ROBOT
+}
+
+fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
+    robot.gait(name).expect(name)
+}
+
+/// The paper's robot with one line of its file changed.
+fn paper_with(from: &str, to: &str) -> Result<Robot, Error> {
+    let text = paper_text();
+    assert!(text.contains(from), "robots/paper.toml has no {from:?}");
+    Robot::parse(&text.replacen(from, to, 1))
+}

@@ -1,0 +1,175 @@
+//! What holds for every robot whose file is in robots/, and for the builder's own.
+
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use lizard_kinematics::Check;
+use lizard_robot::{Robot, STEPS_PER_DEGREE};
+
+/// The files in robots/ and robot.toml.
+fn files() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let folder = std::fs::read_dir(root.join("robots")).expect("robots/");
+    let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("a file").path()).collect();
+    assert!(files.len() >= 4, "{files:?}");
+    files.push(root.join("robot.toml"));
+    files
+}
+
+fn each(test: impl Fn(&str, &Robot)) {
+    static ROBOTS: LazyLock<Vec<(String, Robot)>> = LazyLock::new(|| {
+        let load = |file: PathBuf| {
+            let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
+            (file.display().to_string(), robot)
+        };
+        files().into_iter().map(load).collect()
+    });
+    for (file, robot) in ROBOTS.iter() {
+        test(file, robot);
+    }
+}
+
+#[test]
+fn every_table_is_within_half_a_degree_at_every_phase() {
+    each(|file, robot| {
+        for gait in robot.gaits() {
+            let error = gait.table_error();
+            assert!(error.max <= 0.50, "{file} {}: {error:?}", gait.name());
+            assert!(error.rms <= error.max);
+        }
+    });
+}
+
+#[test]
+fn every_gait_is_safe_between_its_samples_too() {
+    each(|file, robot| {
+        for gait in robot.gaits() {
+            for phase in (0..=u16::MAX).step_by(7) {
+                let pose = gait.table_angles(phase).into();
+                let solution = robot.lizard().solve(&pose).expect("it closes");
+                if let Some(violation) = robot.limits().violations(&solution).next() {
+                    // The check looks at 1024 phases; between two of them a margin
+                    // moves by less than this.
+                    let by = (violation.value - violation.limit).abs();
+                    assert!(by < 0.01, "{file} {} at {phase}: {violation}", gait.name());
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn an_audit_is_the_least_of_what_its_phases_give() {
+    each(|file, robot| {
+        for gait in robot.gaits() {
+            let audit = gait.audit();
+            let mut seen = [f64::INFINITY; 3];
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            for phase in (0..=u16::MAX).step_by(64) {
+                let pose = gait.table_angles(phase).into();
+                let s = robot.lizard().solve(&pose).expect("it closes");
+                for (place, margins) in [&s.margins.type2[..], &s.margins.type1, &s.margins.leg]
+                    .into_iter()
+                    .enumerate()
+                {
+                    seen[place] = margins.iter().fold(seen[place], |a, b| a.min(*b));
+                }
+                least = least.min(s.left.s).min(s.right.s);
+                most = most.max(s.left.s).max(s.right.s);
+            }
+            let found = [audit.type2.value, audit.type1.value, audit.leg.value];
+            for (found, seen) in found.into_iter().zip(seen) {
+                // It looks at more phases, so it may find less.
+                assert!(
+                    (0.0..0.002).contains(&(seen - found)),
+                    "{file} {}",
+                    gait.name()
+                );
+            }
+            assert!(
+                (0.0..0.1).contains(&(least - audit.stroke.0)),
+                "{file} {}",
+                gait.name()
+            );
+            assert!(
+                (0.0..0.1).contains(&(audit.stroke.1 - most)),
+                "{file} {}",
+                gait.name()
+            );
+            assert!(Check::TYPE2.contains(&audit.type2.what), "{file}");
+        }
+    });
+}
+
+#[test]
+fn the_fastest_frame_is_faster_than_all_others_whichever_way_they_go() {
+    each(|file, robot| {
+        for gait in robot.gaits() {
+            let frame = 0.02 / gait.period();
+            let mut most = 0.0f64;
+            for i in 0..1000 {
+                let phase = f64::from(i) / 1000.0;
+                let (from, to) = (gait.angles(phase), gait.angles(phase + frame));
+                for servo in 0..4 {
+                    most = most.max((to[servo] - from[servo]).abs() * 50.0);
+                }
+            }
+            let peak = gait.audit().peak;
+            assert!(
+                (peak.speed - most).abs() <= 0.005 * most,
+                "{file} {}: {peak:?}, but {most}",
+                gait.name()
+            );
+            assert!(peak.speed <= robot.pace().gait_slew);
+        }
+    });
+}
+
+#[test]
+fn stand_is_the_neutral_pose_to_the_last_step() {
+    each(|file, robot| {
+        let stand = &robot.gaits()[0];
+        assert_eq!((stand.name(), stand.moves()), ("stand", false), "{file}");
+        for phase in 0..=u16::MAX {
+            assert_eq!(stand.table_sweeps(phase), [0; 4]);
+        }
+        assert_eq!(stand.pose(0.3), robot.neutral());
+    });
+}
+
+#[test]
+fn every_gait_has_its_place_its_name_and_its_travel() {
+    each(|file, robot| {
+        for (place, gait) in robot.gaits().iter().enumerate() {
+            assert_eq!(gait.index(), place);
+            let spoken = gait.name().replace('-', " ");
+            assert_eq!(robot.gait(&spoken), Some(gait), "{file}");
+            for phase in (0..=u16::MAX).step_by(64) {
+                for (servo, sweep) in robot.servos().iter().zip(gait.table_sweeps(phase)) {
+                    let pulse = servo.neutral_us
+                        + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE;
+                    // Sweeps and ends are rounded to a step, a tenth of a microsecond.
+                    assert!(
+                        pulse > servo.min_us - 0.2 && pulse < servo.max_us + 0.2,
+                        "{file} {} at {phase}: {pulse} us",
+                        gait.name()
+                    );
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn a_robots_sweeps_are_zero_where_it_stands_and_positive_ahead() {
+    each(|file, robot| {
+        let neutral: [f64; 4] = robot.neutral().into();
+        assert_eq!(robot.sweeps(neutral), [0.0; 4], "{file}");
+        // theta1 and theta5 fall, theta4 and theta8 rise, as the feet go forward.
+        let ahead = [-3.0, 3.0, 3.0, -3.0];
+        let angles = std::array::from_fn(|i| neutral[i] + ahead[i]);
+        for sweep in robot.sweeps(angles) {
+            assert!((sweep - 3.0).abs() < 1e-9, "{file}");
+        }
+    });
+}

@@ -1,0 +1,147 @@
+//! What a gait is for: to go ahead, or to turn on the spot.
+
+use lizard_robot::servo::LEGS;
+use lizard_robot::{CheckedGait, Ground, Travel};
+use thiserror::Error;
+
+/// Less than this in a cycle is no way: mm, deg.
+const NOWHERE: (f64, f64) = (1.0, 0.5);
+
+fn is_left(servo: usize) -> bool {
+    LEGS[servo].starts_with('L')
+}
+
+fn is_front(servo: usize) -> bool {
+    LEGS[servo].ends_with('F')
+}
+
+/// Why a gait of this name has no goal.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum NoGoal {
+    /// Its way depends on which of two feet holds.
+    #[error("where the gait `{0}` leads is undecided: two feet pull against two; tune another one")]
+    Undecided(String),
+    /// It stands, or comes back to where it began.
+    #[error("the gait `{0}` goes nowhere")]
+    Nowhere(String),
+    /// It walks along a curve.
+    #[error(
+        "the gait `{0}` goes ahead and turns; tune a straight gait or a turn on the spot, and make \
+         the bow of it by `like` and `gain`"
+    )]
+    Bow(String),
+}
+
+/// The way that a gait makes, and its sign: ahead and to the left positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// Straight on.
+    Ahead(f64),
+    /// On the spot.
+    Turn(f64),
+}
+
+impl Goal {
+    /// The goal of a gait: what it does on rigid legs.
+    ///
+    /// # Errors
+    /// One that stands, goes nowhere for sure, or goes in a bow.
+    pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
+        let name = || gait.name().to_owned();
+        let way = gait.predict(&ground.rigid());
+        let (Some(forward), Some(turn)) = (way.forward, way.turn) else {
+            return Err(NoGoal::Undecided(name()));
+        };
+        let goes = |value: f64, least: f64| value.abs() >= least;
+        match (goes(forward, NOWHERE.0), goes(turn, NOWHERE.1)) {
+            (true, false) => Ok(Self::Ahead(forward.signum())),
+            (false, true) => Ok(Self::Turn(turn.signum())),
+            (false, false) => Err(NoGoal::Nowhere(name())),
+            (true, true) => Err(NoGoal::Bow(name())),
+        }
+    }
+
+    /// How far a way leads to this goal, mm or deg.
+    pub fn reached(self, way: &Travel) -> f64 {
+        match self {
+            Self::Ahead(sign) => sign * way.forward,
+            Self::Turn(sign) => sign * way.turn,
+        }
+    }
+
+    /// Whether a way leads nowhere else, as far as a gait can be said to.
+    pub fn is_true_to(self, way: &Travel) -> bool {
+        match self {
+            Self::Ahead(_) => way.turn.abs() < NOWHERE.1 && way.left.abs() < NOWHERE.0,
+            Self::Turn(_) => way.forward.hypot(way.left) < NOWHERE.0,
+        }
+    }
+
+    /// 1 for a leg that strokes backward while it pushes, -1 for one that strokes forward.
+    pub fn sign(self, servo: usize) -> f64 {
+        match self {
+            Self::Ahead(sign) => sign,
+            // In a turn to the left the left feet push forward.
+            Self::Turn(sign) => {
+                if is_left(servo) {
+                    -sign
+                } else {
+                    sign
+                }
+            }
+        }
+    }
+
+    /// Which of two pairs of partners a leg belongs to: the one of LH, or the other.
+    pub fn pair(self, servo: usize) -> usize {
+        match self {
+            Self::Ahead(_) => usize::from(is_front(servo)),
+            Self::Turn(_) => usize::from(is_front(servo) == is_left(servo)),
+        }
+    }
+
+    /// The unit of what is reached in a second.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Ahead(_) => "mm/s",
+            Self::Turn(_) => "deg/s",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_robot::Robot;
+
+    use super::*;
+
+    #[test]
+    fn a_goal_is_what_the_gait_does() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        let goal = |name: &str| {
+            let gait = robot.gait(name).expect(name);
+            Goal::of(gait, robot.ground()).map_err(|no| no.to_string())
+        };
+        assert_eq!(goal("walk"), Ok(Goal::Ahead(1.0)));
+        assert_eq!(goal("back"), Ok(Goal::Ahead(-1.0)));
+        assert_eq!(goal("left"), Ok(Goal::Turn(1.0)));
+        assert_eq!(goal("right"), Ok(Goal::Turn(-1.0)));
+        for (name, why) in [
+            ("stand", "goes nowhere"),
+            ("arc-left", "goes ahead and turns"),
+            ("look", "is undecided"),
+        ] {
+            assert!(goal(name).expect_err(name).contains(why), "{name}");
+        }
+    }
+
+    #[test]
+    fn in_a_turn_to_the_left_the_left_legs_run_against_the_others() {
+        let signs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).sign(servo));
+        assert_eq!(signs, [-1.0, 1.0, 1.0, -1.0], "as robot.toml's gain has it");
+        let pairs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).pair(servo));
+        assert_eq!(pairs[0], pairs[2]);
+        assert_eq!(pairs[1], pairs[3]);
+        assert_eq!(pairs[3], 0);
+    }
+}

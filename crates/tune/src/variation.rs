@@ -1,0 +1,236 @@
+//! Robots and floors that differ a little, by what a print, a floor and a kitchen scale
+//! leave uncertain.
+
+use fastrand::Rng;
+use lizard_robot::{
+    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Spring, Stance, Strut, Travel, Walker,
+};
+use lizard_twin::ServoModel;
+
+/// Phases of a cycle.
+const PHASES: f64 = 65536.0;
+
+/// How far robots and floors differ: each value is uniform within these bounds around
+/// robot.toml's.
+const FRICTION: (f64, f64) = (0.5, 1.5);
+const PADS: (f64, f64) = (0.9, 1.1);
+const CENTRE: f64 = 8.0;
+const MOUNT: f64 = 4.0;
+const HIPS: f64 = 2.0;
+const SPRING: (f64, f64) = (0.8, 1.2);
+/// Leaves of feet: a print has their thickness to a fifteenth, and it counts three times.
+const LEAF: (f64, f64) = (0.8, 1.25);
+/// A leg's play, deg: more than robot.toml's by up to this.
+const PLAY: f64 = 1.0;
+
+/// The same in words.
+pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
+mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
+-1 to 1 times what [feet] level says";
+
+/// What [`Variation::with_play`] adds, in words.
+pub const PLAYED: &str = "play of the legs 0 to 1 deg more";
+
+/// A robot and a floor that differ at random from those of robot.toml.
+#[derive(Debug, Clone, Copy)]
+pub struct Variation {
+    ground: Ground,
+    /// How much harder each pad presses.
+    pads: [f64; 4],
+    /// Factor on the ground's friction backward over forward.
+    ratio: f64,
+}
+
+impl Variation {
+    /// The one of a seed, around this ground.
+    #[must_use]
+    pub fn of(ground: &Ground, seed: u64) -> Self {
+        let mut rng = Rng::with_seed(seed);
+        let mut within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
+        let feet = ground.feet;
+        let ground = Ground {
+            feet: Feet {
+                mount: feet.mount + within((-MOUNT, MOUNT)),
+                hip_forward: feet.hip_forward + within((-HIPS, HIPS)),
+                hip_side: {
+                    let by = within((-HIPS, HIPS));
+                    feet.hip_side.map(|side| side + by)
+                },
+                ..feet
+            },
+            body: Body {
+                centre: ground.body.centre.map(|at| at + within((-CENTRE, CENTRE))),
+                ..ground.body
+            },
+            friction: ground.friction * within(FRICTION),
+            drive: Drive {
+                kind: match ground.drive.kind {
+                    Kind::Rigid => Kind::Rigid,
+                    Kind::Strut(strut) => Kind::Strut(Strut {
+                        force: strut.force * within(SPRING),
+                        rate: strut.rate * within(SPRING),
+                        ..strut
+                    }),
+                    Kind::Spring(spring) => Kind::Spring(Spring {
+                        rate: spring.rate * within(SPRING),
+                        preload: spring.preload * within(SPRING),
+                    }),
+                },
+                ..ground.drive
+            },
+            ..*ground
+        };
+        let (pads, ratio) = (std::array::from_fn(|_| within(PADS)), within(PADS));
+        let stance = Stance {
+            stiffness: ground.stance.stiffness * within(LEAF),
+            twist: ground.stance.twist + ground.stance.level * within((-1.0, 1.0)),
+            ..ground.stance
+        };
+        Self {
+            ground: Ground { stance, ..ground },
+            pads,
+            ratio,
+        }
+    }
+
+    /// The same with legs that have some play as well, which takes longer to walk.
+    #[must_use]
+    pub fn with_play(mut self, seed: u64) -> Self {
+        // Numbers of their own: with and without it is otherwise the same robot.
+        let mut rng = Rng::with_seed(seed ^ 0x9E37_79B9_7F4A_7C15);
+        self.ground.drive.play += PLAY * rng.f64();
+        self
+    }
+
+    /// No variation: the ground as it is.
+    #[must_use]
+    pub fn none(ground: &Ground) -> Self {
+        Self {
+            ground: *ground,
+            pads: [1.0; 4],
+            ratio: 1.0,
+        }
+    }
+
+    /// Where the second cycle of a gait leads it, which all later ones repeat: frame by frame,
+    /// with such servos.
+    #[must_use]
+    pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
+        let mut sweeps = gait.sweeps(gait.phase(0.0));
+        let mut next = |phase: u16| {
+            let targets = gait.sweeps(f64::from(phase) / PHASES);
+            sweeps = std::array::from_fn(|i| {
+                model.turned(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
+            });
+            sweeps
+        };
+        let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
+        let [begin, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
+        // Of rigid legs the first cycle leaves nothing but where the servos are.
+        let sprung = self.ground.drive.lags();
+        let from = if sprung { begin } else { end };
+        let mut walker = Walker::uneven(self.ground, from, self.pads, self.ratio);
+        if sprung {
+            first.into_iter().for_each(|sweeps| {
+                walker.step(sweeps);
+            });
+        }
+        let begin = walker.place();
+        for (_, phase) in gait.frames() {
+            walker.step(next(phase));
+        }
+        walker.place().seen_from(begin)
+    }
+}
+
+/// The values below which so large a share of all lies: nearest rank.
+#[must_use]
+pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    shares.map(|share| {
+        let at = (share * last as f64).round() as usize;
+        values.get(at).copied().unwrap_or(f64::NAN)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_twin::Twin;
+
+    use super::*;
+
+    #[test]
+    fn walk_goes_ahead_on_nearly_every_robot_and_floor() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        let walk = robot.gait("walk").expect("walk");
+        let ways: Vec<Travel> = (0..40)
+            .map(|seed| Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
+            .collect();
+        let of = |part: fn(&Travel) -> f64| {
+            quantiles(ways.iter().map(part).collect(), [0.05, 0.5, 0.95])
+        };
+        let [low, middle, high] = of(|way| way.forward);
+        assert!(25.0 < low && low < middle && middle < high && high < 40.0);
+        let turn = of(|way| way.turn);
+        assert!(turn[0] < 0.0 && turn[2] > 0.0, "{turn:?}");
+    }
+
+    #[test]
+    fn soft_feet_leave_a_walk_where_stiff_ones_lose_it() {
+        let text = include_str!("../../../robots/paper.toml");
+        let least = |feet: &str| {
+            let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
+            let walk = robot.gait("walk").expect("walk");
+            let ways = (0..60).map(|seed| {
+                Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90)
+            });
+            let [least] = quantiles(ways.map(|way| way.forward).collect(), [0.05]);
+            least
+        };
+        let level = least("[feet]\nlevel = 0.0");
+        assert!(least("") > 0.97 * level && least("[feet]\nstiffness = 3.3") < 0.65 * level);
+    }
+
+    #[test]
+    fn play_is_added_to_the_same_robots() {
+        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+        for seed in 0..50 {
+            let plain = Variation::of(robot.ground(), seed);
+            let played = plain.with_play(seed);
+            let play = played.ground.drive.play;
+            assert!((0.0..=PLAY).contains(&play) && play > 0.0, "{play}");
+            let mut without = played;
+            without.ground.drive.play = 0.0;
+            assert_eq!(without.ground, plain.ground);
+        }
+    }
+
+    #[test]
+    fn without_variation_it_walks_as_the_twin_does() {
+        let text = include_str!("../../../robots/paper.toml");
+        let springs = text.replace(
+            "[leg]",
+            "[leg]\ndrive = { kind = \"spring\", stiffness = 5.0 }",
+        );
+        for text in [text, &springs] {
+            let robot = Robot::parse(text).expect("right");
+            for name in ["walk", "left"] {
+                let gait = robot.gait(name).expect(name);
+                for model in [ServoModel::IDEAL, ServoModel::SG90] {
+                    let way = Variation::none(robot.ground()).walked(&robot, gait, model);
+                    let twin = Twin::new(&robot, model).cycle(gait).travel();
+                    let off = (way.forward - twin.forward).hypot(way.turn - twin.turn);
+                    // The twin reads waveforms of 64 samples, a search the gait itself.
+                    assert!(off < 0.4, "{name} {way:?} {twin:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_share_is_below_each_quantile() {
+        let values = (0..=100).rev().map(f64::from).collect();
+        assert_eq!(quantiles(values, [0.05, 0.5, 0.95]), [5.0, 50.0, 95.0]);
+    }
+}

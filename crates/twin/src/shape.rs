@@ -1,0 +1,115 @@
+//! Where every joint is: what a picture of the robot needs.
+
+use lizard_contact::FORWARD;
+use lizard_kinematics::{End, Side, Solution, Vector};
+use lizard_robot::{LegPlace, Robot};
+
+/// The joints of a robot, mm, chassis frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// The servos' shafts.
+    pub shafts: [Vector; 4],
+    /// Tips of the cranks that carry head and tail.
+    pub tips: [Vector; 4],
+    /// Tips of the arms that carry the sliders.
+    pub arms: [Vector; 4],
+    /// The head and the tail.
+    pub ends: [Vector; 2],
+    /// The legs, which may lag behind their servos.
+    pub legs: [LegPlace; 4],
+}
+
+impl Shape {
+    /// The joints at servo angles (deg, chassis frame), with legs at these sweeps from
+    /// neutral (deg, foot forward positive), all in servo order; none where a loop does
+    /// not close.
+    #[must_use]
+    pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
+        let solved = robot.lizard().solve(&angles.into()).ok()?;
+        Some(Self::of_solved(robot, &solved, legs))
+    }
+
+    /// The same of a pose that is solved.
+    #[must_use]
+    pub fn of_solved(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
+        let shafts = robot.lizard().shafts();
+        let tips = solved.crank_tips();
+        let angles: [f64; 4] = solved.pose.into();
+        let mut arms = shafts;
+        for side in Side::ALL {
+            let [front, rear] = side.servos();
+            let slider = solved.side(side);
+            arms[front] = shafts[rear] + slider.front_tip;
+            arms[rear] = shafts[rear] + slider.rear_tip;
+        }
+        Self {
+            shafts,
+            tips,
+            arms,
+            ends: End::ALL.map(|end| solved.point(end)),
+            legs: std::array::from_fn(|i| {
+                let leg = robot.servos()[i].neutral + FORWARD[i] * legs[i];
+                robot.legs()[i].at(angles[i], leg)
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paper() -> Robot {
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+    }
+
+    fn shape(robot: &Robot, legs: [f64; 4]) -> Shape {
+        Shape::of(robot, robot.neutral().into(), legs).expect("neutral closes")
+    }
+
+    #[test]
+    fn every_link_has_its_length() {
+        let robot = paper();
+        let shape = shape(&robot, [20.0, -10.0, 5.0, 0.0]);
+        let length = |a: Vector, b: Vector| (a - b).length();
+        for (i, leg) in shape.legs.iter().enumerate() {
+            assert!((length(shape.shafts[i], shape.tips[i]) - 30.0).abs() < 1e-9);
+            assert!((length(shape.shafts[i], shape.arms[i]) - 30.0).abs() < 1e-9);
+            assert!((length(shape.tips[i], shape.ends[i / 2]) - 50.0).abs() < 1e-9);
+            assert!((length(leg.pivots[0], leg.pivots[1]) - 50.0).abs() < 1e-9);
+            assert!((length(leg.joints[0], leg.joints[1]) - 50.0).abs() < 1e-9);
+            assert!((length(leg.pivots[0], leg.joints[0]) - 45.0).abs() < 1e-9);
+            assert!((length(leg.pivots[1], leg.joints[1]) - 45.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_leg_that_lags_leaves_its_servo_and_opens_its_strut() {
+        let robot = paper();
+        let long = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
+        let [rigid, lags] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
+        for i in 0..4 {
+            let (before, after) = (rigid.legs[i], lags.legs[i]);
+            assert_eq!(before.pivots, after.pivots);
+            assert_eq!(before.strut[0], after.strut[0], "the servo stands");
+            assert!((long(before) - robot.legs()[i].strut_length).abs() < 1e-9);
+            assert!((long(after) - long(before)).abs() > 1.5, "{after:?}");
+            assert!(after.foot.y > before.foot.y + 4.0);
+        }
+    }
+
+    #[test]
+    fn at_neutral_each_foot_is_straight_beside_its_hip() {
+        let robot = paper();
+        let feet = shape(&robot, [0.0; 4]).legs.map(|leg| leg.foot);
+        for (foot, (x, y)) in
+            feet.into_iter()
+                .zip([(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)])
+        {
+            assert!((foot - Vector::new(x, y)).length() < 1e-9, "{foot:?}");
+        }
+        for (before, after) in feet.into_iter().zip(shape(&robot, [10.0; 4]).legs) {
+            assert!(after.foot.y > before.y + 7.0, "forward");
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Frames pushed one by one, against the model's prediction for the gait.
+
+use lizard_robot::{CheckedGait, Drive, Ground, Place, Robot};
+use lizard_twin::{ServoModel, Tally, Twin};
+
+fn paper() -> Robot {
+    Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+}
+
+/// The widths of a gait's frame as the firmware's table gives them, us.
+fn widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
+    let angles = gait.table_angles(phase);
+    std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
+}
+
+/// The fourth cycle of a gait.
+fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
+    let gait = robot.gait(name).expect(name);
+    let mut twin = Twin::new(robot, model);
+    twin.set_ground(*ground);
+    let mut tally = Tally::new(Place::START);
+    for _ in 0..4 {
+        let begin = twin.push(widths(
+            robot,
+            gait,
+            gait.frames().next().expect("a frame").1,
+        ));
+        tally = Tally::new(begin.place);
+        for (_, phase) in gait.frames().skip(1) {
+            tally.add(&twin.push(widths(robot, gait, phase)));
+        }
+    }
+    tally
+}
+
+#[test]
+fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
+    let robot = paper();
+    let springs = Ground {
+        drive: Drive::spring(5.0, 0.0),
+        ..*robot.ground()
+    };
+    for ground in [*robot.ground(), springs] {
+        for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
+            let tally = cycle(&robot, gait.name(), ServoModel::IDEAL, &ground);
+            let (travel, wanted) = (tally.travel(), gait.walked(&ground).travel);
+            let name = gait.name();
+            assert!(
+                (travel.forward - wanted.forward).abs() < 0.35,
+                "{name} {travel:?} {wanted:?}"
+            );
+            assert!(
+                (travel.turn - wanted.turn).abs() < 0.2,
+                "{name} {travel:?} {wanted:?}"
+            );
+            assert!((tally.seconds() - gait.period()).abs() < 0.011, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_dead_band_costs_its_share_of_the_stroke() {
+    let robot = paper();
+    let walk = |model| {
+        cycle(&robot, "walk", model, robot.ground())
+            .travel()
+            .forward
+    };
+    let (ideal, sg90) = (walk(ServoModel::IDEAL), walk(ServoModel::SG90));
+    // A degree of 40 is lost where a leg turns round.
+    assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.01, "{sg90} {ideal}");
+}
+
+#[test]
+fn servos_too_slow_for_a_gait_cut_its_stroke() {
+    let robot = paper();
+    let slow = ServoModel {
+        rate: 120.0,
+        ..ServoModel::IDEAL
+    };
+    let tally = cycle(&robot, "walk", slow, robot.ground());
+    assert!(tally.rate <= 120.0 + 1e-9 && tally.error > 5.0, "{tally:?}");
+    assert!(tally.travel().forward < 25.0, "{tally:?}");
+}
+
+#[test]
+fn three_feet_hold_while_one_returns() {
+    let robot = paper();
+    let crawl = robot.gait("crawl").expect("crawl");
+    let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+    for (seconds, phase) in crawl.frames() {
+        let state = twin.push(widths(&robot, crawl, phase));
+        // In the middle of the second fifth only the left hind leg moves.
+        if (0.24..0.36).contains(&seconds) {
+            assert_eq!(state.holds(), [true, true, true, false], "at {seconds}");
+        }
+    }
+}
+
+#[test]
+fn a_robot_without_pulses_stays_where_it_is() {
+    let robot = paper();
+    let walk = robot.gait("walk").expect("walk");
+    let mut twin = Twin::new(&robot, ServoModel::SG90);
+    for (_, phase) in walk.frames().take(20) {
+        twin.push(widths(&robot, walk, phase));
+    }
+    let before = (twin.angles(), twin.push([None; 4]).place);
+    let after = twin.push([None; 4]);
+    assert_eq!((after.angles, after.place), before);
+    assert_eq!(
+        (after.pulsed, after.slip, after.frame),
+        ([false; 4], [0.0; 4], 22)
+    );
+}
+
+#[test]
+fn angles_that_are_asked_for_do_what_their_pulses_do() {
+    let robot = Robot::parse(include_str!("../../../robots/unequal.toml")).expect("right");
+    let walk = robot.gait("walk").expect("walk");
+    let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
+    for (_, phase) in walk.frames() {
+        let by_pulse = twins[0].push(widths(&robot, walk, phase));
+        let by_angle = twins[1].push_angles(walk.table_angles(phase));
+        for i in 0..4 {
+            assert!((by_pulse.angles[i] - by_angle.angles[i]).abs() < 1e-9);
+        }
+        let place = [by_pulse.place, by_angle.place].map(|place| place.forward);
+        assert!((place[0] - place[1]).abs() < 1e-6, "{place:?}");
+    }
+}
+
+#[test]
+fn a_cycle_is_what_its_frames_come_to() {
+    let robot = paper();
+    for name in ["walk", "trot", "left"] {
+        let gait = robot.gait(name).expect(name);
+        let whole = cycle(&robot, name, ServoModel::SG90, robot.ground()).travel();
+        let twin = Twin::new(&robot, ServoModel::SG90);
+        let alone = twin.cycle(gait).travel();
+        let off = (alone.forward - whole.forward).abs();
+        assert!(off < 0.3, "{name} {alone:?} {whole:?}");
+        assert!((alone.turn - whole.turn).abs() < 0.2, "{name}");
+        assert_eq!(
+            twin.angles(),
+            <[f64; 4]>::from(robot.neutral()),
+            "it stands"
+        );
+    }
+}
+
+#[test]
+fn a_pulse_beyond_a_servos_travel_is_taken_for_its_end() {
+    let robot = paper();
+    let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+    let state = twin.push([Some(9000.0), None, None, None]);
+    assert_eq!(state.angles[0], robot.servos()[0].neutral + 90.0);
+}

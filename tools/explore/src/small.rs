@@ -1,0 +1,78 @@
+//! A small robot: the paper's, with few and short gaits, so that the states of a walk
+//! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
+
+use lizard_core::adjustment::Reach;
+use lizard_core::gait::{Channel, Gait, SAMPLES, Wave};
+use lizard_core::point_to_point::Slew;
+use lizard_core::robot::Robot;
+use lizard_core::section::Content;
+use lizard_core::units::Sweep;
+use lizard_robot::flash;
+
+/// A third of the paper's speed, 1/65536 turn in a frame: servos that begin elsewhere than
+/// they are leap by more than that.
+const PER_FRAME: u16 = 364;
+
+/// Every gait needs no more than this of a servo.
+const NEED: i16 = 1_000;
+
+/// The paper's robot with `stand`, `walk`, `trot` and `stray`, which leaves safe ground.
+///
+/// # Panics
+/// If robots/paper.toml is no robot.
+#[must_use]
+pub fn small() -> Robot<'static> {
+    let text = include_str!("../../../robots/paper.toml");
+    let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
+    let turn = |n: usize| n as f64 / SAMPLES as f64 * std::f64::consts::TAU;
+    let wave = |of: &dyn Fn(usize) -> f64| -> Wave {
+        std::array::from_fn(|n| (of(n) * 1820.0).round() as i16)
+    };
+    let mut small = Content {
+        slew: Slew::new(PER_FRAME),
+        reach: [Reach {
+            min: Sweep(-NEED),
+            max: Sweep(NEED),
+        }; 4],
+        gaits: Vec::new(),
+        names: Vec::new(),
+        waves: vec![
+            wave(&|n| turn(n).sin()),
+            wave(&|n| 4.0 * (1.0 - turn(n).cos())),
+        ],
+        ..paper.content().clone()
+    };
+    // A cycle of sixteen frames.
+    let increment = (1 << 24) / 16;
+    add(&mut small, "stand", increment, 0, [0; 4]);
+    add(
+        &mut small,
+        "walk",
+        increment,
+        0,
+        [7_000, -6_000, 5_000, 4_000],
+    );
+    add(
+        &mut small,
+        "trot",
+        -increment,
+        0,
+        [-5_000, 6_000, 4_000, 7_000],
+    );
+    add(&mut small, "stray", increment / 12, 1, [16_384, 0, 0, 0]);
+    Robot::open(flash(&small.section())).expect("whole")
+}
+
+fn add(to: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4]) {
+    to.gaits.push(Gait {
+        name_start: to.names.len() as u16,
+        name_length: name.len() as u16,
+        increment,
+        channels: gains.map(|gain| Channel {
+            wave,
+            offset: 0,
+            gain,
+        }),
+    });
+    to.names.extend(name.bytes());
+}

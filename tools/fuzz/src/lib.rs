@@ -1,0 +1,99 @@
+//! What must not harm the core: any bytes at its console, any bytes in its EEPROM.
+//!
+//! Bytes come from a half-open port, a modem manager or a cat on the keyboard; the
+//! EEPROM may hold another program's data. Whatever they are, each line has one
+//! answer, no pulse leaves a servo's limits, and what was saved stays whole.
+//!
+//! [`console`] and [`memory`] check that for one input. `make test` calls them with
+//! millions of seeded random bytes and lines, `make fuzz` with what LLVM's libFuzzer
+//! finds.
+
+mod board;
+
+pub use board::Board;
+
+use std::sync::LazyLock;
+
+use lizard_core::memory::{Address, CONTENT, Progress};
+use lizard_core::record::{COPIES, RESTED};
+use lizard_core::settings::Settings;
+use lizard_core::virtual_board::Eeprom;
+use lizard_robot::Robot;
+
+/// The robot that `LIZARD_ROBOT` names, else the source tree's robot.toml.
+///
+/// # Panics
+/// If that is no robot.
+pub fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
+        let built_in = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robot.toml").into();
+        let path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+        Robot::load(path.unwrap_or(built_in)).unwrap_or_else(|error| panic!("{error}"))
+    });
+    &ROBOT
+}
+
+/// Bytes at the console, a frame after each eight of them.
+///
+/// # Panics
+/// If they do harm.
+pub fn console(data: &[u8]) {
+    let mut board = Board::new(robot(), Eeprom::blank());
+    for eight in data.chunks(8) {
+        for byte in eight {
+            board.take(*byte);
+        }
+        board.frame();
+    }
+    board.take(b'\n');
+    board.assert_memory_is_right();
+}
+
+/// An EEPROM: the first bytes are put over the contents of its three records, which
+/// are whole then; of the others each three set a byte somewhere, so that a record may
+/// be damaged, too.
+///
+/// # Panics
+/// If it does harm.
+pub fn memory(data: &[u8]) {
+    let robot = robot();
+    let mut memory = Eeprom::blank();
+    let (records, patches) = data.split_at(data.len().min(3 * CONTENT));
+    let places = [COPIES[0], COPIES[1], RESTED];
+    for (place, change) in places.into_iter().zip(records.chunks(CONTENT)) {
+        let mut content = *Settings::of(robot.firmware()).bytes();
+        for (byte, change) in content.iter_mut().zip(change) {
+            *byte ^= change;
+        }
+        write(place, &content, &mut memory);
+    }
+    for patch in patches.chunks_exact(3) {
+        let at = u16::from_le_bytes([patch[0], patch[1]]) % 1024;
+        memory.bytes_mut()[usize::from(at)] = patch[2];
+    }
+    let before = memory.clone();
+    let mut board = Board::new(robot, memory);
+    // Three seconds and a half: what `boot` says is done, too.
+    for _ in 0..175 {
+        board.frame();
+    }
+    let kept = board.memory().bytes();
+    let settings = 0..usize::from(RESTED.0);
+    assert_eq!(
+        kept[settings.clone()],
+        before.bytes()[settings],
+        "nobody saved"
+    );
+    for byte in b"status\nstand\n" {
+        board.take(*byte);
+    }
+    for _ in 0..50 {
+        board.frame();
+    }
+}
+
+/// Writes a record as the core does.
+fn write(place: Address, content: &[u8; CONTENT], memory: &mut Eeprom) {
+    let mut writing = place.write();
+    while writing.step(content, memory) == Progress::Going {}
+}

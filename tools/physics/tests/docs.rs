@@ -1,0 +1,187 @@
+//! The pages show what MuJoCo said, and that is as near to the model as it must be.
+//!
+//! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
+
+use lizard_robot::Robot;
+
+use lizard_physics::{
+    Case, Feet, Figures, Legs, ROBOTS, Way, expected, here, robot, rows, spread, table,
+};
+
+/// Replaces or compares what stands between a marker and the next end.
+fn block(page: &str, marker: &str, wanted: &str) {
+    let file = here().join("../..").join(page);
+    let text = std::fs::read_to_string(&file).expect(page);
+    let begin = format!("<!-- {marker} -->\n");
+    let start = text.find(&begin).expect(&begin) + begin.len();
+    let end = start + text[start..].find("<!-- end -->").expect("an end");
+    let now = format!("{}{wanted}{}", &text[..start], &text[end..]);
+    if std::env::var_os("BLESS_PHYSICS").is_some() {
+        std::fs::write(&file, now).expect(page);
+    } else {
+        assert_eq!(text, now, "{page} is out of date; run with BLESS_PHYSICS=1");
+    }
+}
+
+#[test]
+fn the_pages_have_the_ways_that_model_and_engine_say() {
+    let kept = Figures::kept();
+    for name in ROBOTS {
+        let robot = robot(name);
+        let all = format!("```text\n{}```\n", table(name, &robot, &kept));
+        block(
+            "docs/judges.md",
+            &format!("physics of robots/{name}.toml"),
+            &all,
+        );
+        if name == "paper" {
+            let ways = spread(name, &robot, &kept);
+            for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
+                block(page, "ways of robots/paper.toml", &ways);
+            }
+        }
+    }
+    let robot = robot("paper");
+    block(
+        "docs/measure.md",
+        "expected of robots/paper.toml",
+        &expected(&robot),
+    );
+}
+
+#[test]
+fn the_kept_figures_are_written_as_they_are_read() {
+    let file = here().join("figures.json");
+    let text = std::fs::read_to_string(&file).expect("figures.json");
+    let now = Figures::kept().text();
+    if std::env::var_os("BLESS_PHYSICS").is_some() {
+        std::fs::write(&file, now).expect("figures.json");
+    } else {
+        assert_eq!(text, now);
+    }
+}
+
+#[test]
+fn every_walk_is_kept_and_near_to_the_model() {
+    let kept = Figures::kept();
+    let mut count = 0;
+    for name in ROBOTS {
+        let robot = robot(name);
+        for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
+            let of = |case| kept.get(name, gait.name(), case);
+            let decided = of(Case::ALL[0]).is_some_and(|said| said.model.is_some());
+            for case in Case::ALL {
+                let Some(said) = of(case) else {
+                    assert!(!decided && case != Case::ALL[0], "{name}: {}", gait.name());
+                    continue;
+                };
+                assert_eq!(said.parted(case), None, "{name}: {}", gait.name());
+                assert_eq!(said.model.is_some(), decided, "{name}: {}", gait.name());
+                count += 1;
+            }
+        }
+    }
+    assert_eq!(kept.count(), count, "and no others are kept");
+}
+
+#[test]
+fn the_kept_ways_of_the_model_are_those_that_it_has_now() {
+    let (kept, robot) = (Figures::kept(), robot("paper"));
+    let mut count = 0;
+    for row in rows(&robot) {
+        let said = kept.get("paper", &row.gait, row.case).expect("it is kept");
+        assert_eq!(said.model.is_some(), row.decided, "{}", row.gait);
+        let (Some(was), Some(is)) = (said.model, row.model(&robot)) else {
+            continue;
+        };
+        let (mm, deg) = was.off(&is);
+        assert!(mm < 0.05 && deg < 0.05, "{}: {was:?} {is:?}", row.gait);
+        count += 1;
+    }
+    assert!(count >= 40, "{count}");
+}
+
+#[test]
+fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_way() {
+    let kept = Figures::kept();
+    let case = |feet| Case {
+        legs: Legs::Rigid,
+        feet,
+    };
+    let mut count = 0;
+    for name in ROBOTS {
+        for gait in robot(name).gaits().iter().filter(|gait| gait.moves()) {
+            let of = |feet| kept.get(name, gait.name(), case(feet));
+            let (Some(level), Some(long)) = (of(Feet::Level), of(Feet::Soft)) else {
+                continue;
+            };
+            let model = level.model.zip(long.model);
+            for (before, after) in model.into_iter().chain([(level.mujoco, long.mujoco)]) {
+                let ahead = |way: Way| way.0[0].hypot(way.0[1]);
+                let turn = |way: Way| way.0[2].abs();
+                // What the gait is about: its way, its turn, or neither.
+                let (was, is) = match (ahead(before) > 4.0, turn(before) > 1.0) {
+                    (true, _) => (ahead(before), ahead(after)),
+                    (false, true) => (turn(before), turn(after)),
+                    (false, false) => continue,
+                };
+                assert!(
+                    is > 0.9 * was,
+                    "{name}: {} {before:?} {after:?}",
+                    gait.name()
+                );
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 60, "{count}");
+}
+
+#[test]
+fn every_key_that_a_trial_sets_is_one_that_robot_toml_takes() {
+    let text = std::fs::read_to_string(here().join("../../robots/paper.toml")).expect("paper");
+    let table = expected(&robot("paper"));
+    let keys = table.lines().skip(2).flat_map(|line| {
+        let cell = line.rsplit(" | ").next().expect("a key");
+        cell.trim_end_matches(" |")
+            .split(", ")
+            .map(|key| key.trim_matches('`'))
+    });
+    let mut count = 0;
+    for key in keys {
+        let (section, name) = key.split_once("] ").expect(key);
+        let header = format!("\n{section}]");
+        // An array is no value of any of them, and a key that is not known is told apart.
+        let wrong = match text.contains(&header) {
+            true => {
+                let at = text.find(&header).expect("it is there") + 1;
+                let body = at + text[at..].find('\n').expect("its line ends") + 1;
+                let end = text[body..]
+                    .find("\n[")
+                    .map_or(text.len(), |end| body + end);
+                let others = text[body..end]
+                    .lines()
+                    .filter(|line| !line.starts_with(&format!("{name} ")));
+                let others: Vec<&str> = others.collect();
+                format!(
+                    "{}{name} = []\n{}{}",
+                    &text[..body],
+                    others.join("\n"),
+                    &text[end..]
+                )
+            }
+            false if name == "force" => {
+                format!("{text}\n{section}]\nkind = \"strut\"\nrate = 0.4\n{name} = []\n")
+            }
+            false => format!("{text}\n{section}]\n{name} = []\n"),
+        };
+        let refused = Robot::parse(&wrong).expect_err(key).to_string();
+        let path = format!("{}.{name}", section.trim_start_matches('['));
+        assert!(
+            refused.contains(&path) && !refused.contains("not a known key"),
+            "{refused}"
+        );
+        count += 1;
+    }
+    assert!(count >= 10, "{count}");
+}
