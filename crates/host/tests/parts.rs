@@ -13,7 +13,7 @@ fn lizard(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 fn robots(name: &str) -> String {
-    format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 fn fresh(name: &str) -> PathBuf {

@@ -7,7 +7,7 @@ pub const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
 /// The text of a robot's file.
 pub fn text(name: &str) -> String {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).expect(&path)
 }
 

@@ -275,7 +275,7 @@ mod tests {
     /// A robot of `robots/`, and the paper's with no limit in the way of the type-2 one.
     fn robot(name: &str) -> Robot {
         let file = name.trim_end_matches(" at its type-2 limit");
-        let path = format!("{}/../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
         let mut text = std::fs::read_to_string(&path).expect(&path);
         if file != name {
             for (from, to) in [

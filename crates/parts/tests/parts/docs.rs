@@ -4,7 +4,7 @@ use lizard_parts::{Assembly, Bill, steps};
 use lizard_robot::{Parts, Robot};
 
 fn read(path: &str) -> String {
-    let path = format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|fault| panic!("{path}: {fault}"))
 }
 
@@ -74,7 +74,7 @@ fn the_quickstart_quotes_the_list_of_the_bill() {
     let page = read("docs/quickstart.md");
     let (before, list, after) = list(&page);
     if std::env::var_os("BLESS_DOCS").is_some() {
-        let path = format!("{}/../docs/quickstart.md", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/../../docs/quickstart.md", env!("CARGO_MANIFEST_DIR"));
         let page = format!("{before}{expected}<!-- end of the list -->{after}");
         std::fs::write(path, page).expect("docs/quickstart.md");
         return;

@@ -20,7 +20,7 @@ const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
 /// The robot of a file of robots/, with more lines at the end.
 fn with(name: &str, more: &str) -> Robot {
-    let path = format!("{}/../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
     Robot::parse(&format!("{text}\n{more}"))
         .unwrap_or_else(|error| panic!("{name} with {more}: {error}"))

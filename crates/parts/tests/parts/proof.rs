@@ -143,7 +143,7 @@ fn the_robot_with_gaits_of_its_own_has_the_papers_parts() {
 
 #[test]
 fn every_file_of_robots_is_here() {
-    let folder = format!("{}/../robots", env!("CARGO_MANIFEST_DIR"));
+    let folder = format!("{}/../../robots", env!("CARGO_MANIFEST_DIR"));
     let mut names: Vec<_> = std::fs::read_dir(folder)
         .expect("robots/")
         .map(|entry| {
