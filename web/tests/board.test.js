@@ -48,7 +48,7 @@ test('a board that nothing answers from is asked about', async () => {
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(6000);
-  await opened.locator('#trouble', { hasText: 'Is it the right port, and an UNO?' }).waitFor();
+  await opened.locator('#trouble', { hasText: 'Is it the right port, and a UNO?' }).waitFor();
 });
 
 test('a board that its port does not reset is asked what it does, and followed', async () => {

@@ -49,7 +49,7 @@ async function cal(opened) {
 test('a new UNO becomes a robot that walks, is saved, and has a file that lizard restore takes', async () => {
   const opened = await connected(null, 5000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
-  await setup(opened).getByText('The board on USB is an UNO by its boot loader, and this firmware is not on it.').waitFor();
+  await setup(opened).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
   await does(opened, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
   await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
   await press(opened, 'Go on');

@@ -2,29 +2,29 @@
 // with # come before it, or unasked. One line is sent at a time.
 import type { Link } from './link';
 
-/** The console takes lines of at most so many characters. */
+/** Most characters of a line that the console accepts. */
 export const LONGEST_LINE = 63;
-/** The robot's own lines are shorter than this: what is longer is noise, and is cut. */
+/** The robot's lines are shorter than this; longer ones are noise and are cut. */
 const LONGEST = 500;
-/** No answer within this time, ms, is none. */
+/** Time within which an answer must come, ms. */
 const PATIENCE = 3000;
 
 export interface Answer {
   ok: boolean;
-  /** The line itself. */
+  /** The answer's line. */
   text: string;
-  /** The # lines that came before it. */
+  /** The # lines before it. */
   notes: string[];
 }
 
 export interface Heard {
-  /** A line that was sent. */
+  /** Called with each line that is sent. */
   sent(line: string): void;
-  /** A line that came. */
+  /** Called with each line that is received. */
   came(line: string): void;
 }
 
-/** What was asked is of no interest any more. */
+/** Thrown for a question that was dropped before its answer. */
 export class Forgotten extends Error {}
 
 interface Question {
@@ -51,7 +51,7 @@ export class Dialogue {
     link.onBytes = (bytes) => this.bytes(bytes);
   }
 
-  /** Sends a line and waits for its answer, `patience` ms. A quiet one is not shown. */
+  /** Sends a line and waits at most `patience` ms for its answer. A quiet line is not shown in the console. */
   ask(line: string, quiet = false, patience = PATIENCE): Promise<Answer> {
     return new Promise((answered, failed) => {
       if (this.over) throw new Error(`"${line}" was not sent: the boot loader has the line`);
@@ -60,7 +60,7 @@ export class Dialogue {
     });
   }
 
-  /** Forgets what was asked: the board begins anew, or the line serves another purpose. */
+  /** Drops all questions: the board restarts, or the line is used by something else. */
   forget(): void {
     const questions = [...(this.asked ? [this.asked] : []), ...this.waiting];
     this.asked = null;
@@ -70,7 +70,7 @@ export class Dialogue {
     for (const { failed } of questions) failed(new Forgotten());
   }
 
-  /** Ends it; the link may then have another listener. */
+  /** Ends the dialogue; the link may then have another listener. */
   end(): void {
     this.over = true;
     this.forget();

@@ -4,7 +4,7 @@ import { FREQUENCY } from '../uno/board';
 import { element, surface } from './canvas';
 import { palette, servoColour } from './palette';
 
-/** What the scope shows, in cycles: three frames. */
+/** Time span of the scope, cycles: three frames. */
 const SPAN = 0.06 * FREQUENCY;
 const CYCLES_PER_US = FREQUENCY / 1e6;
 
@@ -25,10 +25,10 @@ export class ScopeView {
   private pulses: Pulse[] = [];
   private readonly note = element('scope-note');
   private widths = [0, 0, 0, 0];
-  /** Whether pulses are seen: a board on USB says its pose alone. */
+  /** True if pulses are known: a board on USB sends only its pose. */
   private seen = true;
 
-  /** Takes another robot. */
+  /** Shows another robot. */
   robot({ servos }: Description): void {
     this.pins = servos.map(({ pin }) => pin);
     this.pulses = [];
@@ -51,7 +51,7 @@ export class ScopeView {
     });
   }
 
-  /** Takes another end of the line, a simulation or a real board. */
+  /** Switches to a simulated or a real board. */
   link(real: boolean): void {
     this.seen = !real;
     this.note.hidden = !real;
@@ -59,7 +59,7 @@ export class ScopeView {
     this.widths = [0, 0, 0, 0];
   }
 
-  /** A pulse of a pin, in cycles. */
+  /** Adds a pulse of a pin, cycles. */
   pulse(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
@@ -67,12 +67,12 @@ export class ScopeView {
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** The widths of a frame, in cycles. */
+  /** Adds the widths of a frame, cycles. */
   frame(widths: readonly number[]): void {
     this.widths = [...widths];
   }
 
-  /** Writes the numbers, which costs a layout. */
+  /** Updates the numbers, which costs a layout. */
   write(scene: Scene | null): void {
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];

@@ -1,4 +1,4 @@
-// The signs: a servo whose sign is wrong stands on the other side of its neutral angle, and the guard would take
+// The step Signs: a servo with a wrong sign stands on the other side of its neutral angle, and the guard would take
 // an unsafe pose for a safe one.
 import { nameOf, PLACES, type Shown } from './drawing';
 import { button, note, row, words } from './parts';
@@ -6,7 +6,7 @@ import type { Step, Tools } from './step';
 
 const doneWord = (servo: number) => `sign ${servo}`;
 
-/** The servos whose signs nobody has proven. */
+/** The servos whose signs are not proven. */
 export const unproven = (tools: Tools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(doneWord(servo)));
 
 export class Signs implements Step {
@@ -14,9 +14,9 @@ export class Signs implements Step {
   readonly title = 'Prove the signs';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** By how much a servo has been turned, deg; null before. */
+  /** The servo that was turned, and its turn, deg; null before. */
   private moved: { servo: number; by: number } | null = null;
-  /** What a person has seen that no answer mends. */
+  /** The user's observation that points to the wiring. */
   private seen: 'other' | 'none' | null = null;
 
   forget(): void {
@@ -81,7 +81,7 @@ export class Signs implements Step {
     });
   }
 
-  /** This one is right: to the next that nobody has proven, or to the next step. */
+  /** Marks this sign as proven and goes to the next unproven servo, or to the next step. */
   private proven(tools: Tools): void {
     tools.done(doneWord(tools.servo));
     this.forget();
