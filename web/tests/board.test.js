@@ -32,8 +32,7 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
   for (const control of ['#robot', '#connect']) {
     assert.ok(await opened.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
   }
-  for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
-  assert.match(await text(opened, '#flash-said'), /^written and verified in [\d.]+ s$/);
+  await until(opened, 'it is written', async () => /^written and verified in [\d.]+ s$/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(8000);
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await opened.locator(control).isEnabled(), control);
@@ -144,8 +143,7 @@ test('a HEX file of another program is named, and written only when a person say
   assert.equal(await question.isVisible(), false);
   await choose();
   await opened.getByRole('button', { name: 'Write it', exact: true }).click();
-  const said = opened.locator('#flash-said');
-  for (let n = 0; n < 100 && !/^(not )?written/.test(await said.innerText()); n++) await opened.clock.runFor(100);
+  await until(opened, 'it is written', async () => /^(not )?written/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(3000);
   await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();
   await opened.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();

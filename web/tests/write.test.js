@@ -127,7 +127,7 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   const opened = await panel(await connected('large', 8000));
   await robotAlone(opened);
   // Some of its twenty pages, which take 17 ms each.
-  for (let ms = 0; ms < 20_000 && !(await text(opened, '#flash-said')).startsWith('writing'); ms += 20) await opened.clock.runFor(20);
+  await until(opened, 'it is written', async () => (await text(opened, '#flash-said')).startsWith('writing'), 20);
   await opened.clock.runFor(60);
   await opened.evaluate(() => window.unplug());
   await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is written again: try again$/);
