@@ -2,7 +2,7 @@
 // look at it and ask it to do things.
 import { files } from './files';
 import { type Kept, kept } from './kept';
-import { type Answer, Dialogue, Forgotten } from './link/dialogue';
+import { type Answer, Dialogue, Forgotten, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
 import { flash, identify, imageOf, type Piece, type Progress, Unfit } from './link/stk500';
@@ -29,8 +29,6 @@ const GREETS = 2500;
 const ANSWERS = 500;
 /** A board that is left has stopped within this, ms. */
 const STOPS = 1000;
-/** What the firmware's first line begins with. */
-const GREETING = '# lizard ';
 /** `boot` acts three seconds after a reset, ms. */
 const BOOTS = 4000;
 /** The pace with which the firmware begins, percent. */
@@ -341,9 +339,7 @@ export class Session {
     });
   }
 
-  private came(text: string): void {
-    // A reset cuts off what the board was saying, and its first line follows on that.
-    const line = text.slice(Math.max(0, text.indexOf(GREETING)));
+  private came(line: string): void {
     const angles = watched(line);
     if (angles && this.isReal) {
       this.pose(angles);

@@ -117,6 +117,25 @@ test('after a reset the board is followed again', async () => {
   await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
 });
 
+test('a board that begins anew in the middle of an answer is followed again', async () => {
+  const opened = await connected('robot', 4000);
+  await said(opened, /^ok watch 2$/);
+  // Its status is asked twice a second.
+  await opened.evaluate(() => {
+    const board = window.otherBoard;
+    const { onByte } = board;
+    let answer = '';
+    board.onByte = (byte) => {
+      onByte(byte);
+      answer += String.fromCharCode(byte);
+      if (!answer.endsWith('ok gait=')) return;
+      board.onByte = onByte;
+      setTimeout(() => board.reset('external'));
+    };
+  });
+  await said(opened, /^ok watch 2$/, 2);
+});
+
 test('pulses that a board does not show are not made up', async () => {
   const opened = await connected('robot', 5000);
   const cells = await opened.locator('#widths td:nth-child(3)').allInnerTexts();

@@ -2,6 +2,8 @@
 // with # come before it, or unasked. One line is sent at a time.
 import type { Link } from './link';
 
+/** What the firmware's first line begins with. */
+export const GREETING = '# lizard ';
 /** The console takes lines of at most so many characters. */
 export const LONGEST_LINE = 63;
 /** The robot's own lines are shorter than this: what is longer is noise, and is cut. */
@@ -103,7 +105,9 @@ export class Dialogue {
     for (const line of lines) if (line !== '') this.line(line.slice(-LONGEST));
   }
 
-  private line(line: string): void {
+  private line(heard: string): void {
+    // A reset cuts off what the board was saying, an answer perhaps, and its first line follows on that.
+    const line = heard.slice(Math.max(0, heard.indexOf(GREETING)));
     const question = this.asked;
     const answers = /^(ok|err)\b/.test(line);
     if (!(question?.quiet && answers)) this.heard.came(line);
