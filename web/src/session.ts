@@ -358,8 +358,8 @@ export class Session {
   }
 
   private greeted(line: string): void {
-    const { link } = this;
-    this.beginnings += 1;
+    const { dialogue } = this;
+    const beginning = ++this.beginnings;
     this.doing('stand');
     this.listener.speed(FULL_PACE);
     this.watching = false;
@@ -368,8 +368,9 @@ export class Session {
     this.onBanner();
     // A byte would call off what `boot` is set to.
     this.mayAsk = false;
-    void link.wait(BOOTS).then(() => {
-      if (this.link !== link) return;
+    void this.link.wait(BOOTS).then(() => {
+      // It may have begun again meanwhile, or the boot loader may have the line.
+      if (this.beginnings !== beginning || dialogue.over) return;
       this.mayAsk = true;
       if (this.isReal && !this.watching) void this.watch();
     });

@@ -144,6 +144,15 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   await until(opened, 'it stands', async () => (await moved(opened)).length === 4);
 });
 
+test('nothing is asked of a board that is written as soon as it has greeted', async () => {
+  const opened = await panel(await connected('robot', 2000));
+  assert.match(await text(opened, '#where'), /^on a board on USB, robot paper /);
+  await opened.locator('#flash-write').click();
+  await opened.clock.runFor(4000);
+  assert.match(await text(opened, '#flash-said'), /^(writ|verify)ing/);
+  assert.equal(await opened.locator('#trouble').innerText(), '');
+});
+
 test('a board that is unplugged while the firmware is written does nothing, and is written again', async () => {
   const opened = await panel(await connected('robot', 8000));
   assert.equal((await moved(opened)).length, 4, 'it stands');

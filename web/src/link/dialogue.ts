@@ -44,7 +44,8 @@ export class Dialogue {
   private readonly waiting: Question[] = [];
   private asked: Question | null = null;
   private notes: string[] = [];
-  private over = false;
+  /** Whether the line serves another purpose. */
+  over = false;
 
   constructor(
     readonly link: Link,
