@@ -2,7 +2,7 @@
 // and ask it to act.
 import { files } from './files';
 import { type Kept, kept } from './kept';
-import { type Answer, Dialogue, Forgotten } from './link/dialogue';
+import { type Answer, Dialogue, Forgotten, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
 import { flash, identify, imageOf, type Piece, type Progress, Unfit } from './link/stk500';
@@ -29,8 +29,6 @@ const GREETS = 2500;
 const ANSWERS = 500;
 /** Time a board gets to stop before the port is closed, ms. */
 const STOPS = 1000;
-/** The beginning of the firmware's first line. */
-const GREETING = '# lizard ';
 /** Time after a reset within which `boot` has acted (three seconds), ms. */
 const BOOTS = 4000;
 /** The firmware's pace after a reset, percent. */
@@ -341,9 +339,7 @@ export class Session {
     });
   }
 
-  private came(text: string): void {
-    // A reset cuts off the board's line, and the banner follows on the same line.
-    const line = text.slice(Math.max(0, text.indexOf(GREETING)));
+  private came(line: string): void {
     const angles = watched(line);
     if (angles && this.isReal) {
       this.pose(angles);
@@ -362,8 +358,8 @@ export class Session {
   }
 
   private greeted(line: string): void {
-    const { link } = this;
-    this.beginnings += 1;
+    const { dialogue } = this;
+    const beginning = ++this.beginnings;
     this.doing('stand');
     this.listener.speed(FULL_PACE);
     this.watching = false;
@@ -372,8 +368,9 @@ export class Session {
     this.onBanner();
     // A byte would cancel `boot`.
     this.mayAsk = false;
-    void link.wait(BOOTS).then(() => {
-      if (this.link !== link) return;
+    void this.link.wait(BOOTS).then(() => {
+      // The board may have restarted meanwhile, or the boot loader may use the line.
+      if (this.beginnings !== beginning || dialogue.over) return;
       this.mayAsk = true;
       if (this.isReal && !this.watching) void this.watch();
     });

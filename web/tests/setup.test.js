@@ -9,7 +9,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { connected, until } from './board.js';
-import { advance, close, complaints, open, page, sideways, standing, tidy } from './browser.js';
+import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -133,7 +133,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
     await writeFile(kept, await readFile(file));
     const root = new URL('../..', import.meta.url).pathname;
     const robot = ['--sim', '--robot', 'robot.toml'];
-    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: 120_000 });
+    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: PATIENCE });
     assert.match(stdout, /has the calibration of .* and has saved it/);
   } finally {
     await rm(folder, { recursive: true });

@@ -2,6 +2,8 @@
 // with # come before it, or unasked. One line is sent at a time.
 import type { Link } from './link';
 
+/** The beginning of the firmware's first line. */
+export const GREETING = '# lizard ';
 /** Most characters of a line that the console accepts. */
 export const LONGEST_LINE = 63;
 /** The robot's lines are shorter than this; longer ones are noise and are cut. */
@@ -42,7 +44,8 @@ export class Dialogue {
   private readonly waiting: Question[] = [];
   private asked: Question | null = null;
   private notes: string[] = [];
-  private over = false;
+  /** Whether the line serves another purpose. */
+  over = false;
 
   constructor(
     readonly link: Link,
@@ -103,7 +106,9 @@ export class Dialogue {
     for (const line of lines) if (line !== '') this.line(line.slice(-LONGEST));
   }
 
-  private line(line: string): void {
+  private line(heard: string): void {
+    // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
+    const line = heard.slice(Math.max(0, heard.indexOf(GREETING)));
     const question = this.asked;
     const answers = /^(ok|err)\b/.test(line);
     if (!(question?.quiet && answers)) this.heard.came(line);
