@@ -21,6 +21,9 @@ const CRATES: [&str; 11] = [
     "web/wasm-parts",
 ];
 
+/// The rooms of the core, the top one first. A room may use those below it.
+const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
+
 /// What each module of a folder uses of the others.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
@@ -40,6 +43,21 @@ fn no_modules_use_each_other_in_a_circle() {
         }
     }
     assert!(count > 200, "only {count} uses of another module were read");
+}
+
+#[test]
+fn a_room_of_the_core_uses_only_rooms_below_it() {
+    let core = folders(&root().join("crates/core/src")).remove(0);
+    for (room, used) in core.uses() {
+        if let Some(place) = ROOMS.iter().position(|name| *name == room) {
+            for other in used {
+                assert!(
+                    ROOMS[place..].contains(&other.as_str()),
+                    "{room} uses {other}, which is not below it"
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use core::arch::asm;
 
 use avr_device::atmega328p::EEPROM;
 use avr_device::interrupt;
-use lizard_core::memory::Memory;
+use lizard_core::memory::record::Memory;
 
 /// EECR as `sbi` numbers it, and two of its bits.
 const EECR: u8 = 0x1f;

@@ -1,11 +1,11 @@
-//! The bytes of RAM that the start of the program does not clear; [`lizard_core::kept`]
+//! The bytes of RAM that the start of the program does not clear; [`lizard_core::memory::kept`]
 //! defines what is in them.
 
 use core::arch::global_asm;
 
 use avr_device::atmega328p::CPU;
-use lizard_core::kept::{self, CELLS, Cells, Flags};
-use lizard_core::restart::{Restart, Stance};
+use lizard_core::memory::kept::{self, CELLS, Cells, Flags};
+use lizard_core::memory::restart::{Restart, Stance};
 
 use servo_pulses::cells::Byte;
 

@@ -31,11 +31,11 @@ pub mod supply;
 mod watchdog;
 
 use avr_device::atmega328p::Peripherals;
-use lizard_core::console::Counters;
-use lizard_core::pose::Pulses;
-use lizard_core::restart::{Restart, Stance};
+use lizard_core::console::answer::Counters;
+use lizard_core::numbers::pose::Pulses;
+use lizard_core::memory::restart::{Restart, Stance};
 use lizard_core::step::Board;
-use lizard_core::supply::Reading;
+use lizard_core::control::supply::Reading;
 
 /// The board, started.
 pub struct Uno {

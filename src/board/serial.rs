@@ -9,7 +9,7 @@
 use core::convert::Infallible;
 
 use avr_device::atmega328p::USART0;
-use lizard_core::line::GARBLED;
+use lizard_core::console::line::GARBLED;
 
 use servo_pulses::cells::{Byte, Counter};
 

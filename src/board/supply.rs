@@ -7,7 +7,7 @@
 //! and it is read in the one after that.
 
 use avr_device::atmega328p::ADC;
-use lizard_core::supply::Reading;
+use lizard_core::control::supply::Reading;
 
 /// AVcc is what is compared with; then the channel.
 const AVCC: u8 = 0x40;

@@ -1,4 +1,4 @@
-// The console's words that the page sends or waits for. The core's list, crates/core/src/word.rs, decides
+// The console's words that the page sends or waits for. The core's list, crates/core/src/console/word.rs, decides
 // how they are written: a page with a word that is not there says so when it begins.
 
 export const WORDS = {

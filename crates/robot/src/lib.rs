@@ -14,7 +14,7 @@
 //! on the floor is computed by `lizard-contact`, whose types are also exported here.
 //!
 //! Inside, a file without its gaits becomes `Measures`. These and the gaits' `Tables`
-//! become the integers, [`lizard_core::section::Content`]. A [`Robot`] holds all of them,
+//! become the integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all of them,
 //! and a [`CoreRobot`] is what the core reads of them. docs/firmware.md lists the types
 //! of other crates that also are a robot.
 

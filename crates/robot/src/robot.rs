@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use lizard_avr::Region;
 use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
-use lizard_core::gait::{Gait, MOST_WAVES};
-use lizard_core::section::{Content, LONGEST_NAME, SPACE};
+use lizard_core::numbers::gaits::{Gait, MOST_WAVES};
+use lizard_core::numbers::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
@@ -136,7 +136,8 @@ impl Robot {
         let section: Arc<[u8]> = content.section().into();
         let flash = Region::new(&section);
         let impossible = || Problem::Impossible.at("");
-        let unchecked = lizard_core::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
+        let unchecked =
+            lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
         let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
             let gait = TabledGait::new(gait, index, &tables);
             match audit::check(&gait, &measures, &unchecked) {
@@ -145,7 +146,7 @@ impl Robot {
             }
         });
         let gaits = gaits.collect::<Checked<_>>()?;
-        lizard_core::robot::Robot::open(flash).map_err(|_| impossible())?;
+        lizard_core::numbers::robot::Robot::open(flash).map_err(|_| impossible())?;
         Ok(Self {
             gaits,
             measures,
@@ -283,10 +284,10 @@ impl Robot {
 
     /// The robot as the core reads it, on a host: without the maps of certified cells,
     /// which change no decision.
-    pub fn core(&self) -> lizard_core::robot::Robot<'_> {
+    pub fn core(&self) -> lizard_core::numbers::robot::Robot<'_> {
         // It was opened when the robot was read.
-        lizard_core::robot::Robot::unchecked(Region::new(&self.section))
-            .unwrap_or(lizard_core::robot::Robot::NONE)
+        lizard_core::numbers::robot::Robot::unchecked(Region::new(&self.section))
+            .unwrap_or(lizard_core::numbers::robot::Robot::NONE)
     }
 
     /// The same for whoever runs the core, which may take as long as the program: its section

@@ -1,6 +1,6 @@
 //! The core's units as floating point has them.
 
-use lizard_core::units;
+use lizard_core::numbers::units;
 
 /// Steps of an angle in one degree.
 pub const STEPS_PER_DEGREE: f64 = units::TURN as f64 / 360.0;

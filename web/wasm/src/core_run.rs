@@ -4,8 +4,8 @@
 //! it says and asks for what an UNO would, to the bit; only the cycles of the chip are
 //! missing.
 
-use lizard_core::restart::Restart;
-use lizard_core::supply::Reading;
+use lizard_core::control::supply::Reading;
+use lizard_core::memory::restart::Restart;
 use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;

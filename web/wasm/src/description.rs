@@ -1,8 +1,8 @@
 //! What the page has to know of a robot before anything moves.
 
-use lizard_core::section::START;
-use lizard_core::text::Text;
-use lizard_core::word::Word;
+use lizard_core::console::text::Text;
+use lizard_core::console::word::Word;
+use lizard_core::numbers::section::START;
 use lizard_kinematics::Check;
 use lizard_robot::servo::{LEGS, NAMES};
 use lizard_robot::{

@@ -11,8 +11,8 @@
 //! An ELF has a robot in it. Where that is not the robot that was told, one of the two is not
 //! what was meant, and it is not run.
 
-use lizard_core::robot::Robot as CoreRobot;
-use lizard_core::section::{Region, START};
+use lizard_core::numbers::robot::Robot as CoreRobot;
+use lizard_core::numbers::section::{Region, START};
 
 #[cfg(feature = "simulator")]
 pub use simulated::{Firmware, Unreadable, inside, read, with_robot};

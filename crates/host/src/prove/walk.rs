@@ -2,11 +2,11 @@
 
 use std::sync::OnceLock;
 
-use lizard_core::cells::Cells;
-use lizard_core::five_bar::EndMargins;
-use lizard_core::part;
-use lizard_core::trig::Direction;
-use lizard_core::units::ONE_Q15;
+use lizard_core::guard::five_bar::EndMargins;
+use lizard_core::guard::trig::Direction;
+use lizard_core::numbers::cells::Cells;
+use lizard_core::numbers::part;
+use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes, Side, Slider, Vector};
 use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 use rayon::prelude::*;
@@ -200,7 +200,7 @@ fn sine(q15: i16) -> f64 {
 
 /// The pairs of an end.
 struct EndWalk<'a> {
-    fixed: lizard_core::five_bar::FiveBar<'a>,
+    fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
     /// Type-2 and type-1, as robot.toml and as the firmware has them.
     limits: [f64; 2],
@@ -372,7 +372,7 @@ impl EndTruth {
 struct SideWalk<'a> {
     side: Side,
     cells: Cells<'a>,
-    fixed: lizard_core::slider::Slider,
+    fixed: lizard_core::numbers::slider::Slider,
     exact: Slider,
     stroke: [f64; 2],
     steps_per_mm: f64,

@@ -1,6 +1,6 @@
 //! Which command was in effect when.
 
-use lizard_core::word::{Effect, Word};
+use lizard_core::console::word::{Effect, Word};
 
 use super::script::Script;
 

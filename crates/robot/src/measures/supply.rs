@@ -1,6 +1,6 @@
 //! The supplies in robot.toml: what is measured, and when the robot reacts.
 
-use lizard_core::supply::{Supplies as CoreSupplies, Thresholds};
+use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::file::{Checked, Problem, Section};
 use crate::measures::servo::{NAMES, Servo, pin};
@@ -157,7 +157,7 @@ fn millivolts(volts: f64) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use lizard_core::supply::{Supplies, Thresholds};
+    use lizard_core::numbers::supplies::{Supplies, Thresholds};
 
     use crate::testing::with;
 

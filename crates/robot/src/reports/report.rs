@@ -4,7 +4,7 @@
 use std::fmt;
 
 use lizard_contact::Prediction;
-use lizard_core::section::SPACE;
+use lizard_core::numbers::section::SPACE;
 
 use crate::checks::Audit;
 use crate::checks::CheckedGait;

@@ -1,7 +1,7 @@
 //! How far the tables, as the firmware reads them, are from the gaits in
 //! floating point.
 
-use lizard_core::units::CYCLE16;
+use lizard_core::numbers::units::CYCLE16;
 
 use crate::tables::tabled_gait::TabledGait;
 

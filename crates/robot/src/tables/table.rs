@@ -2,10 +2,10 @@
 //! share, each servo with an offset and a gain.
 //!
 //! What a table means, and how it is read between its samples, is the core's:
-//! [`lizard_core::gait`].
+//! [`lizard_core::numbers::gaits`].
 
-use lizard_core::gait::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
-use lizard_core::units::CYCLE;
+use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
+use lizard_core::numbers::units::CYCLE;
 
 use crate::gaits::{Gait, Stride, Waveform, canonical};
 use crate::measures::servo::FORWARD;
@@ -232,8 +232,8 @@ mod tests {
         }
     }
 
-    fn id(robot: &Robot, place: usize) -> lizard_core::gait::GaitId {
-        lizard_core::gait::GaitId::all(robot.gaits().len())
+    fn id(robot: &Robot, place: usize) -> lizard_core::numbers::gaits::GaitId {
+        lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
             .nth(place)
             .expect("a gait")
     }

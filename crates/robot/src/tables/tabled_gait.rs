@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use lizard_avr::Flash;
-use lizard_core::gait::Gait as TableGait;
-use lizard_core::units::phase16;
+use lizard_core::numbers::gaits::Gait as TableGait;
+use lizard_core::numbers::units::phase16;
 
 use crate::gaits::Gait;
 use crate::tables::table::Tables;

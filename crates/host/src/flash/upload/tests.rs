@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use lizard_core::mark::AT;
+use lizard_core::numbers::mark::AT;
 use lizard_robot::Robot;
 
 use super::super::double::Double;
