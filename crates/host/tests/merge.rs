@@ -31,7 +31,7 @@ fn complaint(words: &str, input: &str) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// What this many parts print, the last one first.
+/// The output of all parts, the last one first.
 fn parts(words: &str, of: usize) -> String {
     let part = |number| said(&format!("{words} --part {number}/{of}"), "");
     (1..=of).rev().map(part).collect()

@@ -23,12 +23,12 @@ impl Board {
         }
     }
 
-    /// What it says within some frames.
+    /// The lines printed within some frames.
     fn run(&mut self, frames: u32) -> Vec<String> {
         self.running.run(frames)
     }
 
-    /// What it says to a line until all motion has ended.
+    /// The answer to a line, until all motion has ended.
     fn send(&mut self, line: &str) -> Vec<String> {
         let mut said = self.running.send(format!("{line}\r").as_bytes());
         said.extend(self.run(100));
@@ -36,7 +36,7 @@ impl Board {
     }
 }
 
-/// Whether a line is as the page shows it, which may leave its end out.
+/// True if a line is as the page shows it, which may omit its end.
 fn is(line: &str, shown: &str) -> bool {
     shown
         .strip_suffix("...")

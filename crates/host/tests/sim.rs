@@ -19,7 +19,7 @@ fn lizard(arguments: &[&str]) -> Output {
     LIMIT.output(&mut command, b"").expect("the program runs")
 }
 
-/// What the user sees of a failure, and the exit code.
+/// The message of a failure, and the exit code.
 fn complaint(arguments: &[&str]) -> (String, Option<i32>) {
     let output = lizard(arguments);
     assert!(output.stdout.is_empty(), "nothing is half written");

@@ -3,7 +3,7 @@ import type { Four } from '../robot';
 import type { ServoSettings } from '../status';
 import type { Calibration } from './calibration';
 
-/** What the key `format` says, as in crates/host/src/console/file.rs. */
+/** What the key `format` says, as in crates/host/src/drive/console/file.rs. */
 const FORMAT = 'lizard calibration 1';
 const HEAD = `# A lizard's calibration. \`lizard restore\` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.

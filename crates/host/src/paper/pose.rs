@@ -3,7 +3,7 @@
 use lizard_kinematics::Vector;
 
 use crate::paper::{inverse, mobility, singularity, solve, velocity};
-use crate::pose_args::length;
+use crate::shared::pose_args::length;
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Compute the robot at a pose: its joints, singularities, freedoms or rates
@@ -40,8 +40,8 @@ pub struct Args {
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
           help_heading = "Pose", conflicts_with = "theta1")]
     tail: Option<Vec<f64>>,
-    /// What to print of the pose; all but the joints are also printed of the neutral pose, if
-    /// none is given
+    /// The subject to print; all but the joints are also printed of the neutral pose, if none
+    /// is given
     #[arg(long, value_enum, default_value_t, conflicts_with_all = ["head", "tail"])]
     show: Show,
     /// Print JSON, of a stream one object a line

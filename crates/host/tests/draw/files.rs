@@ -27,8 +27,8 @@ pub fn files() -> Vec<(String, String)> {
     files
 }
 
-/// What a file says of a servo, read by eye: the first line with this key after the
-/// servo's table begins.
+/// The value of a servo's key in a robot file, read as text: the first line with this key after
+/// the servo's table begins.
 pub fn said<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
     let (_, table) = text
         .split_once(&format!("[servo.{servo}]"))

@@ -1,12 +1,12 @@
-//! What a builder follows: pins, wires and angles of the drawings are those of
-//! robot.toml, for every robot.
+//! The drawings that a builder follows: pins, wires and angles are those of robot.toml, for
+//! every robot.
 
 mod cranks;
 mod drawing;
 mod files;
 mod wires;
 
-use lizard_host::draw::{horns, top_view, wiring};
+use lizard_host::make::draw::{horns, top_view, wiring};
 use lizard_robot::Robot;
 
 use drawing::Drawing;

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-/// What a run left behind.
+/// The result of a run.
 pub struct Outcome {
     pub code: i32,
     pub out: String,

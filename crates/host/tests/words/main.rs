@@ -147,7 +147,7 @@ fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
     }
 }
 
-/// What bash offers after some words, by the script and by nothing else.
+/// The completions that bash offers after some words, from the script alone.
 #[cfg(unix)]
 fn offered(script: &Path, words: &str, place: usize) -> Vec<String> {
     let line = format!(
@@ -172,7 +172,10 @@ fn bash_completes_commands_and_options() {
     let script = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lizard.bash");
     std::fs::write(&script, said(&["completions", "bash"])).expect("it is written");
     assert_eq!(offered(&script, "lizard calib", 1), ["calibrate"]);
-    assert_eq!(offered(&script, "lizard twin --ht", 2), ["--html"]);
+    assert_eq!(
+        offered(&script, "lizard twin --ro", 2),
+        ["--robust", "--robot"]
+    );
     assert_eq!(offered(&script, "lizard sim --fidelity sto", 3), ["stock"]);
 }
 

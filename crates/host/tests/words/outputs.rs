@@ -43,7 +43,6 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("replay a.jsonl --svg a.jsonl", "a.jsonl"),
         ("sim --duration 4 --svg robot.toml", "robot.toml"),
         ("sim --script a.txt --svg a.txt", "a.txt"),
-        ("twin a.txt --html a.txt", "a.txt"),
         ("charts charts --robot my.toml", "top-view.svg"),
     ] {
         fs::create_dir_all(here.join("x")).expect("a folder");

@@ -12,8 +12,10 @@ use std::{fs, io};
 use lizard_robot::Robot;
 use serde::Serialize;
 
+use crate::make::draw;
 use crate::paper::design;
-use crate::{Failure, PoseArgs, RobotFile, draw, files, json};
+use crate::shared::{files, json};
+use crate::{Failure, PoseArgs, RobotFile};
 
 /// Grid of the performance charts, and rings of their circles.
 const STEP: f64 = 0.005;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use svg::node::element::Group;
 
 use super::plot::{Axis, Plot, Scale, VIRIDIS, page, title};
-use crate::draw::ink::{Anchor, DARK, circle, line, text};
 use crate::paper::design::{Point, Proportions, SUM};
+use crate::shared::ink::{Anchor, DARK, circle, line, text};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL: f64 = 340.0;

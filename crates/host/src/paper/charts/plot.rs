@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use svg::node::element::{Group, Path, Polyline};
 
-use crate::draw::ink::{Anchor, DARK, GREY, GRID, curve, line, rectangle, text};
+use crate::shared::ink::{Anchor, DARK, GREY, GRID, curve, line, rectangle, text};
 
 /// Viridis in ten bands: even steps in lightness, so that it reads in grey and
 /// for every kind of colour vision.
@@ -19,7 +19,7 @@ pub const BLUES: &[&str] = &[
     "#f7fbff", "#e3eef8", "#d0e1f2", "#b7d4ea", "#9ac7e0", "#7fb8da", "#65a9d2",
 ];
 
-/// What is out of the question.
+/// The colour of impossible regions.
 pub const SHUT: &str = "#d4d0cb";
 
 /// A rectangle of the page with a coordinate system.
@@ -44,7 +44,7 @@ pub struct Axis<'a> {
 }
 
 impl Plot {
-    /// Where a point lies on the page.
+    /// The place of a point on the page.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x.0) / (self.x.1 - self.x.0),

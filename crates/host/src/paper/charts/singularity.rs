@@ -6,7 +6,7 @@ use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, page, title};
-use crate::draw::ink::{Anchor, DARK, circle, line, rectangle, text};
+use crate::shared::ink::{Anchor, DARK, circle, line, rectangle, text};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);

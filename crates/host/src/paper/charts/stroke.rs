@@ -1,10 +1,10 @@
-//! How far the sliders travel in each gait.
+//! The chart of the sliders' travel in each gait.
 
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use super::plot::{Axis, Plot, SHUT, entry, page, title};
-use crate::draw::ink::{Anchor, DARK, GREY, rectangle, text};
+use crate::shared::ink::{Anchor, DARK, GREY, rectangle, text};
 
 const COLUMNS: usize = 4;
 const PANEL: (f64, f64) = (255.0, 150.0);

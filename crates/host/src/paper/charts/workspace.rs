@@ -1,12 +1,12 @@
-//! Where the head point can go, and how well the servos steer it there.
+//! The chart of the points that the head can reach, and of how well the servos steer it there.
 
 use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
 use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry, page, title};
-use crate::draw::ink::{Anchor, DARK, GREY, circle, text};
 use crate::paper::design::{CLAIM, Performance, lci};
+use crate::shared::ink::{Anchor, DARK, GREY, circle, text};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
 const MM: Axis<'static> = Axis {

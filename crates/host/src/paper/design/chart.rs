@@ -10,10 +10,10 @@ use super::proportions::{Proportions, triangle};
 /// A point of the charts. Lengths in units of D.
 #[derive(Clone, Copy, Serialize)]
 pub struct Point {
-    /// Where in the triangle.
+    /// The point in the triangle of proportions.
     #[serde(flatten)]
     pub proportions: Proportions,
-    /// What it is worth.
+    /// The performance of a five-bar of these proportions.
     #[serde(flatten)]
     pub performance: Performance,
 }

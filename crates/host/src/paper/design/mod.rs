@@ -11,9 +11,9 @@ use std::io::{self, BufWriter, Write};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 
-use crate::json;
-use crate::pose_args::length;
-use crate::spread::{Spread, Spreads};
+use crate::shared::json;
+use crate::shared::pose_args::length;
+use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
 pub use chart::{Point, bar, chart};
@@ -23,7 +23,7 @@ pub use search::{Demands, Design, Search, design, ranked};
 
 /// Rings across the inscribed circle for one design, and for each of many.
 const FINE: usize = 128;
-/// See `FINE`.
+/// Points across the grid of a coarse chart; see `FINE`.
 pub const COARSE: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
@@ -72,7 +72,7 @@ pub struct Args {
     /// Number of designs that --search prints
     #[arg(long, default_value_t = 12)]
     top: usize,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -254,7 +254,7 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
     }
 }
 
-/// Where "LCI > 0.7" holds.
+/// The regions where "LCI > 0.7" holds, in words.
 fn verdict(lci: &Conditioning, r_mic: f64) -> String {
     let mean = if lci.mean > CLAIM { "holds" } else { "fails" };
     let bound = if lci.least > CLAIM { "holds" } else { "fails" };

@@ -8,18 +8,18 @@ pub type Miss = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
 pub struct Equation {
-    /// Where it stands.
+    /// The place in the paper.
     pub place: &'static str,
-    /// As printed.
+    /// The equation as printed.
     pub printed: &'static str,
-    /// How far the printed form misses.
+    /// The error of the printed form.
     pub miss: Miss,
     /// Unit of every miss of this equation.
     pub unit: &'static str,
-    /// How far it misses when right-hand angles are read clockwise from -x,
-    /// where the paper's drawing suggests it.
+    /// The error if right-hand angles are read clockwise from -x, where the paper's drawing
+    /// suggests it.
     pub clockwise: Option<Miss>,
-    /// What holds instead, and how far it misses.
+    /// The corrected form, and its error.
     pub corrected: Option<(&'static str, Miss)>,
     /// A closer look at one place, in the same unit; no verdict of its own.
     pub aside: Option<Aside>,
@@ -28,13 +28,13 @@ pub struct Equation {
 /// The printed form at a special place.
 #[derive(Clone, Copy)]
 pub struct Aside {
-    /// Which place.
+    /// The place in the paper.
     pub place: &'static str,
-    /// How far the printed form misses there.
+    /// The error of the printed form there.
     pub miss: Miss,
 }
 
-/// How far a form misses over all samples.
+/// The errors of a form over all samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misses {
     /// Largest miss where there is a real value.

@@ -113,7 +113,7 @@ pub const EQUATIONS: &[Equation] = &[
     },
 ];
 
-/// How far the distance from a crank's tip to a point is from its coupler.
+/// The difference between a coupler's length and the distance from its crank's tip to a point.
 fn arm(point: Vector, shaft: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
     let tip = Vector::new(shaft, 0.0) + cis(crank, angle);
     Some(((point - tip).length() - coupler).abs())

@@ -177,7 +177,8 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
         })
 }
 
-/// How many of l0 to l19 the table leaves out, its entries read in some way.
+/// The number of lengths l0 to l19 that the table leaves out, if its entries are read in some
+/// way.
 fn missing(read: fn(usize, f64) -> usize) -> f64 {
     let named = |link: usize| {
         TABLE
