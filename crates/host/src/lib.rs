@@ -1,26 +1,30 @@
 //! The program `lizard`, divided by what its user does. Each command is a module with its
 //! `Args` and its `run`; `commands` has the table of them.
 
-pub mod change;
+mod change;
 pub mod commands;
 #[cfg(feature = "console")]
-pub mod drive;
-pub mod make;
+mod drive;
+mod make;
 #[cfg(feature = "paper")]
-pub mod paper;
-pub mod shared;
+mod paper;
+mod shared;
 #[cfg(feature = "simulator")]
-pub mod simulate;
+mod simulate;
 
 pub use shared::failure::Failure;
+pub use shared::plain::readable_lines;
 pub use shared::pose_args::PoseArgs;
 pub use shared::robot_file::RobotFile;
 
-// Modules that tests of other crates use.
+// Modules that tests use.
 #[cfg(feature = "paper")]
 pub use change::prove;
 #[cfg(feature = "console")]
 pub use drive::flash;
+pub use make::draw;
+#[cfg(feature = "paper")]
+pub use paper::errata;
 #[cfg(any(feature = "simulator", feature = "console"))]
 pub use shared::firmware;
 #[cfg(feature = "simulator")]

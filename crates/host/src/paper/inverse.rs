@@ -5,9 +5,9 @@ use lizard_robot::Robot;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::paper::tidy::tidy;
 use crate::paper::verdict;
 use crate::shared::json;
+use crate::shared::number::tidy;
 
 /// The answer to a question for head or tail points.
 #[derive(Serialize)]

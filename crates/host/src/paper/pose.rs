@@ -82,10 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let pose = args.pose.get();
     let lizard = robot.lizard();
-    let solved = || {
-        let solution = lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
-        solution.map_err(|infeasible| Failure::Impossible(infeasible.to_string()))
-    };
+    let solved = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
     match args.show {
         Show::Joints => solve::print(&robot, pose.as_ref(), args.json),
         Show::Singularities => singularity::print(&robot, &solved()?, args.json),

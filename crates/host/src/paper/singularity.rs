@@ -7,8 +7,8 @@ use nalgebra::SMatrix;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::paper::tidy::tidy;
 use crate::shared::json;
+use crate::shared::number::tidy;
 use crate::shared::pose_args::ANGLES;
 
 /// The unknown rates, in the order of the columns of K*.

@@ -4,8 +4,8 @@ use lizard_kinematics::{Derivatives, Drive, Lizard, Pose, Solution, wrap};
 use serde::Serialize;
 
 use crate::Failure;
-use crate::paper::tidy::tidy;
 use crate::shared::json;
+use crate::shared::number::tidy;
 use crate::shared::pose_args::{acceleration, rate};
 
 /// Longest step of the finite differences for the comparison, s.

@@ -36,6 +36,12 @@ impl Failure {
     }
 }
 
+impl From<lizard_kinematics::Infeasible> for Failure {
+    fn from(infeasible: lizard_kinematics::Infeasible) -> Self {
+        Self::Impossible(infeasible.to_string())
+    }
+}
+
 impl From<serde_json::Error> for Failure {
     /// Our own values always serialise, so this is a write that failed.
     fn from(error: serde_json::Error) -> Self {

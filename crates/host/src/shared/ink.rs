@@ -1,10 +1,13 @@
 //! Colours and strokes that every drawing shares.
 
-use svg::node::element::{Circle, Line, Polyline, Rectangle, Text};
+use svg::Document;
+use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 
 /// Servos A1 to A4, and their legs: three of Okabe and Ito's colours and a purple
 /// of Tol's, which the colour-blind can tell apart too.
 pub const SERVO: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
+/// Places of the servos on the robot.
+pub const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 /// Text and axes.
 pub const DARK: &str = "#222222";
 /// The colour of secondary text.
@@ -48,6 +51,40 @@ pub fn text(words: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor
         .set("font-family", FONTS)
         .set("fill", colour)
         .set("text-anchor", anchor)
+}
+
+/// Dark text that starts at a point.
+pub fn text_start(words: &str, at: (f64, f64), size: f64) -> Text {
+    text(words, at, size, DARK, Anchor::Start)
+}
+
+/// Dark text about a point.
+pub fn text_middle(words: &str, at: (f64, f64), size: f64) -> Text {
+    text(words, at, size, DARK, Anchor::Middle)
+}
+
+/// Dark text that ends at a point.
+pub fn text_end(words: &str, at: (f64, f64), size: f64) -> Text {
+    text(words, at, size, DARK, Anchor::End)
+}
+
+/// The text of a picture on a white page.
+pub fn page(size: (f64, f64), group: Group) -> String {
+    Document::new()
+        .set("viewBox", (0.0, 0.0, size.0, size.1))
+        .set("width", size.0)
+        .set("height", size.1)
+        .add(rectangle((0.0, 0.0), size, "white"))
+        .add(group)
+        .to_string()
+}
+
+/// A cross of two strokes.
+pub fn cross(at: (f64, f64), arm: f64, colour: &str, width: f64) -> Group {
+    let (x, y) = at;
+    Group::new()
+        .add(line((x - arm, y - arm), (x + arm, y + arm), colour, width))
+        .add(line((x - arm, y + arm), (x + arm, y - arm), colour, width))
 }
 
 /// A straight line.

@@ -8,12 +8,10 @@ use lizard_parts::{Assembly, Course, Motor, STALL, Scene, mjcf};
 use lizard_robot::servo::LEGS;
 use lizard_robot::{CheckedGait, Robot};
 use lizard_twin::{FRAME, ServoModel};
-use simulated_uno::{CYCLES_PER_US, Fidelity, State, Uno};
+use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
 
-use crate::shared::suggestion::did_you_mean;
 use crate::shared::{files, firmware};
 use crate::simulate::sim::frame_log::FrameLog;
-use crate::simulate::sim::tour;
 use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
@@ -98,10 +96,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);
     assembly.measures_fit()?;
-    let neutral = robot
-        .lizard()
-        .solve(&robot.neutral())
-        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+    let neutral = robot.lizard().solve(&robot.neutral())?;
     let motor = Motor {
         rate: ServoModel::SG90.rate,
         stall: STALL,
@@ -111,7 +106,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         *long += more;
     }
     if let Some(name) = &args.drive {
-        let gait = gait(&robot, name)?;
+        let gait = twin::moving_gait(&robot, name)?;
         scene.course = Some(course(&args, &robot, gait)?);
     }
     let text = mjcf(&assembly, &neutral, &scene)?;
@@ -146,32 +141,12 @@ fn lengths(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
     Ok(long.map(Option::unwrap_or_default))
 }
 
-fn gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
-    match robot.gait(name) {
-        Some(gait) if gait.moves() => Ok(gait),
-        Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
-        None => {
-            let gaits = tour::moving(robot);
-            Err(Failure::Input(format!(
-                "robot.toml has no gait `{name}`; those that move are {}{}",
-                gaits.join(", "),
-                did_you_mean(name, gaits)
-            )))
-        }
-    }
-}
-
 /// Three cycles of a gait by the firmware on the simulated UNO.
 fn course(args: &Args, robot: &Robot, gait: &CheckedGait) -> Result<Course, Failure> {
     let image = firmware::of_robot(args.elf.as_deref(), &args.robot, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::every(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
-    if recording.state != State::Alive {
-        return Err(Failure::Impossible(
-            "the firmware ended; `lizard sim` says how".to_owned(),
-        ));
-    }
     let log = &recording.frames;
     let stop = script.steps.last().map_or(script.end_ms, |step| step.ms);
     let end = log.index(stop as f64 / 1000.0) as f64 * FRAME;

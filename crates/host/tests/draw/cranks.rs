@@ -1,6 +1,6 @@
 //! The cranks and the spline.
 
-use lizard_host::make::draw::horns;
+use lizard_host::draw::horns;
 use lizard_robot::Robot;
 
 use crate::drawing::{Drawing, Point};

@@ -6,7 +6,7 @@ mod drawing;
 mod files;
 mod wires;
 
-use lizard_host::make::draw::{horns, top_view, wiring};
+use lizard_host::draw::{horns, top_view, wiring};
 use lizard_robot::Robot;
 
 use drawing::Drawing;

@@ -1,6 +1,6 @@
 //! The wiring.
 
-use lizard_host::make::draw::wiring;
+use lizard_host::draw::wiring;
 use lizard_robot::Robot;
 
 use crate::drawing::{Drawing, Point};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lizard_host::paper::errata::{SAMPLES, markdown, measure};
+use lizard_host::errata::{SAMPLES, markdown, measure};
 
 use crate::program::{lizard, paper};
 

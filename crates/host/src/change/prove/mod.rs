@@ -12,11 +12,12 @@ mod walk;
 
 use std::io::{self, Write};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CoreRobot, Robot};
 use serde::{Deserialize, Serialize};
 
 use crate::shared::json;
+use crate::shared::number::grouped;
+use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
@@ -162,10 +163,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let style = ProgressStyle::with_template("{bar:40} {percent} % of all rows, {eta} left")
-        .map_err(|error| Failure::Impossible(error.to_string()))?;
     let rows = Proof::rows(guard) * args.spread.own(walk::PIECES) as u64 / walk::PIECES as u64;
-    let bar = ProgressBar::new(rows).with_style(style);
+    let bar = bar(
+        rows as usize,
+        "{bar:40} {percent} % of all rows, {eta} left",
+    );
     let walk = walk::Walk::new(&robot, guard, share);
     let piece = |place| walk.piece(place, &|rows| bar.inc(rows));
     let pieces = args.spread.all(&args, &args.robot, walk::PIECES, piece)?;
@@ -219,7 +221,7 @@ fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
             "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
-            grouped(pairs),
+            grouped(pairs as f64, 0),
             cell(type2.or(leg), 5),
             cell(type1, 5),
             cell(travel, 4),
@@ -252,21 +254,8 @@ fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
         writeln!(
             out,
             "the guard accepts all {} pairs in the robot's cells, where the firmware does not ask it",
-            grouped(proof.certified())
+            grouped(proof.certified() as f64, 0)
         )?;
     }
     Ok(())
-}
-
-/// A count with its thousands apart.
-fn grouped(count: u64) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
 }

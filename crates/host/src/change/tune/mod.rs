@@ -4,13 +4,13 @@ mod report;
 
 use std::io::{self, Write};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot};
 use lizard_tune::{Built, Comparison, Kind, NoTuning, Scored, Tuning, trials};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::shared::json;
+use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::shared::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
@@ -150,10 +150,8 @@ fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
 /// from each other, and so are the pieces; the trials of a round on all cores.
 fn found(tuning: &Tuning, args: &Args) -> Result<Option<Built>, Failure> {
     let rounds = args.rounds as usize;
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} gaits, {eta}")
-        .expect("the template is well formed");
     let kinds = args.spread.own(Kind::ALL.len());
-    let bar = ProgressBar::new((kinds * trials(rounds)) as u64).with_style(style);
+    let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
     let one = |place: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = Kind::ALL[place];
         let mut search = tuning.search(kind);

@@ -20,14 +20,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 pub use chip::Chip;
 pub use found::{Found, Program, TheirRobot};
 
 use crate::drive::console::find::{self, FindError, UsbPort};
 use crate::drive::console::link::{self, Link};
 use crate::drive::console::port::BAUD;
+use crate::shared::progress::bar;
 use crate::{Failure, RobotFile};
 use image::{Image, PAGE};
 use serial_board::SerialBoard;
@@ -119,8 +118,7 @@ fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
 /// Writes the board and says what is done, with a bar meanwhile. Returns the board, its
 /// firmware starting.
 fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %").expect("a template");
-    let bar = ProgressBar::new(0).with_style(style);
+    let bar = bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board, Patience::default());
     let begin = Instant::now();
     let done = upload::upload(&mut loader, image, target, &mut |event| match event {

@@ -4,11 +4,12 @@
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::Robot;
 use lizard_robot::servo::NAMES;
-use svg::Document;
 use svg::node::element::{Group, Polygon, Polyline};
 
-use super::wiring::PLACES;
-use crate::shared::ink::{Anchor, DARK, GREY, SERVO, circle, curve, fixed, line, rectangle, text};
+use crate::shared::ink::{
+    Anchor, DARK, GREY, PLACES, SERVO, circle, curve, fixed, line, page, rectangle, text, text_end,
+    text_middle, text_start,
+};
 
 const SIZE: (f64, f64) = (700.0, 640.0);
 
@@ -40,13 +41,7 @@ pub fn horns(robot: &Robot) -> String {
         group = group.add(crank(robot, servo));
     }
     group = group.add(example(robot)).add(rose());
-    Document::new()
-        .set("viewBox", (0.0, 0.0, SIZE.0, SIZE.1))
-        .set("width", SIZE.0)
-        .set("height", SIZE.1)
-        .add(rectangle((0.0, 0.0), SIZE, "white"))
-        .add(group)
-        .to_string()
+    page(SIZE, group)
 }
 
 /// The cranks from their shafts to the joints with the couplers, mm, chassis frame.
@@ -71,7 +66,7 @@ fn scale(robot: &Robot) -> f64 {
     (ROOM.0 / (2.0 * x)).min(ROOM.1 / (2.0 * y))
 }
 
-fn page(at: Vector, scale: f64) -> (f64, f64) {
+fn on_page(at: Vector, scale: f64) -> (f64, f64) {
     (MIDDLE.0 + scale * at.x, MIDDLE.1 - scale * at.y)
 }
 
@@ -113,7 +108,7 @@ fn chassis(robot: &Robot) -> Group {
         .fold(0.0, f64::max)
         + 9.0;
     let top = cranks[0].0.y + 9.0;
-    let corner = page(Vector::new(-half, top), scale);
+    let corner = on_page(Vector::new(-half, top), scale);
     let size = (2.0 * half * scale, 2.0 * top * scale);
     let mut group = Group::new().add(
         rectangle(corner, size, "#f4f1ea")
@@ -128,7 +123,7 @@ fn chassis(robot: &Robot) -> Group {
         } else {
             shaft.y + BODY.1 - SHAFT
         };
-        let corner = page(Vector::new(shaft.x - BODY.0 / 2.0, upper), scale);
+        let corner = on_page(Vector::new(shaft.x - BODY.0 / 2.0, upper), scale);
         group = group.add(
             rectangle(corner, (BODY.0 * scale, BODY.1 * scale), SERVO[servo])
                 .set("rx", 3)
@@ -140,27 +135,15 @@ fn chassis(robot: &Robot) -> Group {
         .add(line(tail, tip, GREY, 3.0))
         .add(line(tip, (tip.0 - 8.0, tip.1 + 12.0), GREY, 3.0))
         .add(line(tip, (tip.0 + 8.0, tip.1 + 12.0), GREY, 3.0))
-        .add(text(
-            "head",
-            (tip.0, tip.1 - 10.0),
-            15.0,
-            DARK,
-            Anchor::Middle,
-        ))
-        .add(text(
-            "tail",
-            (tail.0, tail.1 + 20.0),
-            15.0,
-            DARK,
-            Anchor::Middle,
-        ))
+        .add(text_middle("head", (tip.0, tip.1 - 10.0), 15.0))
+        .add(text_middle("tail", (tail.0, tail.1 + 20.0), 15.0))
 }
 
 /// A servo's crank, its angle and its name.
 fn crank(robot: &Robot, servo: usize) -> Group {
     let scale = scale(robot);
     let (shaft, tip) = cranks(robot)[servo];
-    let (from, to) = (page(shaft, scale), page(tip, scale));
+    let (from, to) = (on_page(shaft, scale), on_page(tip, scale));
     let angle = robot.servos()[servo].neutral.rem_euclid(360.0);
     let colour = SERVO[servo];
     // Three lines of words, outside of the robot.
@@ -184,22 +167,10 @@ fn crank(robot: &Robot, servo: usize) -> Group {
             text(NAMES[servo], (to.0, base), 18.0, colour, Anchor::Middle)
                 .set("font-weight", "bold"),
         )
-        .add(text(
-            PLACES[servo],
-            (to.0, base + 18.0),
-            14.0,
-            DARK,
-            Anchor::Middle,
-        ))
+        .add(text_middle(PLACES[servo], (to.0, base + 18.0), 14.0))
         .add(
-            text(
-                &format!("{angle:.2}°"),
-                (to.0, base + 37.0),
-                16.0,
-                DARK,
-                Anchor::Middle,
-            )
-            .set("id", format!("angle-{}", NAMES[servo])),
+            text_middle(&format!("{angle:.2}°"), (to.0, base + 37.0), 16.0)
+                .set("id", format!("angle-{}", NAMES[servo])),
         )
 }
 
@@ -234,18 +205,16 @@ fn example(robot: &Robot) -> Group {
         )
         .add(arrow(SPLINE, CRANK + 12.0, sits - 7.0, exact, DARK))
         .add(circle(SPLINE, 6.0, DARK))
-        .add(text(
+        .add(text_end(
             "trim",
             toward(SPLINE, exact + 4.0, CRANK + 16.0),
             14.0,
-            DARK,
-            Anchor::End,
         ))
         // A tooth's width on the other side, where nothing else is.
         .add(tooth(sits - 9.0 * TOOTH));
     for (place, words) in lines.iter().enumerate() {
         let at = (LEFT, SPLINE.1 + 102.0 + 19.0 * place as f64);
-        let mut words_there = text(words, at, 14.0, DARK, Anchor::Start);
+        let mut words_there = text_start(words, at, 14.0);
         if words.starts_with("trim") {
             words_there = words_there.set("font-weight", "bold");
         }
@@ -289,12 +258,10 @@ fn tooth(degrees: f64) -> Group {
         .add(ray(degrees))
         .add(ray(degrees + TOOTH))
         .add(arc(SPLINE, far - 7.0, degrees, degrees + TOOTH, DARK))
-        .add(text(
+        .add(text_start(
             &format!("{TOOTH}°"),
             (words.0, words.1 + 5.0),
             14.0,
-            DARK,
-            Anchor::Start,
         ))
 }
 
@@ -303,13 +270,7 @@ fn rose() -> Group {
     let middle = (546.0, 540.0);
     let caption = (middle.0, middle.1 - 84.0);
     let mut group = Group::new()
-        .add(text(
-            "angles, seen from above",
-            caption,
-            14.0,
-            DARK,
-            Anchor::Middle,
-        ))
+        .add(text_middle("angles, seen from above", caption, 14.0))
         .add(
             circle(middle, 46.0, "none")
                 .set("stroke", GREY)

@@ -5,7 +5,9 @@ use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
 
 use super::top_view::{Joint, NAME_BEYOND, SIZE, SKIN_BEYOND, View};
-use crate::shared::ink::{Anchor, DARK, GREY, SERVO, line, pin_name, text};
+use crate::shared::ink::{
+    Anchor, DARK, GREY, SERVO, line, pin_name, text, text_middle, text_start,
+};
 
 /// Distance of the servos' names from the page's middle, to the side and up, pixels.
 const NAMES_AT: f64 = 347.0;
@@ -48,21 +50,9 @@ impl View<'_> {
         let tail = solution.tail_point();
         let coordinates = |name: &str, at: Joint| format!("{name} ({:.1}, {:.1}) mm", at.x, at.y);
         let (x, y) = self.page(head + Vector::new(0.0, SKIN_BEYOND * self.grown() + NAME_BEYOND));
-        group = group.add(text(
-            &coordinates("head", head),
-            (x, y),
-            18.0,
-            DARK,
-            Anchor::Middle,
-        ));
+        group = group.add(text_middle(&coordinates("head", head), (x, y), 18.0));
         let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.grown() - 8.0));
-        group = group.add(text(
-            &coordinates("tail", tail),
-            (x, y),
-            18.0,
-            DARK,
-            Anchor::Middle,
-        ));
+        group = group.add(text_middle(&coordinates("tail", tail), (x, y), 18.0));
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
             let anchor = if side < 0.0 {
                 Anchor::End
@@ -119,7 +109,7 @@ fn compass(mut group: Group, scale: f64) -> Group {
             .add(line(origin, tip, DARK, 2.0))
             .add(line(tip, barb(155.0), DARK, 2.0))
             .add(line(tip, barb(-155.0), DARK, 2.0))
-            .add(text(name, at, 16.0, DARK, Anchor::Start));
+            .add(text_start(name, at, 16.0));
     }
     let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
     let begin = (end.0 - 50.0 * scale, end.1);
@@ -129,5 +119,5 @@ fn compass(mut group: Group, scale: f64) -> Group {
     let middle = ((begin.0 + end.0) / 2.0, end.1 - 12.0);
     group
         .add(line(begin, end, DARK, 2.0))
-        .add(text("50 mm", middle, 16.0, DARK, Anchor::Middle))
+        .add(text_middle("50 mm", middle, 16.0))
 }

@@ -61,10 +61,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         horns(&robot)
     } else {
         let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
-        let solution = robot
-            .lizard()
-            .solve(&pose)
-            .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+        let solution = robot.lizard().solve(&pose)?;
         top_view(&robot, &solution, !args.plain)
     };
     match args.output {

@@ -2,11 +2,10 @@
 
 use lizard_kinematics::{End, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
-use svg::Document;
 use svg::node::element::{Group, Path};
 
 use super::body::Sheet;
-use crate::shared::ink::{DARK, SERVO, circle, rectangle};
+use crate::shared::ink::{DARK, SERVO, circle, page};
 
 pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
 /// Pixels of a mm, unless the robot is too large for the page.
@@ -31,8 +30,7 @@ pub(super) type Joint = Vector;
 #[must_use]
 pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
     let view = View::new(robot, solution);
-    let mut group = Group::new().add(rectangle((0.0, 0.0), SIZE, "white"));
-    group = view.skin(group);
+    let mut group = view.skin(Group::new());
     let (legs, sheet) = (view.legs(), view.sheet());
     group = sheet.feet(group, &legs, [DARK; 4]);
     group = sheet.plate(group, &robot.plate());
@@ -47,12 +45,7 @@ pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
     if labels {
         group = view.labels(group);
     }
-    Document::new()
-        .set("viewBox", (0.0, 0.0, SIZE.0, SIZE.1))
-        .set("width", SIZE.0)
-        .set("height", SIZE.1)
-        .add(group)
-        .to_string()
+    page(SIZE, group)
 }
 
 pub(super) struct View<'a> {

@@ -3,7 +3,9 @@
 use svg::node::element::{Group, Text};
 
 use crate::shared::ink::pin_name;
-use crate::shared::ink::{Anchor, DARK, GREY, PANEL, circle, fixed, line, rectangle, text};
+use crate::shared::ink::{
+    Anchor, DARK, GREY, PANEL, circle, fixed, rectangle, text, text_middle, text_start,
+};
 
 /// Pixels between neighbouring pins, a tenth of an inch.
 const PITCH: f64 = 14.0;
@@ -88,7 +90,7 @@ impl Uno {
             group = group.add(hole(at, false)).add(self.label(at, name, false));
         }
         let name = self.at(9.0, 11.2);
-        group.add(text("Arduino UNO", name, 18.0, DARK, Anchor::Start))
+        group.add(text_start("Arduino UNO", name, 18.0))
     }
 
     /// Sockets, chip and LED.
@@ -101,24 +103,12 @@ impl Uno {
         let led = self.at(9.4, 13.6);
         group
             .add(block(-2.5, 17.5, (6.4, 4.7), "#c9c9c9"))
-            .add(text("USB", self.at(0.7, 14.8), 14.0, DARK, Anchor::Middle))
+            .add(text_middle("USB", self.at(0.7, 14.8), 14.0))
             .add(block(-0.8, 4.8, (5.4, 3.6), "#bdbdbd"))
-            .add(text(
-                "7-12 V",
-                self.at(1.9, 2.6),
-                13.0,
-                DARK,
-                Anchor::Middle,
-            ))
+            .add(text_middle("7-12 V", self.at(1.9, 2.6), 13.0))
             .add(block(11.5, 9.2, (13.0, 3.0), "#8f8f8f"))
             .add(circle(led, 4.5, "#f0e442").set("stroke", DARK))
-            .add(text(
-                "LED",
-                (led.0 + 9.0, led.1 + 5.0),
-                13.0,
-                DARK,
-                Anchor::Start,
-            ))
+            .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
     }
 
     /// The name printed beside a pin, upwards.
@@ -157,22 +147,4 @@ fn hole(at: (f64, f64), is_used: bool) -> svg::node::element::Circle {
     circle(at, 4.0, fill)
         .set("stroke", DARK)
         .set("stroke-width", 1.2)
-}
-
-/// A short stroke through a wire's end, for what must stay free.
-pub fn cross(at: (f64, f64), colour: &str) -> Group {
-    const ARM: f64 = 6.0;
-    Group::new()
-        .add(line(
-            (at.0 - ARM, at.1 - ARM),
-            (at.0 + ARM, at.1 + ARM),
-            colour,
-            2.5,
-        ))
-        .add(line(
-            (at.0 - ARM, at.1 + ARM),
-            (at.0 + ARM, at.1 - ARM),
-            colour,
-            2.5,
-        ))
 }

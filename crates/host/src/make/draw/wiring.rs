@@ -2,20 +2,17 @@
 
 use lizard_robot::Robot;
 use lizard_robot::servo::NAMES;
-use svg::Document;
 use svg::node::element::Group;
 
 use super::route::{GAP, Path, below, beside, between_rows};
-use super::uno::{Uno, cross};
+use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    Anchor, BROWN, DARK, GREY, ORANGE, RED, SERVO, circle, curve, line, rectangle, text,
+    BROWN, DARK, GREY, ORANGE, PLACES, RED, SERVO, circle, cross, curve, line, page, rectangle,
+    text_end, text_middle, text_start,
 };
 
 const WIDTH: f64 = 700.0;
-
-/// Places of the servos on the robot.
-pub(super) const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
 /// Heights of the two rails, and where they begin and end.
 const GROUND: f64 = 42.0;
@@ -69,13 +66,7 @@ pub fn wiring(robot: &Robot) -> String {
     }
     group = group.add(remarks(robot, notes));
     let height = notes + 138.0;
-    Document::new()
-        .set("viewBox", (0.0, 0.0, WIDTH, height))
-        .set("width", WIDTH)
-        .set("height", height)
-        .add(rectangle((0.0, 0.0), (WIDTH, height), "white"))
-        .add(group)
-        .to_string()
+    page((WIDTH, height), group)
 }
 
 fn is_analogue(pin: u8) -> bool {
@@ -187,12 +178,10 @@ fn resistor(x: f64) -> Group {
                 .set("stroke", DARK)
                 .set("stroke-width", 1.5),
         )
-        .add(text(
+        .add(text_start(
             "10 k\u{3a9}",
             (x + width - 1.0, RESISTOR + 4.0),
             12.0,
-            DARK,
-            Anchor::Start,
         ))
 }
 
@@ -217,23 +206,12 @@ fn body(servo: usize, place: usize, pin: u8) -> Group {
                 .set("stroke-width", 2),
         )
         .add(circle((x, TOP + 27.0), 5.0, DARK))
-        .add(
-            text(NAMES[servo], (x, below - 18.0), 20.0, DARK, Anchor::Middle)
-                .set("font-weight", "bold"),
-        )
-        .add(text(
-            PLACES[servo],
-            (x - 2.0, below + 17.0),
-            13.0,
-            DARK,
-            Anchor::Middle,
-        ))
-        .add(text(
+        .add(text_middle(NAMES[servo], (x, below - 18.0), 20.0).set("font-weight", "bold"))
+        .add(text_middle(PLACES[servo], (x - 2.0, below + 17.0), 13.0))
+        .add(text_middle(
             &format!("to {}", pin_name(pin)),
             (x - 2.0, below + 34.0),
             13.0,
-            DARK,
-            Anchor::Middle,
         ))
 }
 
@@ -251,55 +229,13 @@ fn supply() -> Group {
                 .set("stroke", DARK)
                 .set("stroke-width", 1.5),
         )
-        .add(text(
-            "\u{2212}",
-            (RAILS.1 + 8.0, GROUND + 6.0),
-            18.0,
-            DARK,
-            Anchor::Start,
-        ))
-        .add(text(
-            "+",
-            (RAILS.1 + 8.0, PLUS + 6.0),
-            18.0,
-            DARK,
-            Anchor::Start,
-        ))
-        .add(text(
-            "supply",
-            (middle, PLUS - 32.0),
-            15.0,
-            DARK,
-            Anchor::Middle,
-        ))
-        .add(text(
-            "5 V, 3 A",
-            (middle, PLUS - 12.0),
-            15.0,
-            DARK,
-            Anchor::Middle,
-        ))
-        .add(text(
-            "ground (brown)",
-            (MARGIN, GROUND - 12.0),
-            13.0,
-            DARK,
-            Anchor::Start,
-        ))
-        .add(text(
-            "+5 V",
-            (RAILS.0 - 6.0, PLUS - 2.0),
-            13.0,
-            DARK,
-            Anchor::End,
-        ))
-        .add(text(
-            "(red)",
-            (RAILS.0 - 6.0, PLUS + 14.0),
-            13.0,
-            DARK,
-            Anchor::End,
-        ))
+        .add(text_start("\u{2212}", (RAILS.1 + 8.0, GROUND + 6.0), 18.0))
+        .add(text_start("+", (RAILS.1 + 8.0, PLUS + 6.0), 18.0))
+        .add(text_middle("supply", (middle, PLUS - 32.0), 15.0))
+        .add(text_middle("5 V, 3 A", (middle, PLUS - 12.0), 15.0))
+        .add(text_start("ground (brown)", (MARGIN, GROUND - 12.0), 13.0))
+        .add(text_end("+5 V", (RAILS.0 - 6.0, PLUS - 2.0), 13.0))
+        .add(text_end("(red)", (RAILS.0 - 6.0, PLUS + 14.0), 13.0))
         .add(line((can, GROUND), (can, PLUS), DARK, 2.0))
         .add(
             rectangle((can - half, top), (2.0 * half, bottom - top), "#dddddd")
@@ -308,20 +244,8 @@ fn supply() -> Group {
                 .set("stroke-width", 1.5),
         )
         .add(rectangle((can - half, top), (2.0 * half, 9.0), DARK).set("rx", 2))
-        .add(text(
-            "1000 µF",
-            (can + half + 6.0, PLUS - 32.0),
-            13.0,
-            DARK,
-            Anchor::Start,
-        ))
-        .add(text(
-            "10 V",
-            (can + half + 6.0, PLUS - 15.0),
-            13.0,
-            DARK,
-            Anchor::Start,
-        ))
+        .add(text_start("1000 µF", (can + half + 6.0, PLUS - 32.0), 13.0))
+        .add(text_start("10 V", (can + half + 6.0, PLUS - 15.0), 13.0))
 }
 
 /// Remarks that a drawing cannot show.
@@ -345,20 +269,14 @@ fn remarks(robot: &Robot, top: f64) -> Group {
         ));
     }
     let mut group = Group::new()
-        .add(cross(five, RED))
-        .add(text(
-            "5V stays free",
-            (five.0, edge + 17.0),
-            13.0,
-            DARK,
-            Anchor::Middle,
-        ))
+        .add(cross(five, 6.0, RED, 2.5))
+        .add(text_middle("5V stays free", (five.0, edge + 17.0), 13.0))
         .add(line((MARGIN, 437.0), (84.0, 437.0), GREY, 7.0))
-        .add(text("computer", (8.0, 461.0), 13.0, DARK, Anchor::Start))
-        .add(text("or charger", (8.0, 477.0), 13.0, DARK, Anchor::Start));
+        .add(text_start("computer", (8.0, 461.0), 13.0))
+        .add(text_start("or charger", (8.0, 477.0), 13.0));
     for (place, words) in lines.iter().enumerate() {
         let y = top + 18.0 * place as f64;
-        group = group.add(text(words, (MARGIN, y), 14.0, DARK, Anchor::Start));
+        group = group.add(text_start(words, (MARGIN, y), 14.0));
     }
     group
 }

@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lizard_parts::{Answer, Assembly, ENOUGH, Near, Proof, Questions, Unfit};
 use lizard_robot::servo::NAMES;
 use serde::{Deserialize, Serialize};
 
+use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
@@ -86,12 +86,8 @@ impl<'a> From<&'a Near> for Pair<'a> {
     }
 }
 
-/// A bar of this many pairs of mounts.
-fn bar(length: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} looking for parts that meet")
-        .expect("a template");
-    ProgressBar::new(length as u64).with_style(style)
-}
+/// A bar of pairs of mounts.
+const PAIRS: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
 
 /// Proves it, with a bar.
 pub(super) fn proof(assembly: &Assembly) -> Proof {
@@ -100,7 +96,7 @@ pub(super) fn proof(assembly: &Assembly) -> Proof {
 
 /// The proof, of answers that are known or else are found here.
 fn answered(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
-    let bar = bar(questions.count());
+    let bar = bar(questions.count(), PAIRS);
     let known = |place: usize| known.as_ref()?.get(place).cloned();
     let proof = questions.answer(known, |done, _| bar.set_position(done as u64));
     bar.finish_and_clear();
@@ -118,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let questions = Questions::new(&assembly, |_, _| true);
     let count = questions.count();
     if let Some(part) = args.spread.part() {
-        let bar = bar(part.count(count));
+        let bar = bar(part.count(count), PAIRS);
         let one = |place| {
             bar.inc(1);
             questions.one(place)

@@ -5,12 +5,12 @@ pub mod fit;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lizard_parts::{Assembly, Bill, File, Unfit, coupon, papers, part_files};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
 use crate::shared::files;
+use crate::shared::progress::bar;
 use crate::{Failure, RobotFile};
 
 /// Make the parts of the robot: files to print and to cut, what to buy, how to build it
@@ -89,8 +89,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             false => assembly.parts(),
         });
     }
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}").expect("a template");
-    let bar = ProgressBar::new(parts.len() as u64).with_style(style);
+    let bar = bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
     let mut files = Vec::new();
     let mut list = Vec::new();
     for part in &parts {
@@ -110,10 +109,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     bar.finish_and_clear();
     let mut weight = None;
     if whole {
-        let pose = robot
-            .lizard()
-            .solve(&robot.neutral())
-            .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+        let pose = robot.lizard().solve(&robot.neutral())?;
         let bill = Bill::of(&assembly, &assembly.parts(), &pose);
         files.extend(papers(&assembly, &bill, &pose)?);
         weight = bill

@@ -13,10 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::shared::json;
 use crate::shared::pose_args::length;
+use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
-pub use chart::{Point, bar, chart};
+pub use chart::{Point, chart};
 pub use performance::{CLAIM, Conditioning, Performance, lci};
 pub use proportions::{Proportions, SUM, triangle};
 pub use search::{Demands, Design, Search, design, ranked};
@@ -266,7 +267,7 @@ fn verdict(lci: &Conditioning, r_mic: f64) -> String {
 }
 
 fn charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
-    let progress = bar("performance charts");
+    let progress = bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
     let points = chart(args.step, COARSE, &progress);
     progress.finish_and_clear();
     if args.json {
@@ -318,7 +319,7 @@ fn ranking(
         shortest: args.shortest,
         sweep: args.sweep,
     };
-    let progress = bar("designs");
+    let progress = bar(0, "designs {bar:40} {pos}/{len} {eta}");
     let search = Search::new(args.step, demands, &progress, |count| {
         args.spread.own(count)
     });

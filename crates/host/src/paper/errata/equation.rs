@@ -21,17 +21,47 @@ pub struct Equation {
     pub clockwise: Option<Miss>,
     /// The corrected form, and its error.
     pub corrected: Option<(&'static str, Miss)>,
-    /// A closer look at one place, in the same unit; no verdict of its own.
-    pub aside: Option<Aside>,
+    /// A place that deserves a closer look, and the error of the printed form there; no verdict
+    /// of its own.
+    pub aside: Option<(&'static str, Miss)>,
 }
 
-/// The printed form at a special place.
-#[derive(Clone, Copy)]
-pub struct Aside {
-    /// The place in the paper.
-    pub place: &'static str,
-    /// The error of the printed form there.
-    pub miss: Miss,
+impl Equation {
+    /// An equation as printed, and its error in a unit.
+    pub const fn new(
+        place: &'static str,
+        printed: &'static str,
+        unit: &'static str,
+        miss: Miss,
+    ) -> Self {
+        Self {
+            place,
+            printed,
+            miss,
+            unit,
+            clockwise: None,
+            corrected: None,
+            aside: None,
+        }
+    }
+
+    /// Adds the error of the clockwise reading.
+    pub const fn clockwise(mut self, miss: Miss) -> Self {
+        self.clockwise = Some(miss);
+        self
+    }
+
+    /// Adds the corrected form.
+    pub const fn corrected(mut self, form: &'static str, miss: Miss) -> Self {
+        self.corrected = Some((form, miss));
+        self
+    }
+
+    /// Adds a place that deserves a closer look.
+    pub const fn aside(mut self, place: &'static str, miss: Miss) -> Self {
+        self.aside = Some((place, miss));
+        self
+    }
 }
 
 /// The errors of a form over all samples.

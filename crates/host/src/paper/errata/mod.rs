@@ -110,7 +110,7 @@ pub fn measure(samples: u32) -> Vec<Entry> {
                 unit: equation.unit,
                 aside: equation
                     .aside
-                    .map(|aside| (Misses::of(aside.miss, &samples).worst, aside.place)),
+                    .map(|(place, miss)| (Misses::of(miss, &samples).worst, place)),
                 holds_clockwise: equation
                     .clockwise
                     .map(|miss| Misses::of(miss, &samples).holds()),

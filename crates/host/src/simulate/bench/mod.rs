@@ -10,9 +10,8 @@ mod table;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 use crate::shared::firmware;
+use crate::shared::progress::bar;
 use crate::{Failure, RobotFile};
 
 pub use budget::{Bound, Row, rows};
@@ -69,9 +68,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let robot = args.robot.load()?;
     firmware::of_robot(Some(&elf), &args.robot, &robot)?;
-    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
-    let progress = ProgressBar::new_spinner();
-    progress.set_style(style.expect("the template is well formed"));
+    let progress = bar(0, "{spinner} {msg}, {elapsed}");
     progress.enable_steady_tick(std::time::Duration::from_millis(100));
     let figures = Figures::measure(&elf, &robot, |step| progress.set_message(step))?;
     progress.finish_and_clear();

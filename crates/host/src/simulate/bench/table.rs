@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::budget::{Bound, Row, SERVO_LIBRARY};
+use crate::shared::number::grouped;
 
 /// Prints the table.
 ///
@@ -54,35 +55,9 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
     writeln!(out, "\nA cycle is 62.5 ns. {gait} {SERVO_LIBRARY}.")
 }
 
-/// A number with its thousands apart.
-fn grouped(value: f64, decimals: usize) -> String {
-    let plain = format!("{value:.decimals$}");
-    let (whole, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
-    let mut text = String::new();
-    for (n, digit) in whole.chars().enumerate() {
-        if n > 0 && (whole.len() - n).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text + fraction
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thousands_are_set_apart() {
-        for (value, decimals, text) in [
-            (0.0, 0, "0"),
-            (999.4, 0, "999"),
-            (16_384.0, 0, "16 384"),
-            (1_234_567.89, 1, "1 234 567.9"),
-        ] {
-            assert_eq!(grouped(value, decimals), text);
-        }
-    }
 
     #[test]
     fn a_broken_budget_stands_out() {

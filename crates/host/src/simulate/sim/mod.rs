@@ -21,11 +21,12 @@ pub mod tour;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use lizard_robot::Robot;
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
 use crate::shared::firmware::{self, Firmware};
+use crate::shared::progress::bar;
 use crate::shared::suggestion::did_you_mean;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
@@ -186,7 +187,7 @@ fn record(
     args: &Args,
     kept: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
-    let bar = progress_bar(script.end_ms);
+    let bar = simulated_time(script.end_ms);
     let mut printer = Printer::new(args.all);
     let mut out = io::stdout();
     let pins = frame::servo_pins(robot);
@@ -275,10 +276,12 @@ pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
     Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 
-fn progress_bar(end_ms: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
-        .expect("the template is well formed");
-    ProgressBar::new(end_ms).with_style(style)
+/// A bar of the simulated time.
+pub(crate) fn simulated_time(end_ms: u64) -> ProgressBar {
+    bar(
+        end_ms as usize,
+        "{bar:40} {pos}/{len} ms simulated, {elapsed}",
+    )
 }
 
 fn analysis_progress() -> ProgressBar {

@@ -8,6 +8,7 @@ use simulated_uno::Uno;
 
 use super::analysis::{Leg, Run, Safety, ServoReport};
 use super::session::DialogueLine;
+use crate::shared::number::tidy;
 
 /// Everything that a run has to show.
 #[derive(Debug, Serialize)]
@@ -103,10 +104,8 @@ impl Report<'_> {
         )?;
         for leg in &self.way {
             let cell = |part: Option<f64>, digits: usize| {
-                let half = 0.5 / 10f64.powi(digits as i32);
-                part.map_or("-".to_owned(), |part| {
-                    format!("{:.digits$}", positive_zero(part, half))
-                })
+                let tidy = |part| format!("{:.digits$}", tidy(part, digits as i32));
+                part.map_or("-".to_owned(), tidy)
             };
             writeln!(
                 out,
@@ -140,8 +139,8 @@ impl Report<'_> {
                 least.value,
                 least.margin,
                 least.seconds,
-                positive_zero(self.safety.stroke[0], 0.05),
-                positive_zero(self.safety.stroke[1], 0.05)
+                tidy(self.safety.stroke[0], 1),
+                tidy(self.safety.stroke[1], 1)
             )?;
         }
         if let Some(reason) = &self.safety.first_violation {
@@ -191,9 +190,4 @@ impl Ram {
             stack_spare: uno.stack_spare(),
         })
     }
-}
-
-/// Without the minus sign of a value that prints as zero.
-fn positive_zero(value: f64, half: f64) -> f64 {
-    if value.abs() < half { 0.0 } else { value }
 }

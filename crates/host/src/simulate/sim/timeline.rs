@@ -1,14 +1,16 @@
 //! Servo angles over time, and below them which foot pushes and which returns.
 
 use lizard_robot::servo::NAMES;
-use svg::Document;
 use svg::node::element::Group;
 
 use super::analysis::Run;
 use super::footfall::{Phase, Stretch, stretches};
 use super::spans::Span;
 use crate::shared::ink::pin_name;
-use crate::shared::ink::{Anchor, DARK, GREY, GRID, PANEL, SERVO, curve, line, rectangle, text};
+use crate::shared::ink::{
+    Anchor, DARK, GREY, GRID, PANEL, PLACES, SERVO, curve, line, page, rectangle, text,
+    text_middle, text_start,
+};
 
 const WIDTH: f64 = 1280.0;
 const LEFT: f64 = 200.0;
@@ -22,9 +24,6 @@ const FOOT: f64 = 28.0;
 const FOOT_GAP: f64 = 8.0;
 const AXIS: f64 = FEET + 4.0 * (FOOT + FOOT_GAP) + 4.0;
 const HEIGHT: f64 = AXIS + 96.0;
-
-/// The place of each servo's leg.
-const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
 /// The title and description of the picture.
 #[derive(Debug, Clone, Copy)]
@@ -55,9 +54,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
         seconds: end.max(0.1),
     };
     let reach = chart.reach();
-    let mut group = Group::new();
-    group = group.add(rectangle((0.0, 0.0), (WIDTH, HEIGHT), "white"));
-    group = chart.title(group);
+    let mut group = chart.title(Group::new());
     group = chart.commands(group);
     for servo in 0..4 {
         group = chart.strip(group, servo, reach);
@@ -65,12 +62,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     }
     group = chart.marks(group);
     group = chart.axis(group);
-    Document::new()
-        .set("viewBox", (0.0, 0.0, WIDTH, HEIGHT))
-        .set("width", WIDTH)
-        .set("height", HEIGHT)
-        .add(group)
-        .to_string()
+    page((WIDTH, HEIGHT), group)
 }
 
 struct Chart<'a> {
@@ -88,7 +80,7 @@ impl Chart<'_> {
     fn title(&self, group: Group) -> Group {
         let Caption { title, note, .. } = self.caption;
         group
-            .add(text(title, (LEFT, 40.0), 24.0, DARK, Anchor::Start).set("font-weight", "bold"))
+            .add(text_start(title, (LEFT, 40.0), 24.0).set("font-weight", "bold"))
             .add(text(note, (LEFT, 66.0), 15.0, GREY, Anchor::Start))
     }
 
@@ -101,7 +93,7 @@ impl Chart<'_> {
             // About 7.5 px a letter: leave out what would run over.
             if command.len() as f64 * 7.5 < end - x {
                 let at = ((x + end) / 2.0, COMMANDS + 18.0);
-                group = group.add(text(command, at, 15.0, DARK, Anchor::Middle));
+                group = group.add(text_middle(command, at, 15.0));
             }
         }
         group.add(text(
@@ -206,8 +198,7 @@ impl Chart<'_> {
         let (begin, end) = (self.x(0.0), self.x(self.seconds));
         if servo == 0 {
             let at = (14.0, FEET - 12.0);
-            group = group
-                .add(text("Footfalls", at, 17.0, DARK, Anchor::Start).set("font-weight", "bold"));
+            group = group.add(text_start("Footfalls", at, 17.0).set("font-weight", "bold"));
             group = self.legend(group);
         }
         group = group
@@ -278,16 +269,10 @@ impl Chart<'_> {
             };
             group = group
                 .add(line((x, AXIS), (x, AXIS + 7.0), DARK, 1.2))
-                .add(text(&label, (x, AXIS + 25.0), 14.0, DARK, Anchor::Middle));
+                .add(text_middle(&label, (x, AXIS + 25.0), 14.0));
         }
         let middle = (self.x(0.0) + self.x(self.seconds)) / 2.0;
-        group.add(text(
-            self.caption.axis,
-            (middle, AXIS + 50.0),
-            15.0,
-            DARK,
-            Anchor::Middle,
-        ))
+        group.add(text_middle(self.caption.axis, (middle, AXIS + 50.0), 15.0))
     }
 }
 

@@ -8,8 +8,7 @@ mod robust;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use indicatif::{ProgressBar, ProgressStyle};
-use lizard_robot::Robot;
+use lizard_robot::{CheckedGait, Robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
@@ -17,7 +16,7 @@ use crate::shared::firmware;
 use crate::shared::suggestion::did_you_mean;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
-use crate::simulate::sim::{frame, read_script, spans, supplies, tour};
+use crate::simulate::sim::{frame, read_script, simulated_time, spans, supplies, tour};
 use crate::{Failure, RobotFile};
 use replay::Replay;
 use report::Report;
@@ -79,11 +78,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let recording = record(&mut uno, &robot, &script)?;
-    if recording.state != State::Alive {
-        return Err(Failure::Impossible(
-            "the firmware ended; `lizard sim` says how".to_owned(),
-        ));
-    }
     let model = match args.servo {
         ServoArg::Sg90 => ServoModel::SG90,
         ServoArg::Ideal => ServoModel::IDEAL,
@@ -108,12 +102,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Plays the script without a word.
-pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> io::Result<Recording> {
+/// Plays the script silently.
+///
+/// # Errors
+/// The firmware ends before the script does.
+pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
     supplies::connect(uno, robot);
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} ms simulated, {elapsed}")
-        .expect("the template is well formed");
-    let bar = ProgressBar::new(script.end_ms).with_style(style);
+    let bar = simulated_time(script.end_ms);
     let pins = frame::servo_pins(robot);
     let recording = session::play(uno, pins, script, false, |event| {
         if let Event::Time(ms) = event {
@@ -122,25 +117,37 @@ pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> io::Resul
         Ok(())
     })?;
     bar.finish_and_clear();
-    Ok(recording)
+    match recording.state {
+        State::Alive => Ok(recording),
+        _ => Err(Failure::Impossible(
+            "the firmware ended; `lizard sim` says how".to_owned(),
+        )),
+    }
 }
 
 fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(path) = &args.script {
         return read_script(path);
     }
-    let gaits = tour::moving(robot);
-    match &args.gait {
-        None => Ok(every(robot, &gaits)),
-        Some(name) => match robot.gait(name) {
-            Some(gait) if gait.moves() => Ok(every(robot, &[gait.name()])),
-            Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
-            None => Err(Failure::Input(format!(
+    Ok(match &args.gait {
+        None => every(robot, &tour::moving(robot)),
+        Some(name) => every(robot, &[moving_gait(robot, name)?.name()]),
+    })
+}
+
+/// The gait of this name, if it moves a servo.
+pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+    match robot.gait(name) {
+        Some(gait) if gait.moves() => Ok(gait),
+        Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
+        None => {
+            let gaits = tour::moving(robot);
+            Err(Failure::Input(format!(
                 "robot.toml has no gait `{name}`; those that move are {}{}",
                 gaits.join(", "),
                 did_you_mean(name, gaits)
-            ))),
-        },
+            )))
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::replay::Replay;
 use crate::shared::json;
+use crate::shared::number::tidy;
 
 /// A row for each command.
 pub struct Report {
@@ -224,7 +225,6 @@ impl Report {
 #[must_use]
 pub fn known(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
-        let scale = 10f64.powi(decimals as i32);
-        format!("{:+.decimals$}", (value * scale).round() / scale + 0.0)
+        format!("{:+.decimals$}", tidy(value, decimals as i32))
     })
 }

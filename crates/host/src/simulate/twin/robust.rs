@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use lizard_robot::{CheckedGait, Robot, Travel};
 use lizard_tune::{PLAYED, SPREAD, Variation, quantiles};
 use lizard_twin::ServoModel;
@@ -12,6 +11,7 @@ use super::replay::Replay;
 use super::report::known;
 use crate::Failure;
 use crate::shared::json;
+use crate::shared::progress::bar;
 
 /// The spread of a gait's paths.
 #[derive(Debug, Serialize)]
@@ -43,9 +43,10 @@ pub fn run(
         .iter()
         .filter_map(|stage| robot.gait(&stage.command).filter(|gait| gait.moves()))
         .collect();
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} walks, {eta}")
-        .expect("the template is well formed");
-    let bar = ProgressBar::new(u64::from(times) * gaits.len() as u64).with_style(style);
+    let bar = bar(
+        times as usize * gaits.len(),
+        "{bar:40} {pos}/{len} walks, {eta}",
+    );
     let mut spreads: Vec<Spread> = Vec::new();
     for gait in gaits {
         if spreads.iter().any(|spread| spread.gait == gait.name()) {

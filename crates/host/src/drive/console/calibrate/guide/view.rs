@@ -2,11 +2,10 @@
 
 use std::io::{Read, Write};
 
+use crate::shared::ink::PLACES;
+
 use super::step::{STEPS, Step};
 use super::{FAR, Guide, PROOFS};
-
-/// The place of each servo on the robot.
-const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 
 /// The contents of the screen.
 #[derive(Debug, Clone, PartialEq, Eq)]
