@@ -18,14 +18,8 @@ pub fn plain(text: &str) -> String {
     shown
 }
 
-/// The same of a text that has lines.
-#[must_use]
-pub fn plain_lines(text: &str) -> String {
-    let lines: Vec<String> = text.split('\n').map(plain).collect();
-    lines.join("\n")
-}
-
-/// The same, with lines of a length that a person reads: of a longer one, the middle is left out.
+/// A text with plain lines of a length that a person reads: of a longer line, the middle is
+/// omitted.
 #[must_use]
 pub fn readable_lines(text: &str) -> String {
     let lines: Vec<String> = text.split('\n').map(|line| short(&plain(line))).collect();
@@ -63,6 +57,6 @@ mod tests {
             "a\\u{1b}]0;x\\u{7}\\u{9b}1m\\t\\r\\n"
         );
         assert_eq!(plain("Ä 5 µs \\"), "Ä 5 µs \\");
-        assert_eq!(plain_lines("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
+        assert_eq!(readable_lines("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
     }
 }

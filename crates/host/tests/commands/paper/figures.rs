@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::program::{lizard, paper, paper_text};
+use crate::program::{lizard, paper, read};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -193,7 +193,7 @@ fn a_point_leads_to_angles_and_back_to_the_point() {
 
 #[test]
 fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
-    let robot = lizard_robot::Robot::parse(&paper_text()).expect("robots/paper.toml");
+    let robot = lizard_robot::Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
     let look = robot.gait("look").expect("look");
     for i in 0..1000 {
         let solution = robot

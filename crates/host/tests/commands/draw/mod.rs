@@ -9,8 +9,9 @@ mod wires;
 use lizard_host::draw::{horns, top_view, wiring};
 use lizard_robot::Robot;
 
+use crate::program::read;
 use drawing::Drawing;
-use files::{files, paper, root};
+use files::{files, paper};
 
 #[test]
 fn everything_is_on_the_page_and_large_enough_to_be_read() {
@@ -60,10 +61,7 @@ fn the_drawings_in_docs_are_of_the_paper_robot_as_it_is_drawn_now() {
         ("lizard", above.clone()),
         ("charts/top-view", above),
     ] {
-        let kept = std::fs::read_to_string(root().join(format!("docs/{name}.svg")));
-        assert!(
-            kept.is_ok_and(|kept| kept == svg),
-            "docs/{name}.svg: run `make docs`"
-        );
+        let kept = read(&format!("docs/{name}.svg"));
+        assert!(kept == svg, "docs/{name}.svg: run `make docs`");
     }
 }

@@ -1,13 +1,9 @@
 //! The robots, and what their files say when a person reads them.
 
-use std::path::{Path, PathBuf};
+use crate::program::{read, root};
 
 /// The servos, in the order of every array.
 pub const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
-
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// Every file of robots/: its name and its text.
 pub fn files() -> Vec<(String, String)> {
@@ -45,5 +41,5 @@ pub fn said<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
 }
 
 pub fn paper() -> String {
-    std::fs::read_to_string(root().join("robots/paper.toml")).expect("robots/paper.toml")
+    read("robots/paper.toml")
 }

@@ -1,31 +1,19 @@
 //! The words of the command line: which there are, which are meant by others, and what
 //! shells and `man` know of them.
 
-mod outputs;
-
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-fn lizard(arguments: &[&str]) -> Output {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(arguments).current_dir(folder);
-    LIMIT.output(&mut command, b"").expect("the program ends")
+use crate::program::{robot, run, scratch};
+
+fn said(words: &[&str]) -> String {
+    run(words).said()
 }
 
-fn said(arguments: &[&str]) -> String {
-    let output = lizard(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {error}");
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn complaint(arguments: &[&str]) -> String {
-    let output = lizard(arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    String::from_utf8_lossy(&output.stderr).into_owned()
+fn complaint(words: &[&str]) -> String {
+    run(words).refusal()
 }
 
 /// The first words of the lines under a heading of `lizard --help`.
@@ -80,14 +68,14 @@ fn a_word_of_the_version_before_does_the_same_and_names_the_new_one() {
         ("mobility --json", "pose --show freedoms --json"),
         ("record a.jsonl --help", "console --help"),
     ] {
-        let [old, new] = [old, new].map(|line| lizard(&line.split(' ').collect::<Vec<_>>()));
-        assert!(old.stdout == new.stdout, "{old:?}");
-        let note = String::from_utf8_lossy(&old.stderr);
+        let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
+        assert!(old.out == new.out, "{old:?}");
+        let note = old.err;
         assert!(
             note.contains("` now; the next version will not know"),
             "{note}"
         );
-        assert!(new.stderr.is_empty(), "{new:?}");
+        assert_eq!(new.err, "");
     }
     let gone = complaint(&["spring", "--wire", "0.6"]);
     assert!(
@@ -119,7 +107,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
 
 #[test]
 fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
-    let paper = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
+    let paper = &robot("paper");
     for (words, meant) in [
         (&["claibrate"][..], "'calibrate'"),
         (&["sim", "--durration", "5"], "'--duration'"),
@@ -169,7 +157,7 @@ fn offered(script: &Path, words: &str, place: usize) -> Vec<String> {
 #[test]
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
-    let script = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lizard.bash");
+    let script = scratch().join("lizard.bash");
     std::fs::write(&script, said(&["completions", "bash"])).expect("it is written");
     assert_eq!(offered(&script, "lizard calib", 1), ["calibrate"]);
     assert_eq!(

@@ -3,8 +3,8 @@
 use lizard_host::draw::horns;
 use lizard_robot::Robot;
 
-use crate::drawing::{Drawing, Point};
-use crate::files::{SERVOS, files, paper, said};
+use super::drawing::{Drawing, Point};
+use super::files::{SERVOS, files, paper, said};
 
 #[test]
 fn a_crank_is_drawn_and_named_at_its_neutral_angle() {

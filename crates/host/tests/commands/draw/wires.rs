@@ -3,8 +3,8 @@
 use lizard_host::draw::wiring;
 use lizard_robot::Robot;
 
-use crate::drawing::{Drawing, Point};
-use crate::files::{SERVOS, files, paper, said};
+use super::drawing::{Drawing, Point};
+use super::files::{SERVOS, files, paper, said};
 
 /// The paper's robot with other pins.
 fn with_pins(pins: [&str; 4]) -> String {

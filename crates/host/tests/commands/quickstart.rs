@@ -1,14 +1,9 @@
 //! docs/quickstart.md: what it lets its reader type is what the firmware answers.
 
-use std::path::Path;
-
 use lizard_core::virtual_board::Running;
 use lizard_robot::Robot;
 
-fn read(path: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    std::fs::read_to_string(root.join(path)).unwrap_or_else(|fault| panic!("{path}: {fault}"))
-}
+use crate::program::read;
 
 /// The paper's robot with an EEPROM that was never written, on 5 V.
 struct Board {

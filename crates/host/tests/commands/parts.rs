@@ -2,31 +2,32 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
-use lizard_time_limit::LIMIT;
+use crate::program::{Outcome, read, robot, run, scratch};
 
-fn lizard(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.arg("parts").arg(folder).args(arguments);
-    LIMIT.output(&mut command, b"").expect("lizard runs")
+fn make(folder: &Path, words: &[&str]) -> Outcome {
+    let folder = folder.display().to_string();
+    run(&[&["parts", &folder], words].concat())
 }
 
-fn robots(name: &str) -> String {
-    format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"))
-}
-
+/// A path at which there is no folder.
 fn fresh(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = scratch().join(name);
     let _ = fs::remove_dir_all(&folder);
     folder
+}
+
+/// The paper's robot with changes, in a file of this name.
+fn changed(name: &str, change: impl Fn(String) -> String) -> String {
+    let file = scratch().join(name);
+    fs::write(&file, change(read("robots/paper.toml"))).expect("a file");
+    file.display().to_string()
 }
 
 #[test]
 fn a_folder_holds_everything_to_build_the_robot() {
     let folder = fresh("parts-all");
-    let made = lizard(&folder, &["--robot", &robots("paper")]);
-    assert!(made.status.success(), "{made:?}");
+    make(&folder, &["--robot", &robot("paper")]).said();
     for file in [
         "step/plate.step",
         "stl/link-A1-A3.stl",
@@ -65,12 +66,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
 #[test]
 fn one_corner_can_be_printed_first() {
     let folder = fresh("parts-corner");
-    let made = lizard(
-        &folder,
-        &["--robot", &robots("paper"), "--corner", "--json"],
-    );
-    assert!(made.status.success(), "{made:?}");
-    let list: serde_json::Value = serde_json::from_slice(&made.stdout).expect("JSON");
+    let list = make(&folder, &["--robot", &robot("paper"), "--corner", "--json"]).json();
     let list = list.as_array().expect("a list");
     let names: Vec<_> = list
         .iter()
@@ -97,34 +93,25 @@ fn one_corner_can_be_printed_first() {
 
 #[test]
 fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("light.toml");
-    let text = fs::read_to_string(robots("paper")).expect("paper");
-    fs::write(&file, text.replace("mass = 396.4", "mass = 280.0")).expect("a file");
-    let said = |robot: &str| {
-        let made = lizard(&fresh("parts-light"), &["--robot", robot]);
-        assert!(made.status.success(), "{made:?}");
-        String::from_utf8(made.stdout).expect("text")
-    };
-    let light = said(&file.display().to_string());
+    let light = changed("light.toml", |text| {
+        text.replace("mass = 396.4", "mass = 280.0")
+    });
+    let said = |robot: &str| make(&fresh("parts-light"), &["--robot", robot]).said();
+    let light = said(&light);
     assert!(
         light.contains("The parts weigh 396 g") && light.ends_with("\n[body]\nmass = 396.0\n"),
         "{light}"
     );
-    assert_eq!(said(&robots("paper")).lines().count(), 1);
+    assert_eq!(said(&robot("paper")).lines().count(), 1);
 }
 
 #[test]
 fn struts_may_have_springs() {
     let folder = fresh("parts-strut");
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("strut.toml");
-    let text = fs::read_to_string(robots("paper")).expect("paper");
-    fs::write(
-        &file,
-        text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n",
-    )
-    .expect("a file");
-    let made = lizard(&folder, &["--robot", &file.display().to_string()]);
-    assert!(made.status.success(), "{made:?}");
+    let robot = changed("strut.toml", |text| {
+        text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
+    });
+    make(&folder, &["--robot", &robot]).said();
     for file in [
         "stl/rigid-strut.stl",
         "cut/rigid-strut.dxf",
@@ -148,12 +135,10 @@ fn struts_may_have_springs() {
 #[test]
 fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
     let folder = fresh("parts-refused");
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wide.toml");
-    let text = fs::read_to_string(robots("paper")).expect("paper");
-    fs::write(&file, text + "\n[parts]\nbar = 24.0\n").expect("a file");
-    let made = lizard(&folder, &["--robot", &file.display().to_string()]);
-    assert_eq!(made.status.code(), Some(1));
-    let said = String::from_utf8(made.stderr).expect("text");
+    let robot = changed("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
+    let made = make(&folder, &["--robot", &robot]);
+    assert_eq!(made.code, Some(1));
+    let said = made.err;
     assert!(
         said.contains(" overlap by ") && said.contains(" at pose "),
         "{said}"

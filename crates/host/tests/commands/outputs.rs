@@ -2,25 +2,25 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-fn lizard(folder: &Path, line: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(line.split(' ')).current_dir(folder);
-    LIMIT.output(&mut command, b"").expect("the program ends")
+use crate::program::{Outcome, read, run_in};
+
+fn lizard(folder: &Path, line: &str) -> Outcome {
+    run_in(folder, &line.split(' ').collect::<Vec<_>>(), "")
 }
 
 #[test]
 fn no_command_writes_over_its_input_or_over_a_robot() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let robot = include_str!("../../../../robots/paper.toml");
+    let robot = &read("robots/paper.toml");
     let session =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
     let files = [
-        ("my.toml", robot),
+        ("my.toml", robot.as_str()),
         ("robot.toml", robot),
         ("broken", "[links]\nl0 = wrong\n"),
         ("a.jsonl", session),
@@ -46,9 +46,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("charts charts --robot my.toml", "top-view.svg"),
     ] {
         fs::create_dir_all(here.join("x")).expect("a folder");
-        let done = lizard(here, line);
-        let error = String::from_utf8_lossy(&done.stderr);
-        assert_eq!(done.status.code(), Some(2), "{line}: {error}");
+        let error = lizard(here, line).refusal();
         assert!(
             error.contains(file) && error.contains("; name another file for the output"),
             "{line}: {error}"
@@ -63,11 +61,8 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
 #[test]
 fn an_image_makes_the_folders_that_it_needs() {
     let folder = tempfile::tempdir().expect("a folder");
-    let done = lizard(
-        folder.path(),
-        "image --robot large --output new/folder/x.hex",
-    );
-    assert!(done.status.success(), "{done:?}");
+    let line = "image --robot large --output new/folder/x.hex";
+    lizard(folder.path(), line).said();
     assert!(folder.path().join("new/folder/x.hex").is_file());
 }
 

@@ -1,13 +1,8 @@
 //! An image that was built for another robot than the one that is named.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 
-use lizard_time_limit::LIMIT;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use crate::program::{robot, root, run};
 
 fn release() -> PathBuf {
     root().join("target/avr-atmega328p/release")
@@ -28,22 +23,14 @@ fn of_the_image() -> String {
 
 /// The file of a robot that is not in the image, and its name and number.
 fn another() -> (String, String) {
-    let robots = ["unequal.toml", "large.toml"].map(|name| root().join("robots").join(name));
-    let named = robots.map(|path| {
-        let path = path.display().to_string();
-        let said = lizard(&["gaits", "--robot", &path]);
-        (path, robot_in(&String::from_utf8_lossy(&said.stdout)))
+    let named = ["unequal", "large"].map(|name| {
+        let path = robot(name);
+        let report = run(&["gaits", "--robot", &path]).said();
+        (path, robot_in(&report))
     });
     let image = of_the_image();
     let others = named.into_iter().find(|(_, robot)| *robot != image);
     others.expect("two robots have two numbers")
-}
-
-fn lizard(arguments: &[&str]) -> Output {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(arguments).current_dir(folder);
-    LIMIT.output(&mut command, b"").expect("the program ends")
 }
 
 #[test]
@@ -60,16 +47,13 @@ fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
         &["backup", "never.toml", "--sim"],
     ] {
         let with = ["--elf", &elf, "--robot", &robot];
-        let output = lizard(&[words, &with].concat());
         assert_eq!(
-            String::from_utf8_lossy(&output.stderr).trim(),
+            run(&[words, &with].concat()).refusal(),
             format!(
                 "lizard: {elf} has the robot {image} in it, and not {robot}, which is {wanted}; \
                  without --elf, the firmware inside this program runs with any robot"
             ),
             "{words:?}"
         );
-        assert_eq!(output.status.code(), Some(2), "{words:?}");
-        assert!(output.stdout.is_empty(), "{words:?}");
     }
 }

@@ -5,5 +5,4 @@
 mod bad_input;
 mod documents;
 mod figures;
-mod program;
 mod solve;
