@@ -164,7 +164,8 @@ impl Folder {
             for path in files(&place) {
                 let within = path.strip_prefix(&self.place).expect("it is in the folder");
                 let parents = within.parent().expect("a folder").iter();
-                let parents: Vec<_> = parents.map(|name| name.to_string_lossy()).collect();
+                let parents = parents.map(|name| name.to_string_lossy());
+                let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
                 // `mod.rs` is the module of its folder.
                 let depth = parents.len() - usize::from(path.ends_with("mod.rs"));
                 let above: String = parents[..depth]
