@@ -29,9 +29,9 @@ mod tables;
 mod testing;
 mod units;
 
-pub use checks::{Audit, CheckedGait, Least, Peak, Walked};
-pub use file::{Error, Hint, LONGEST, Problem, mistake};
-pub use gaits::{Harmonic, Path, PathLeg, Stride, Waveform};
+pub use checks::{Audit, CheckedGait, Least, Peak, TableError, Walked};
+pub use file::{Error, LONGEST, edit, mistake};
+pub use gaits::{Bars, Harmonic, Path, PathLeg, Stride, Waveform};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Kind, Place, Prediction, SLOT, Slip,
     Spring, Stance, Strut, Travel, Walker,
@@ -46,5 +46,5 @@ pub use reports::{
     UNDECIDED,
 };
 pub use robot::Robot;
-pub use tables::{CellMaps, CoreRobot, TableError, flash};
+pub use tables::{CellMaps, CoreRobot, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

@@ -190,7 +190,7 @@ impl Parts {
         let section = section.only(&KEYS)?;
         let mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
         let list = |name, default: [f64; 2], min, max| match section.has(name) {
-            true => section.pair(name, min, max, "(mm; an angle in deg)"),
+            true => section.numbers(name, min, max, "(mm; an angle in deg)"),
             false => Ok(default),
         };
         let foot = match section.has("foot") {

@@ -6,12 +6,10 @@ use std::fmt;
 use lizard_contact::Prediction;
 use lizard_core::section::SPACE;
 
-use crate::checks::Audit;
-use crate::checks::CheckedGait;
+use crate::checks::{Audit, CheckedGait, TableError};
 use crate::measures::servo::NAMES;
 use crate::reports::sprung::Sprung;
 use crate::robot::Robot;
-use crate::tables::TableError;
 
 /// One gait's figures.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,15 +4,11 @@
 //! needs is computed here once: its numbers in the types of the core, its gaits as waves of
 //! 64 samples, and the cells in which every pose is proved to be safe.
 
-pub(crate) mod accuracy;
 mod cells;
 mod core_robot;
 pub(crate) mod numbers;
 mod table;
-mod tabled_gait;
 
-pub use accuracy::TableError;
 pub use cells::CellMaps;
 pub use core_robot::{CoreRobot, flash};
-pub(crate) use table::{Tables, Unfit};
-pub(crate) use tabled_gait::TabledGait;
+pub(crate) use table::Tables;
