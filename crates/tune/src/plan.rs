@@ -42,7 +42,7 @@ impl Kind {
 const NARROWEST: f64 = 5.0;
 /// Duties that are tried: below one half two feet never out-vote the others.
 const DUTIES: (f64, f64) = (0.5, 0.95);
-/// How much smaller one pair's amplitude may be than the other's.
+/// Largest reduction of one pair's amplitude against the other's, as a share.
 const BALANCE: f64 = 0.5;
 /// The longest cycle that robot.toml takes, s.
 pub const LONGEST: f64 = 60.0;

@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_measured_is_refused_with_its_key() {
+    fn a_supply_that_cannot_be_measured_is_refused_with_its_key() {
         for (table, sentence) in [
             (
                 "[supply]\nreference = 1.3\n",
