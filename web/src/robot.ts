@@ -353,7 +353,7 @@ export class Robot {
 
   /** The gait in reverse. */
   turnedRound(bars: Bars): Bars {
-    return this.ask('turned_round', bars);
+    return this.ask('reversed', bars);
   }
 
   /** A gait as bars; null for a gait along a path and for one that stands. */
@@ -361,14 +361,14 @@ export class Robot {
     return this.ask('bars', gait);
   }
 
-  /** Tries a gait on the robot of a robot.toml that was read. Takes tenths of a second. Null if a drawn line has no length. */
-  trial(toml: string, made: Made): Trial | NoTrial | null {
-    return this.ask('points' in made ? 'trial_drawn' : 'trial', [toml, made]);
+  /** Tries a gait on the robot that was read; takes tenths of a second. Null for a line without length. */
+  trial(made: Made): Trial | NoTrial | null {
+    return this.ask('trial', made);
   }
 
-  /** Begins a search for a faster gait. Returns the number of gaits it will try and the fastest servo allowed, deg/s. */
-  makeFaster(toml: string, wish: Wish): { all: number; rate: number } | Refused {
-    return this.ask('faster', [toml, wish]);
+  /** Prepares the search of a faster gait for the robot that was read: the number of gaits to try, and the servos' deg/s. */
+  makeFaster(wish: Wish): { all: number; rate: number } | Refused {
+    return this.ask('faster', wish);
   }
 
   /** Tries one more gait; `best` is the score of the best so far. */
@@ -383,7 +383,7 @@ export class Robot {
 
   /** Returns the robot.toml with this gait in place of the one of that name. */
   putGait(toml: string, made: Made): string {
-    return this.ask('points' in made ? 'put_drawn' : 'put_gait', [toml, made]);
+    return this.ask('put_gait', [toml, made]);
   }
 
   /** The path that the point really follows; null if the drawn line has no length. */

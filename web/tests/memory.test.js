@@ -32,7 +32,7 @@ test('gaits that are refused are not kept, nor those that are tried to offer wha
   let bars;
   const grew = await grown(100, (page, n) => {
     bars ??= page.ask('bars', 1);
-    const { refused, instead } = page.ask('trial', [toml, { ...bars, amplitude: 30 + n / 20 }]);
+    const { refused, instead } = page.ask('trial', { ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
     assert.equal(instead[0].what, 'amplitude');
   });

@@ -24,13 +24,13 @@ async function search({ module, toml, floor, servos, wish }: Question): Promise<
   page.read(toml);
   page.setFloor(floor);
   page.setServos(servos);
-  const begun = page.makeFaster(toml, wish);
+  const begun = page.makeFaster(wish);
   if (isRefused(begun)) return say({ of: 'end', refused: begun.refused });
-  say({ of: 'begun', ...begun, before: page.trial(toml, wish.bars) as Trial });
+  say({ of: 'begun', ...begun, before: page.trial(wish.bars) as Trial });
   const best = (robots: number): Best | null => {
     const found = page.fasterFound(robots);
     // The search only returns gaits within the robot's limits.
-    return found && { ...found, trial: page.trial(toml, found.bars) as Trial };
+    return found && { ...found, trial: page.trial(found.bars) as Trial };
   };
   let shown = -Infinity;
   let done = 0;

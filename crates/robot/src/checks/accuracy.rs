@@ -1,28 +1,28 @@
-//! How far the tables, as the firmware reads them, are from the gaits in
-//! floating point.
+//! The error of the tables, as the firmware reads them, against the gaits in floating
+//! point.
 
 use lizard_core::numbers::units::CYCLE16;
 
-use crate::tables::tabled_gait::TabledGait;
+use crate::checks::checked_gait::CheckedGait;
 
 /// The error of a gait's tables over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableError {
-    /// Largest over all servos, deg.
+    /// Largest error over all servos, deg.
     pub max: f64,
-    /// Root of the mean square over all servos, deg.
+    /// Root mean square over all servos, deg.
     pub rms: f64,
-    /// Servo of the largest, 0 to 3.
+    /// Index of the servo with the largest error, 0 to 3.
     pub servo: usize,
-    /// Phase of the largest, 0 to 1.
+    /// Phase of the largest error, 0 to 1.
     pub phase: f64,
 }
 
-/// Every phase that the firmware can be in.
+/// Number of phases that the firmware can be in.
 pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
 
-/// The error over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
-pub(crate) fn worst(gait: &TabledGait, count: usize) -> TableError {
+/// Computes the error over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
+pub(crate) fn worst(gait: &CheckedGait, count: usize) -> TableError {
     let mut error = TableError {
         max: 0.0,
         rms: 0.0,
@@ -33,8 +33,8 @@ pub(crate) fn worst(gait: &TabledGait, count: usize) -> TableError {
     for i in 0..count {
         let step = (i * (ALL_PHASES / count)) as u16;
         let phase = f64::from(step) / ALL_PHASES as f64;
-        let table = gait.angles(step);
-        let float = gait.gait().angles(phase);
+        let table = gait.table_angles(step);
+        let float = gait.angles(phase);
         for servo in 0..4 {
             let off = (table[servo] - float[servo]).abs();
             squares += off * off;
@@ -69,7 +69,7 @@ mod tests {
                         errors[servo] = errors[servo].max((table[servo] - float[servo]).abs());
                     }
                 }
-                let worst = super::worst(gait.tabled(), COUNT);
+                let worst = super::worst(gait, COUNT);
                 let most = errors.into_iter().fold(0.0, f64::max);
                 assert_eq!(worst.max, most, "{name} {}", gait.name());
                 assert_eq!(errors[worst.servo], most);

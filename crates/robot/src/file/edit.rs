@@ -1,14 +1,14 @@
-//! A number in the text of a robot.toml, changed in its place: comments, blanks and all
-//! else stay as they are.
+//! Changes of single values in the text of a robot.toml: comments, blanks and all other lines
+//! stay as they are.
 
+use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Where the hips are, ahead and aside: they follow from the legs until they are set.
+/// The keys of the hips' distances ahead and to the side. Left out, they follow from the legs.
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
-/// What a robot.toml may leave out: it follows from other values until it is set, or is what
-/// most robots have.
-pub const LEFT_OUT: [&str; 12] = [
+/// Keys that a robot.toml may leave out, and that are added when they get a value.
+const OPTIONAL: [&str; 12] = [
     HIPS[0],
     HIPS[1],
     "leg.drive.kind",
@@ -23,36 +23,35 @@ pub const LEFT_OUT: [&str; 12] = [
     "body.mass",
 ];
 
-/// The text has no such number.
+/// The error for a key that the text does not have, or that cannot be changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoSuchLength(
-    /// The key that was looked for.
+pub struct NoSuchKey(
+    /// The full name of the key.
     pub String,
 );
 
-impl std::fmt::Display for NoSuchLength {
+impl std::fmt::Display for NoSuchKey {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "robot.toml has no number {}", self.0)
     }
 }
 
-/// The text with another number at a key of dotted names, such as `links.l1`. One of
-/// `LEFT_OUT` that is not there is written below the last line of its table, and a table
-/// that is not there below all.
+/// Sets the number of a key, such as `links.l1`. A key that may be left out is added below the
+/// last line of its table, and a missing table at the end of the text.
 ///
 /// # Errors
-/// If the text is not TOML or has no number there.
-pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchLength> {
+/// If the text is not TOML or has no number at this key.
+pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("{value:?}"), |value| {
         matches!(value, DeValue::Float(_) | DeValue::Integer(_))
     })
 }
 
-/// The same with a word in place of a number.
+/// Sets the string of a key, as [`with_number`] sets a number.
 ///
 /// # Errors
-/// If the text is not TOML or has no string there.
-pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchLength> {
+/// If the text is not TOML or has no string at this key.
+pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("\"{word}\""), |value| {
         matches!(value, DeValue::String(_))
     })
@@ -62,81 +61,102 @@ fn with_value(
     text: &str,
     key: &str,
     value: &str,
-    is_one: fn(&DeValue) -> bool,
-) -> Result<String, NoSuchLength> {
-    let missing = || NoSuchLength(key.to_string());
+    has_type: fn(&DeValue) -> bool,
+) -> Result<String, NoSuchKey> {
+    let missing = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| missing())?;
-    let (tables, name) = key.rsplit_once('.').ok_or_else(missing)?;
-    let mut table = document.get_ref();
-    for step in tables.split('.') {
-        table = match table.get(step).map(|entry| entry.get_ref()) {
-            Some(DeValue::Table(inner)) => inner,
-            None if LEFT_OUT.contains(&key) => {
-                let end = if text.ends_with('\n') { "" } else { "\n" };
-                return Ok(format!("{text}{end}\n[{tables}]\n{name} = {value}\n"));
-            }
-            _ => return Err(missing()),
-        };
+    let (table, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    if let Some(old) = find(document.get_ref(), key) {
+        if !has_type(old.get_ref()) {
+            return Err(missing());
+        }
+        let mut changed = text.to_string();
+        changed.replace_range(old.span(), value);
+        return Ok(changed);
     }
-    let Some(place) = table.get(name) else {
-        return match LEFT_OUT.contains(&key) {
-            true => added(text, table, tables, name, value).ok_or_else(missing),
-            false => Err(missing()),
-        };
-    };
-    if !is_one(place.get_ref()) {
+    if !OPTIONAL.contains(&key) {
         return Err(missing());
     }
-    let mut changed = text.to_string();
-    changed.replace_range(place.span(), value);
-    Ok(changed)
-}
-
-/// The text with a new line at the end of a table; none where that would not be in it, as
-/// in a table that is written on one line.
-fn added(text: &str, table: &DeTable, tables: &str, name: &str, value: &str) -> Option<String> {
-    let last = table.values().map(|value| value.span().end).max()?;
-    let end = line_end(text, last);
+    let line = format!("{name} = {value}");
+    let Some(entries) = find(document.get_ref(), table) else {
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        return Ok(format!("{text}{end}\n[{table}]\n{line}\n"));
+    };
+    let entries = entries.get_ref().as_table().ok_or_else(missing)?;
+    let last = entries.values().map(|value| value.span().end).max();
+    let end = line_end(text, last.ok_or_else(missing)?);
     let mut longer = text.to_string();
-    longer.insert_str(end, &format!("\n{name} = {value}"));
-    let there = place(&longer, tables, name)?;
-    (there.start > end).then_some(longer)
+    longer.insert_str(end, &format!("\n{line}"));
+    // In a table that is written on one line, the new line would belong to another table.
+    let document = DeTable::parse(&longer).map_err(|_| missing())?;
+    match find(document.get_ref(), key) {
+        Some(added) if added.span().start > end => Ok(longer.clone()),
+        _ => Err(missing()),
+    }
 }
 
-/// The text without the line of a value that may be left out; as it is where that is not
-/// there.
+/// Removes the line of a key that may be left out. Without the key the text stays as it is.
 ///
 /// # Errors
-/// If it is in a table that is written on one line.
-pub fn without(text: &str, key: &str) -> Result<String, NoSuchLength> {
-    let missing = || NoSuchLength(key.to_string());
-    let (tables, name) = key.rsplit_once('.').ok_or_else(missing)?;
-    let Some(there) = place(text, tables, name) else {
+/// If the key is in a table that is written on one line.
+pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
+    let missing = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| missing())?;
+    let (_, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    let Some(value) = find(document.get_ref(), key) else {
         return Ok(text.to_string());
     };
-    let begin = text[..there.start].rfind('\n').map_or(0, |line| line + 1);
-    let end = (line_end(text, there.end) + 1).min(text.len());
+    let begin = text[..value.span().start]
+        .rfind('\n')
+        .map_or(0, |line| line + 1);
+    let end = (line_end(text, value.span().end) + 1).min(text.len());
     if !text[begin..end].trim_start().starts_with(name) {
         return Err(missing());
     }
     Ok(text[..begin].to_string() + &text[end..])
 }
 
-/// Where the line ends that this place is in.
+/// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
+#[must_use]
+pub fn with_gait(text: &str, name: &str, table: &str) -> String {
+    let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
+    let (mut kept, mut is_own, mut done) = (String::new(), false, false);
+    for line in text.lines() {
+        let head = line.trim_start();
+        if head.starts_with('[') {
+            is_own = head.starts_with(&own) || head.starts_with(&below);
+            if is_own && !done {
+                done = true;
+                kept += table;
+                kept.push('\n');
+            }
+        }
+        // A comment below the last key may belong to the next table.
+        if !is_own || head.starts_with('#') {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    if !done {
+        kept.push('\n');
+        kept += table;
+    }
+    kept
+}
+
+/// The value of a key of dotted names.
+fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+    match key.split_once('.') {
+        Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
+        None => table.get(key),
+    }
+}
+
+/// The end of the line that this position is in.
 fn line_end(text: &str, from: usize) -> usize {
     text[from..]
         .find('\n')
         .map_or(text.len(), |line| from + line)
-}
-
-/// Where the value of a key is in the text.
-fn place(text: &str, tables: &str, name: &str) -> Option<std::ops::Range<usize>> {
-    let document = DeTable::parse(text).ok()?;
-    let mut table = document.get_ref();
-    for step in tables.split('.') {
-        table = table.get(step)?.get_ref().as_table()?;
-    }
-    table.get(name).map(toml::Spanned::span)
 }
 
 #[cfg(test)]
