@@ -239,15 +239,7 @@ fn points(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, to) in line.ends() {
         points.push(side.from);
-        if let Some((centre, _)) = side.arc(to) {
-            let whole = 4.0 * libm::atan(side.bulge);
-            let count = (whole.abs() / CHORD).ceil() as u32;
-            let arm = side.from - centre;
-            for i in 1..count {
-                let (sin, cos) = sin_cos((whole * f64::from(i) / f64::from(count)).to_degrees());
-                points.push(centre + arm * cos + arm.left() * sin);
-            }
-        }
+        points.extend(side.along(to, |_, angle| (angle / CHORD).ceil() as u32));
     }
     points
 }
