@@ -71,14 +71,9 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
     let length = assembly.layout().legs[servo].strut_length;
     let radius = coil.outer / 2.0;
     let middle = assembly.stack().strut[1];
-    let bar = Prism::solid(
-        [Shape::rectangle(
-            Vector::new(length / 2.0, 0.0),
-            Vector::new(length - 2.0 * coil.outer, coil.outer),
-            0.0,
-        )],
-        [middle - radius, middle + radius],
-    );
+    let size = Vector::new(length - 2.0 * coil.outer, coil.outer);
+    let bar = Shape::rectangle(Vector::new(length / 2.0, 0.0), size, 0.0);
+    let bar = Prism::solid([bar], [middle - radius, middle + radius]);
     let mesh = Mesh::of(&Solid::of(&[bar]));
     let shape = Inertia::of(&mesh);
     Piece {
