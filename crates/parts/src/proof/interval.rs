@@ -146,10 +146,6 @@ impl Real for Interval {
         let both = degrees.map(Self::sine_and_cosine);
         (both.map(|(sine, _)| sine), both.map(|(_, cosine)| cosine))
     }
-
-    fn atan2_each<const K: usize>(_: [Self; K], _: [Self; K]) -> [Self; K] {
-        [Self::ALL; K]
-    }
 }
 
 #[cfg(test)]

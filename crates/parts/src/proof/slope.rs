@@ -149,14 +149,6 @@ impl<const N: usize> Real for Slope<N> {
         }
         (sin, cos)
     }
-
-    fn atan2_each<const K: usize>(y: [Self; K], x: [Self; K]) -> [Self; K] {
-        let angles = Interval::atan2_each(y.map(|y| y.value), x.map(|x| x.value));
-        angles.map(|angle| Self {
-            value: angle,
-            slope: [angle; N],
-        })
-    }
 }
 
 #[cfg(test)]
