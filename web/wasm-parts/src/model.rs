@@ -157,7 +157,7 @@ impl Model {
                 .iter()
                 .map(|step| StepEntry {
                     title: step.title,
-                    words: step.words.clone(),
+                    words: step.words,
                 })
                 .collect(),
             mounts: self.mounts.len(),

@@ -1,10 +1,7 @@
-//! Computes the polynomials of `src/angle.rs` and prints them as Rust source:
+//! The generator of the polynomials of `src/angle.rs`. A test compares their coefficients
+//! with it, and prints the generator's if they differ.
 //!
-//! ```console
-//! $ cargo run --example polynomials
-//! ```
-//!
-//! Each interpolates a smooth function of the square of an argument at Chebyshev
+//! Each polynomial interpolates a smooth function of the square of an argument at Chebyshev
 //! nodes, which keeps the largest error within a few per cent of the least that
 //! any polynomial of its degree has. The nodes, the functions and the solution
 //! carry 256 bits; each coefficient is rounded once, to the nearest f64.
@@ -16,7 +13,7 @@ type Number = FBig<HalfEven, 2>;
 
 /// Precision of every computation, bits.
 const BITS: usize = 256;
-/// The interval of nodes is longer than the arguments need by this share, for
+/// Share by which the interval of nodes is longer than the arguments need, for
 /// arguments that rounding has pushed over its end.
 const WIDER: f64 = 1e-4;
 /// Points at which an error is measured.
@@ -26,15 +23,13 @@ const POINTS: u32 = 2000;
 pub struct Polynomial {
     /// Its name in `src/angle.rs`.
     pub name: &'static str,
-    /// What it stands for.
-    pub says: &'static str,
-    /// How many coefficients it has.
-    pub terms: u32,
+    /// Number of coefficients.
+    terms: u32,
     /// The largest argument, radians or a tangent.
     limit: fn() -> Number,
-    /// The function that is wanted.
+    /// The function that it approximates.
     function: fn(&Number) -> Number,
-    /// What is added to the polynomial's share, and the power of the argument
+    /// The terms added to the polynomial's share, and the power of the argument
     /// that multiplies the polynomial.
     lead: fn(&Number) -> Number,
     power: i32,
@@ -44,7 +39,6 @@ pub struct Polynomial {
 pub const POLYNOMIALS: [Polynomial; 3] = [
     Polynomial {
         name: "SIN",
-        says: "(sin r - r) / r^3 in powers of r^2, for |r| up to 45 degrees.",
         terms: 6,
         limit: || Number::pi(BITS) / number(4),
         function: Number::sin,
@@ -53,7 +47,6 @@ pub const POLYNOMIALS: [Polynomial; 3] = [
     },
     Polynomial {
         name: "COS",
-        says: "(cos r - 1 + r^2 / 2) / r^4 in powers of r^2, for |r| up to 45 degrees.",
         terms: 6,
         limit: || Number::pi(BITS) / number(4),
         function: Number::cos,
@@ -62,7 +55,6 @@ pub const POLYNOMIALS: [Polynomial; 3] = [
     },
     Polynomial {
         name: "ATAN",
-        says: "(atan u - u) / u^3 in powers of u^2, for |u| up to tan 22.5 degrees.",
         terms: 11,
         limit: || (Number::pi(BITS) / number(8)).tan(),
         function: Number::atan,
@@ -133,7 +125,7 @@ impl Polynomial {
             .fold(0.0, f64::max)
     }
 
-    /// What the polynomial has to be at an argument.
+    /// The exact value of the polynomial at an argument.
     fn share(&self, x: &Number) -> Number {
         ((self.function)(x) - (self.lead)(x)) / power(x, self.power)
     }
@@ -141,19 +133,4 @@ impl Polynomial {
 
 fn power(x: &Number, n: i32) -> Number {
     (1..n).fold(x.clone(), |power, _| power * x)
-}
-
-#[allow(dead_code)] // The unit tests of `src/angle.rs` include this file.
-fn main() {
-    for polynomial in &POLYNOMIALS {
-        let coefficients = polynomial.coefficients();
-        let error = polynomial.error(&coefficients);
-        println!("/// {}", polynomial.says);
-        println!("/// Relative error of the function {error:.1e}.");
-        println!("const {}: [f64; {}] = [", polynomial.name, polynomial.terms);
-        for c in coefficients {
-            println!("    {c:?},");
-        }
-        println!("];\n");
-    }
 }
