@@ -96,8 +96,7 @@ clean: ## remove everything that was built
 # replaced in one step, since in .ci/run another target may read it at that moment.
 .firmware:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release
-	@avr-objcopy -O ihex -R .eeprom $(ELF) $(ELF:.elf=.new)
-	@mv $(ELF:.elf=.new) $(ELF:.elf=.hex)
+	@new=$(ELF).$$$$; avr-objcopy -O ihex -R .eeprom $(ELF) $$new && mv $$new $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
 
 # The example of crates/pulses/: servos and serial line without a lizard.
