@@ -7,14 +7,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef ADC_H
-#define ADC_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_adc.h>
-#include <simavr/sim_avr.h>
 
 #include "instruction.h"
 #include "interrupts.h"
@@ -46,5 +41,3 @@ void adc_correct(struct adc *adc, const struct instruction *instruction,
                  struct interrupts *interrupts, const struct supply *supply);
 void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv);
 void adc_reset(struct adc *adc);
-
-#endif

@@ -2,13 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef CALL_TIMER_H
-#define CALL_TIMER_H
-
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "handlers.h"
 #include "list.h"
@@ -33,5 +27,3 @@ void call_timer_set(struct call_timer *timer, bool on, uint32_t entry);
 /* Looks at the instruction that comes next. */
 void call_timer_look(struct call_timer *timer);
 void call_timer_free(struct call_timer *timer);
-
-#endif

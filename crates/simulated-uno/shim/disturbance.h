@@ -3,13 +3,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef DISTURBANCE_H
-#define DISTURBANCE_H
-
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "handlers.h"
 
@@ -32,5 +26,3 @@ bool disturbance_waits(const struct disturbance *disturbance);
 bool disturbance_stalls(const struct disturbance *disturbance);
 /* Passes the time to the next event, `until` or the end of the stall. */
 void disturbance_wait(struct disturbance *disturbance, uint64_t until);
-
-#endif

@@ -7,14 +7,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef EEPROM_H
-#define EEPROM_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_eeprom.h>
-#include <simavr/sim_avr.h>
 
 #include "instruction.h"
 #include "interrupts.h"
@@ -62,5 +57,3 @@ void eeprom_tear(struct eeprom *eeprom);
 /* Takes back a power cut that has not happened. */
 void eeprom_keep_power(struct eeprom *eeprom);
 void eeprom_free(struct eeprom *eeprom);
-
-#endif

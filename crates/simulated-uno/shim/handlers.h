@@ -2,12 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef HANDLERS_H
-#define HANDLERS_H
-
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "chip.h"
 
@@ -26,5 +21,3 @@ void handlers_attach(struct handlers *handlers, avr_t *avr);
 void handlers_reset(struct handlers *handlers);
 /* Cycles spent in all handlers up to now. */
 uint64_t handlers_cycles(const struct handlers *handlers);
-
-#endif

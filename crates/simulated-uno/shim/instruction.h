@@ -3,13 +3,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef INSTRUCTION_H
-#define INSTRUCTION_H
+#pragma once
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#include "chip.h"
 
 struct instruction {
 	avr_t *avr;
@@ -34,5 +30,3 @@ void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles
 /* Lets interrupts and timers have their turn right after the instruction being
  * executed, not after simavr's slice of many. */
 void instruction_end_slice(const struct instruction *instruction);
-
-#endif

@@ -8,12 +8,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef INTERRUPTS_H
-#define INTERRUPTS_H
-
-#include <stdbool.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "instruction.h"
 
@@ -34,5 +29,3 @@ void interrupts_attach(struct interrupts *interrupts, const struct instruction *
 void interrupts_changed(struct interrupts *interrupts);
 /* Serves the highest enabled interrupt. True if cycles passed. */
 bool interrupts_serve(struct interrupts *interrupts);
-
-#endif

@@ -7,13 +7,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef RESET_H
-#define RESET_H
-
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "list.h"
 
@@ -52,5 +46,3 @@ void reset_fill_sram(struct reset *reset);
 /* First SRAM address from `from` on that no longer holds its noise. */
 uint16_t reset_first_used(const struct reset *reset, uint16_t from);
 void reset_free(struct reset *reset);
-
-#endif

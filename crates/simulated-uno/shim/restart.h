@@ -2,8 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef RESTART_H
-#define RESTART_H
+#pragma once
 
 #include "board.h"
 
@@ -20,5 +19,3 @@ void restart_cut_power(struct uno *uno);
 /* Lets simavr's clock catch up with the time reached, before the board is
  * changed from outside. */
 void restart_catch_up(struct uno *uno);
-
-#endif

@@ -4,17 +4,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef SENDER_H
-#define SENDER_H
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "list.h"
-#include "serial_bytes.h"
 
 /* A byte as it comes through the line. */
 struct line_byte {
@@ -59,5 +51,3 @@ void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, ui
 /* Queued bytes that are not through the line. */
 size_t sender_unsent(const struct sender *sender);
 void sender_free(struct sender *sender);
-
-#endif

@@ -2,15 +2,13 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef STOCK_UART_H
-#define STOCK_UART_H
+#pragma once
 
 #include <simavr/avr_uart.h>
-#include <simavr/sim_avr.h>
 
 #include "instruction.h"
 #include "sender.h"
-#include "serial_bytes.h"
+#include "list.h"
 
 struct stock_uart {
 	avr_uart_t *uart;                       /* simavr's */
@@ -23,5 +21,3 @@ void stock_uart_attach(struct stock_uart *stock, const struct instruction *instr
                        struct serial_bytes *transmitted);
 /* Its end of the cable. */
 struct receiver stock_uart_receiver(struct stock_uart *stock);
-
-#endif

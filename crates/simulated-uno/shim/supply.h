@@ -3,13 +3,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef SUPPLY_H
-#define SUPPLY_H
-
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "eeprom.h"
 #include "reset.h"
@@ -40,5 +34,3 @@ bool supply_may_reset(const struct supply *supply);
 void supply_reset(struct supply *supply);
 /* Power comes back after a cut: `held` is judged anew. */
 void supply_power_on(struct supply *supply);
-
-#endif

@@ -16,11 +16,9 @@
 #include <simavr/sim_core.h>
 
 #include "board.h"
-#include "chip.h"
 #include "restart.h"
 
 #define SLICE 256  /* most cycles simavr runs on its own: a run ends this exactly */
-
 
 static void on_log(avr_t *avr, const int level, const char *format, va_list args)
 {

@@ -2,12 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef UNO_H
-#define UNO_H
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#pragma once
 
 #include "handlers.h"
 #include "list.h"
@@ -91,5 +86,3 @@ void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
 /* From now on a reset starts the program at this byte address (BOOTRST). */
 void uno_boot_at(struct uno *uno, uint32_t address);
 uint8_t *uno_flash(struct uno *uno);                 /* 32768 bytes */
-
-#endif

@@ -7,18 +7,13 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef USART_H
-#define USART_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_uart.h>
-#include <simavr/sim_avr.h>
 
 #include "interrupts.h"
 #include "sender.h"
-#include "serial_bytes.h"
+#include "list.h"
 
 struct usart {
 	avr_t *avr;
@@ -49,5 +44,3 @@ uint32_t usart_cycles_per_bit(const avr_t *avr);
  * counted from the edge of the start bit. `ratio`: the receiver's bit by the sender's. The line
  * is high behind the frame, as between bytes that do not follow each other at once. */
 uint8_t usart_sampled(uint8_t byte, double ratio);
-
-#endif

@@ -5,15 +5,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef WATCHDOG_H
-#define WATCHDOG_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_watchdog.h>
-#include <simavr/sim_avr.h>
-#include <simavr/sim_io.h>
 
 #include "instruction.h"
 #include "interrupts.h"
@@ -37,5 +31,3 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 void watchdog_reset(struct watchdog *watchdog);
 /* Whether it will end in a reset if nothing is done. */
 bool watchdog_may_reset(const struct watchdog *watchdog);
-
-#endif

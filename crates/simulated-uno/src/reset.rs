@@ -1,23 +1,27 @@
 //! Resets: their causes, and what survives them.
 
-use crate::ffi::{self, RawReset};
+use crate::ffi;
 use crate::{State, Uno};
 
 /// What a reset came from; the bits of MCUSR (data sheet 11.9.1).
+// `enum reset_cause` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
 pub enum ResetCause {
-    /// The power came.
-    PowerOn,
+    /// The power was switched on.
+    PowerOn = 1 << 0,
     /// The RESET pin, which opening the serial port pulls.
-    External,
+    External = 1 << 1,
     /// The supply was below the brown-out level.
-    BrownOut,
+    BrownOut = 1 << 2,
     /// The watchdog ran out.
-    Watchdog,
+    Watchdog = 1 << 3,
 }
 
 /// A reset that happened.
+// `struct reset_event` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct Reset {
     /// Cycle at which the program restarted.
     pub cycle: u64,
@@ -37,7 +41,9 @@ impl Uno {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim resets the chip at
         // any moment between two runs, and this is one.
         unsafe { ffi::uno_reset(self.raw) }
-        self.revive();
+        if self.state != State::Off {
+            self.state = State::Alive;
+        }
     }
 
     /// Takes the power away and gives it back at once, at the supply's voltage of
@@ -71,20 +77,6 @@ impl Uno {
     /// Every start of the program so far, the first power-on too.
     #[must_use]
     pub fn reset_events(&self) -> Vec<Reset> {
-        self.list(ffi::uno_reset_events, |raw: &RawReset| Reset {
-            cycle: raw.cycle,
-            cause: match raw.cause {
-                cause if cause & 1 != 0 => ResetCause::PowerOn,
-                cause if cause & 4 != 0 => ResetCause::BrownOut,
-                cause if cause & 8 != 0 => ResetCause::Watchdog,
-                _ => ResetCause::External,
-            },
-        })
-    }
-
-    fn revive(&mut self) {
-        if self.state != State::Off {
-            self.state = State::Alive;
-        }
+        self.list(ffi::uno_reset_events)
     }
 }

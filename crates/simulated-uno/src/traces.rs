@@ -4,7 +4,9 @@
 ///
 /// One that the UNO sent is stamped with the end of its stop bit in [`crate::Fidelity::DataSheet`], and
 /// with the store to UDR0 in [`crate::Fidelity::Stock`], which knows no frame.
+// `struct serial_byte` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct SerialByte {
     /// Cycle since power-on.
     pub cycle: u64,
@@ -13,7 +15,9 @@ pub struct SerialByte {
 }
 
 /// A store to GPIOR0: a one-cycle way for firmware to say "here".
+// `struct mark` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct Mark {
     /// Cycle since power-on.
     pub cycle: u64,
@@ -22,7 +26,9 @@ pub struct Mark {
 }
 
 /// One timed call of a function.
+// `struct call` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct Call {
     /// Cycle of the first instruction.
     pub enter: u64,
@@ -60,33 +66,8 @@ pub struct VectorUse {
 /// The data sheet's name of an interrupt vector.
 #[must_use]
 pub fn vector_name(vector: u8) -> &'static str {
-    const NAMES: [&str; 26] = [
-        "RESET",
-        "INT0",
-        "INT1",
-        "PCINT0",
-        "PCINT1",
-        "PCINT2",
-        "WDT",
-        "TIMER2_COMPA",
-        "TIMER2_COMPB",
-        "TIMER2_OVF",
-        "TIMER1_CAPT",
-        "TIMER1_COMPA",
-        "TIMER1_COMPB",
-        "TIMER1_OVF",
-        "TIMER0_COMPA",
-        "TIMER0_COMPB",
-        "TIMER0_OVF",
-        "SPI_STC",
-        "USART_RX",
-        "USART_UDRE",
-        "USART_TX",
-        "ADC",
-        "EE_READY",
-        "ANALOG_COMP",
-        "TWI",
-        "SPM_READY",
-    ];
-    NAMES.get(usize::from(vector)).copied().unwrap_or("?")
+    const NAMES: &str = "RESET INT0 INT1 PCINT0 PCINT1 PCINT2 WDT TIMER2_COMPA TIMER2_COMPB TIMER2_OVF \
+        TIMER1_CAPT TIMER1_COMPA TIMER1_COMPB TIMER1_OVF TIMER0_COMPA TIMER0_COMPB TIMER0_OVF SPI_STC USART_RX \
+        USART_UDRE USART_TX ADC EE_READY ANALOG_COMP TWI SPM_READY";
+    NAMES.split(' ').nth(vector.into()).unwrap_or("?")
 }

@@ -4,7 +4,7 @@ use std::ffi::CStr;
 use std::path::Path;
 use std::sync::Once;
 
-use crate::ffi::{self, RawByte, RawCall, RawEdge, RawList, RawUno};
+use crate::ffi::{self, RawList, RawUno};
 use crate::image::{Image, LoadError, SRAM_END};
 use crate::traces::{Call, Mark, SerialByte, VectorUse};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
@@ -283,38 +283,30 @@ impl Uno {
     /// Every byte that the UNO has transmitted and nobody has taken.
     #[must_use]
     pub fn transmitted(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_transmitted, serial_byte)
+        self.list(ffi::uno_transmitted)
     }
 
     /// Takes what the UNO has transmitted since the last call.
     pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
-        let bytes = self.transmitted();
-        self.clear(ffi::uno_transmitted);
-        bytes
+        self.take(ffi::uno_transmitted)
     }
 
     /// Every byte that has come through the line to the UNO, with the cycle at
     /// which it was complete there, lost bytes included.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_received, serial_byte)
+        self.list(ffi::uno_received)
     }
 
     /// Edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
     #[must_use]
     pub fn edges(&self) -> Vec<Edge> {
-        self.list(ffi::uno_edges, |raw: &RawEdge| Edge {
-            cycle: raw.cycle,
-            pin: Pin::arduino(raw.pin),
-            high: raw.level != 0,
-        })
+        self.list(ffi::uno_edges)
     }
 
     /// Takes the edges recorded since the last call.
     pub fn take_edges(&mut self) -> Vec<Edge> {
-        let edges = self.edges();
-        self.clear(ffi::uno_edges);
-        edges
+        self.take(ffi::uno_edges)
     }
 
     /// The finished pulses among [`Uno::edges`].
@@ -334,17 +326,12 @@ impl Uno {
     /// Stores to GPIOR0 since power-on or the last [`Uno::take_marks`].
     #[must_use]
     pub fn marks(&self) -> Vec<Mark> {
-        self.list(ffi::uno_marks, |raw: &RawByte| Mark {
-            cycle: raw.cycle,
-            value: raw.byte,
-        })
+        self.list(ffi::uno_marks)
     }
 
     /// Takes the marks recorded since the last call.
     pub fn take_marks(&mut self) -> Vec<Mark> {
-        let marks = self.marks();
-        self.clear(ffi::uno_marks);
-        marks
+        self.take(ffi::uno_marks)
     }
 
     /// Runs for `cycles` and times every call of the function at byte address
@@ -358,13 +345,7 @@ impl Uno {
         self.run_cycles(cycles);
         // SAFETY: as above.
         unsafe { ffi::uno_time_calls(self.raw, false, 0) };
-        let calls = self.list(ffi::uno_calls, |raw: &RawCall| Call {
-            enter: raw.enter,
-            leave: raw.leave,
-            interrupted: raw.interrupted,
-        });
-        self.clear(ffi::uno_calls);
-        calls
+        self.take(ffi::uno_calls)
     }
 
     /// Cycles asleep since power-on.
@@ -450,38 +431,37 @@ impl Uno {
         self.cycle() as f64 / FREQUENCY as f64
     }
 
-    pub(crate) fn list<Raw, Item>(
-        &self,
-        of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList,
-        make: impl Fn(&Raw) -> Item,
-    ) -> Vec<Item> {
+    /// The items of one of the shim's lists.
+    pub(crate) fn list<Item: Copy>(&self, of: ListOf) -> Vec<Item> {
         // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
         // the shim keeps in it, whose size is compared; `count` items of it are filled in,
-        // and nothing runs while they are borrowed.
+        // and nothing runs while they are copied.
         unsafe {
             let list = &*of(self.raw);
-            assert_eq!(list.size, size_of::<Raw>());
-            if list.count == 0 {
-                return Vec::new();
+            assert_eq!(list.size, size_of::<Item>());
+            match list.count {
+                0 => Vec::new(),
+                count => std::slice::from_raw_parts(list.items.cast(), count).to_vec(),
             }
-            let items = std::slice::from_raw_parts(list.items.cast::<Raw>(), list.count);
-            items.iter().map(make).collect()
         }
     }
 
-    pub(crate) fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
+    /// The items of one of the shim's lists, which is empty afterwards.
+    fn take<Item: Copy>(&mut self, of: ListOf) -> Vec<Item> {
+        let items = self.list(of);
+        self.clear(of);
+        items
+    }
+
+    pub(crate) fn clear(&mut self, of: ListOf) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
         // the shim writes after its `count`, so that 0 empties it.
         unsafe { (*of(self.raw)).count = 0 }
     }
 }
 
-fn serial_byte(raw: &RawByte) -> SerialByte {
-    SerialByte {
-        cycle: raw.cycle,
-        byte: raw.byte,
-    }
-}
+/// One of the shim's functions that return a list.
+type ListOf = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
 
 impl Drop for Uno {
     fn drop(&mut self) {
