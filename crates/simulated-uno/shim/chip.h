@@ -38,10 +38,10 @@ enum {
  * libsimavr has none. */
 avr_io_t *chip_part(avr_t *avr, const char *kind);
 
-/* Cycles until then, at least one: what simavr's timers want to know. */
+/* The cycles up to then, at least one: the argument of simavr's timers. */
 uint64_t chip_cycles_until(const avr_t *avr, uint64_t cycle);
 
-/* What simavr calls when the firmware reads or writes an I/O register. simavr's own
+/* A callback of simavr for each read or write of an I/O register. simavr's own
  * registration refuses to replace a callback that is there. */
 struct write_hook { avr_io_write_t call; void *param; };
 struct read_hook { avr_io_read_t call; void *param; };

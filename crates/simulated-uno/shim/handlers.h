@@ -1,4 +1,4 @@
-/* How often each interrupt is served and how many cycles its handler takes.
+/* The number of times that each interrupt is served, and the cycles of its handler.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -13,7 +13,7 @@ struct handlers {
 	struct vector_use vectors[CHIP_VECTORS];
 	uint8_t running[16];    /* nested handlers, the innermost last */
 	uint8_t depth;
-	uint64_t running_since; /* cycle at which the innermost began or went on */
+	uint64_t running_since; /* cycle at which the innermost started or resumed */
 	uint64_t finished;      /* cycles in handlers up to `running_since` */
 };
 

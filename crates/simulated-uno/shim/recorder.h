@@ -1,5 +1,5 @@
-/* What an oscilloscope on the board would show: every edge of the pins that it
- * is clipped to, and every store to GPIOR0, which firmware may use as a mark.
+/* An oscilloscope on the board: records every edge of the pins that it is connected to,
+ * and every store to GPIOR0, which firmware may use as a mark.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

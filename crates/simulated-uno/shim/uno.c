@@ -161,7 +161,7 @@ static void run_instructions(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	if (uno->call_timer.on) {
-		call_timer_look(&uno->call_timer);
+		call_timer_check(&uno->call_timer);
 		avr->run_cycle_limit = 1;
 	} else if (disturbance_waits(&uno->disturbance)) {
 		avr->run_cycle_limit = 1;

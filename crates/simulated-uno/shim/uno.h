@@ -1,4 +1,4 @@
-/* One simulated UNO, as src/ffi.rs sees it.
+/* The interface of one simulated UNO to src/ffi.rs.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -9,7 +9,7 @@
 
 struct uno;
 
-/* What ended a run. Kept in step with `Stop` in src/ffi.rs. */
+/* The reason for the end of a run. Kept in step with `Stop` in src/ffi.rs. */
 enum stop { STOP_TIME, STOP_LINE, STOP_HALTED, STOP_CRASHED, STOP_OFF };
 
 void uno_set_logger(void);

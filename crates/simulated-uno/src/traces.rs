@@ -1,9 +1,9 @@
-//! What a run leaves behind besides edges: bytes, marks, calls, interrupts.
+//! Records of a run besides edges: bytes, marks, calls, interrupts.
 
 /// A byte on the serial line.
 ///
-/// One that the UNO sent is stamped with the end of its stop bit in [`crate::Fidelity::DataSheet`], and
-/// with the store to UDR0 in [`crate::Fidelity::Stock`], which knows no frame.
+/// The cycle of a byte that the UNO sent is the end of its stop bit in [`crate::Fidelity::DataSheet`],
+/// and the store to UDR0 in [`crate::Fidelity::Stock`], which has no frames.
 // `struct serial_byte` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -14,7 +14,7 @@ pub struct SerialByte {
     pub byte: u8,
 }
 
-/// A store to GPIOR0: a one-cycle way for firmware to say "here".
+/// A store to GPIOR0: a mark in the record that costs the firmware one cycle.
 // `struct mark` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -34,7 +34,7 @@ pub struct Call {
     pub enter: u64,
     /// Cycle after the return.
     pub leave: u64,
-    /// Cycles that interrupts took in between, entry and `reti` included.
+    /// Cycles taken by interrupts in between, entry and `reti` included.
     pub interrupted: u64,
 }
 
@@ -52,14 +52,14 @@ impl Call {
     }
 }
 
-/// How often an interrupt was served and what its handler cost.
+/// The number of times that an interrupt was served, and the cycles of its handler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VectorUse {
     /// Vector number, as in the data sheet's table minus one (0 is reset).
     pub vector: u8,
-    /// Times served.
+    /// The number of times that it was served.
     pub entries: u64,
-    /// Cycles in the handler, all times together.
+    /// The sum of the cycles in its handler.
     pub cycles: u64,
 }
 
