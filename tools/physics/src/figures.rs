@@ -126,7 +126,7 @@ impl Figures {
     }
 
     /// Stores the answers for a robot's gait in a case.
-    pub fn put(&mut self, robot: &str, gait: &str, case: Case, said: Answers) {
+    pub fn put(&mut self, robot: &str, gait: &str, case: Case, answers: Answers) {
         let gaits = self.0.entry(robot.to_owned()).or_default();
         let cases = gaits.entry(gait.to_owned()).or_default();
         cases.insert(case.to_string(), answers);

@@ -19,7 +19,7 @@ mod table;
 
 pub use case::{Case, Feet, Legs};
 pub use expected::expected;
-pub use figures::{Figures, Answers, Displacement};
+pub use figures::{Answers, Displacement, Figures};
 pub use row::{Row, rows};
 pub use table::{spread, table};
 

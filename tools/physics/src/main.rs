@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 
 use lizard_physics::mujoco::{Jobs, MujocoError};
-use lizard_physics::{Figures, ROBOTS, Row, Answers, here, robot, rows, table};
+use lizard_physics::{Answers, Figures, ROBOTS, Row, here, robot, rows, table};
 use lizard_robot::Robot;
 
 /// A difference from the stored answer, mm and deg, beyond which the model, the engine or the robot

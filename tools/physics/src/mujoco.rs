@@ -163,15 +163,15 @@ impl Walking {
         }
         let mut ways = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
-            let said: Line =
+            let answer: Line =
                 serde_json::from_str(line).map_err(|_| MujocoError::Words(line.to_owned()))?;
-            let Some(way) = said.way else {
+            let Some(way) = answer.way else {
                 return Err(MujocoError::Trouble {
-                    file: said.file,
-                    trouble: said.trouble.unwrap_or_default(),
+                    file: answer.file,
+                    trouble: answer.trouble.unwrap_or_default(),
                 });
             };
-            ways.insert(said.file, way.into());
+            ways.insert(answer.file, way.into());
         }
         Ok(ways)
     }

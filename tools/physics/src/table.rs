@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use lizard_robot::Robot;
 
 use crate::case::{Case, Feet, Legs};
-use crate::figures::{Figures, Displacement};
+use crate::figures::{Displacement, Figures};
 
 /// A displacement below this counts as none: mm and deg.
 const NONE: (f64, f64) = (1.0, 0.5);

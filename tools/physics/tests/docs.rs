@@ -1,11 +1,11 @@
-//! The pages show what MuJoCo answers, and that is as near to the model as it must be.
+//! Tests of the figures on the pages: they are MuJoCo's, and close enough to the model's.
 //!
 //! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
 
 use lizard_robot::Robot;
 
 use lizard_physics::{
-    Case, Feet, Figures, Legs, ROBOTS, Displacement, expected, here, robot, rows, spread, table,
+    Case, Displacement, Feet, Figures, Legs, ROBOTS, expected, here, robot, rows, spread, table,
 };
 
 /// Replaces or compares the text between a marker and the next end.
