@@ -92,10 +92,11 @@ parallel-test: ## long computations in parts by GNU parallel, merged, compared w
 clean: ## remove everything that was built
 	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
 
-# RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone.
+# RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone. The .hex is
+# replaced in one step, since in .ci/run another target may read it at that moment.
 .firmware:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release
-	@avr-objcopy -O ihex -R .eeprom $(ELF) $(ELF:.elf=.hex)
+	@new=$(ELF).$$$$; avr-objcopy -O ihex -R .eeprom $(ELF) $$new && mv $$new $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
 
 # The example of crates/pulses/: servos and serial line without a lizard.
