@@ -134,7 +134,7 @@ clean: ## remove everything that was built
 	@scripts/setup-web --test
 	@scripts/build-web
 	@cd crates && cargo build --workspace --bin lizard --quiet
-	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=1 --test-timeout=900000 web/tests/*.test.js
+	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 web/tests/*.test.js
 
 # The second line puts the program where the documentation says it is.
 .cli:

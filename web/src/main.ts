@@ -265,9 +265,11 @@ async function start(): Promise<void> {
     troubles.say('robot', said, remedy);
   }
   if (await text.fromAddress()) address.begin();
-  addEventListener('hashchange', () => {
-    const file = fileIn(location.hash);
-    if (file === null) return void text.fromAddress().then((isRight) => isRight && address.begin());
+  addEventListener('hashchange', ({ newURL }) => {
+    // Not the page's own one, which may have followed the robot before this is heard.
+    const { hash } = new URL(newURL);
+    const file = fileIn(hash);
+    if (file === null) return void text.fromAddress(hash).then((isRight) => isRight && address.begin());
     if (choice.show(file)) void choose();
     else missing(file);
   });

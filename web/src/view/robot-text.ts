@@ -63,9 +63,9 @@ export class RobotText {
   }
 
   /** Takes the robot that the page's address has, if any; whether nothing was wrong with that. */
-  async fromAddress(): Promise<boolean> {
+  async fromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const toml = await linked(location.hash);
+      const toml = await linked(hash);
       return toml === null || toml === this.session().toml || (await this.give(toml));
     } catch (error) {
       this.panel.open = true;

@@ -63,7 +63,7 @@ pub struct StepEntry {
     /// Its headline.
     pub title: &'static str,
     /// What to do, as Markdown.
-    pub words: String,
+    pub words: &'static str,
 }
 
 /// All of it but the triangles.
