@@ -148,9 +148,9 @@ async function start(): Promise<void> {
       scope.pulse(pin, rise, width);
     },
     sent: (line) => log.sent(line),
-    came(line) {
-      log.came(line);
-      setup.came(line);
+    received(line) {
+      log.received(line);
+      setup.received(line);
     },
     isUno: (from) =>
       confirm(

@@ -47,7 +47,7 @@ export interface Listener {
   frame(frame: Frame, widths: Four<number> | null, seconds: number): void;
   pulse(pin: number, rise: number, width: number): void;
   sent(line: string): void;
-  came(line: string): void;
+  received(line: string): void;
   /** Called when the robot does something else: a gait or a command. */
   doing(gait: string): void;
   /** Called when it is known what the board has. */
@@ -335,17 +335,17 @@ export class Session {
   private listen(): void {
     this.dialogue = new Dialogue(this.link, {
       sent: (line) => this.listener.sent(line),
-      came: (line) => this.came(line),
+      received: (line) => this.received(line),
     });
   }
 
-  private came(line: string): void {
+  private received(line: string): void {
     const angles = watched(line);
     if (angles && this.isReal) {
       this.pose(angles);
       return;
     }
-    this.listener.came(line);
+    this.listener.received(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
     const doing = [...this.description.gaits.map(({ command }) => command), stop, rest, center];

@@ -30,7 +30,7 @@ const FIREFOX = {
 /** A machine may be busy: only what hangs is to fail by time. PATIENCE names another one, ms, for who writes a test. */
 export const PATIENCE = Number(process.env.PATIENCE ?? 300_000);
 
-/** What a promise comes to; fails with what was waited for if it comes to nothing. */
+/** Awaits a promise; fails with the name of the wait if it does not settle in time. */
 export function within(what, promise) {
   let timer;
   const late = new Promise((_, fail) => {
@@ -48,7 +48,7 @@ function limit(object, name, methods) {
   }
 }
 
-/** What the page has complained of, in all pages. */
+/** Errors and warnings of all pages so far. */
 export const complaints = [];
 
 let browser;
@@ -92,7 +92,7 @@ export async function close() {
   server?.close();
 }
 
-/** Where the page is. */
+/** Address of the page. */
 export const address = (of = server) => `http://127.0.0.1:${of.address().port}${FOLDER}`;
 
 /**

@@ -23,7 +23,7 @@ const passes = async (page, count) =>
   page.waitForFunction((end) => window.lizard.link.board.cycle > end, FRAME * ((await frames(page)) + count));
 const button = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
 
-/** What a button saves. */
+/** The file that a button saves. */
 async function saved(page, name) {
   const download = page.waitForEvent('download');
   await button(page, name).click();

@@ -8,7 +8,7 @@ import { test } from 'node:test';
 
 const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
 
-/** What scripts/packages.sh does with an apt-get that fails so many times with this sentence. */
+/** Runs scripts/packages.sh with an apt-get that fails a number of times with a sentence. */
 async function updates(times, sentence, wait) {
   const folder = await mkdtemp(join(tmpdir(), 'lizard-apt-'));
   try {

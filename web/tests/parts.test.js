@@ -158,7 +158,7 @@ test('the parts go where the robot goes', async () => {
       return [0, 1].map((axis) => seen.reduce((sum, point) => sum + point[axis], 0) / seen.length);
     });
   const alike = (one, other) => Math.hypot(one[0] - other[0], one[1] - other[1]) < 0.5;
-  /** Where it stays when it is not where it was. */
+  /** Waits until the head has moved away from `was` and stands still; returns its place. */
   const head = async (was = [NaN, NaN]) => {
     await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
     for (let before = was; ; ) {

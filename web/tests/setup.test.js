@@ -235,7 +235,7 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
   assert.deepEqual(await cal(opened), before);
   await opened.getByRole('button', { name: 'Set up…' }).click();
   await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
-  // What was proven and is not taken back counts on.
+  // Proven signs stay proven unless they are taken back.
   await step(opened, 'Signs');
   await does(opened, 'Turn A1', /^A1 was told to turn 10°/);
   await press(opened, 'Yes');

@@ -161,7 +161,7 @@ test('a board that is unplugged while the firmware is written does nothing, and 
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
   await said(opened, /^not written: .*\. Only a part of it is on the board, which does nothing until it is written again: try again$/);
-  // What it does by itself, with its own power.
+  // Its own behaviour, without the page.
   const pulses = await opened.evaluate(() => {
     window.otherBoard.reset('external');
     window.pulses = {};

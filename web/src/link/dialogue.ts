@@ -19,11 +19,11 @@ export interface Answer {
   notes: string[];
 }
 
-export interface Heard {
+export interface DialogueListener {
   /** Called with each line that is sent. */
   sent(line: string): void;
   /** Called with each line that is received. */
-  came(line: string): void;
+  received(line: string): void;
 }
 
 /** Thrown for a question that was dropped before its answer. */
@@ -49,7 +49,7 @@ export class Dialogue {
 
   constructor(
     readonly link: Link,
-    private readonly heard: Heard,
+    private readonly listener: DialogueListener,
   ) {
     link.onBytes = (bytes) => this.bytes(bytes);
   }
@@ -85,7 +85,7 @@ export class Dialogue {
     if (!question) return;
     this.asked = question;
     this.notes = [];
-    if (!question.quiet) this.heard.sent(question.line);
+    if (!question.quiet) this.listener.sent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
       await this.link.wait(question.patience);
@@ -106,12 +106,12 @@ export class Dialogue {
     for (const line of lines) if (line !== '') this.line(line.slice(-LONGEST));
   }
 
-  private line(heard: string): void {
+  private line(received: string): void {
     // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
-    const line = heard.slice(Math.max(0, heard.indexOf(GREETING)));
+    const line = received.slice(Math.max(0, received.indexOf(GREETING)));
     const question = this.asked;
     const answers = /^(ok|err)\b/.test(line);
-    if (!(question?.quiet && answers)) this.heard.came(line);
+    if (!(question?.quiet && answers)) this.listener.received(line);
     if (!answers) {
       this.notes.push(line);
     } else if (question) {

@@ -32,11 +32,11 @@ function worker(): Worker {
   return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
 }
 
-/** Asks a worker and calls `hear` with each answer, up to the last. Throws the sentence of a refusal. */
-function asked<T extends Answer>(of: Worker, question: Question, hear: (answer: Answer) => void = () => {}): Promise<T> {
+/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws the sentence of a refusal. */
+function asked<T extends Answer>(of: Worker, question: Question, onAnswer: (answer: Answer) => void = () => {}): Promise<T> {
   return new Promise((resolve, reject) => {
     const listen = ({ data }: MessageEvent<Answer>) => {
-      hear(data);
+      onAnswer(data);
       if (data.of !== question.ask) return;
       of.removeEventListener('message', listen);
       if ('refused' in data) reject(new Error(data.refused));

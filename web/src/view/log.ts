@@ -33,7 +33,7 @@ export class Log {
     this.add(`> ${line}`, 'sent');
   }
 
-  came(line: string): void {
+  received(line: string): void {
     this.add(line, line.startsWith('err') ? 'err' : line.startsWith('#') ? 'note' : 'ok');
   }
 

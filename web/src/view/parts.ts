@@ -32,11 +32,11 @@ export class PartsView {
   private asked = '';
   private stop: (() => void) | null = null;
   /** True while the panel is visible. */
-  private seen = false;
+  private isVisible = false;
 
   constructor(private readonly session: () => Session) {
     this.panel.addEventListener('toggle', () => this.take());
-    new IntersectionObserver(([entry]) => (this.seen = entry?.isIntersecting ?? false)).observe(this.canvas);
+    new IntersectionObserver(([entry]) => (this.isVisible = entry?.isIntersecting ?? false)).observe(this.canvas);
     this.apart.addEventListener('input', () => this.show());
     this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
     element('step-back').addEventListener('click', () => this.go(-1));
@@ -147,7 +147,7 @@ export class PartsView {
   /** In every picture of the page. */
   draw(frame: Frame | null): void {
     const { space, solids } = this;
-    if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.seen) return;
+    if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.isVisible) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide is shown.
     const moving = this.step === null && frame?.scene != null;

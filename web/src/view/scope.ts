@@ -26,7 +26,7 @@ export class ScopeView {
   private readonly note = element('scope-note');
   private widths = [0, 0, 0, 0];
   /** True if pulses are known: a board on USB sends only its pose. */
-  private seen = true;
+  private hasPulses = true;
 
   /** Shows another robot. */
   robot({ servos }: Description): void {
@@ -53,7 +53,7 @@ export class ScopeView {
 
   /** Switches to a simulated or a real board. */
   link(real: boolean): void {
-    this.seen = !real;
+    this.hasPulses = !real;
     this.note.hidden = !real;
     this.pulses = [];
     this.widths = [0, 0, 0, 0];
@@ -76,7 +76,7 @@ export class ScopeView {
   write(scene: Scene | null): void {
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];
-      const text = !this.seen ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
+      const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
       if (width.textContent !== text) width.textContent = text;
       const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
       if (angle.textContent !== degrees) angle.textContent = degrees;
@@ -95,7 +95,7 @@ export class ScopeView {
       pen.strokeStyle = palette().grid;
       pen.lineWidth = 1;
       pen.strokeRect(-1, servo * row, width + 2, row);
-      if (!this.seen) continue;
+      if (!this.hasPulses) continue;
       pen.strokeStyle = servoColour(servo);
       pen.lineWidth = 2;
       pen.beginPath();

@@ -104,7 +104,7 @@ export class Setup implements Tools {
   }
 
   /** Reads a line of the robot. */
-  came(line: string): void {
+  received(line: string): void {
     if (line.startsWith(NOTHING_SAVED)) this.isNew = true;
   }
 

@@ -17,10 +17,10 @@ export class Signs implements Step {
   /** The servo that was turned, and its turn, deg; null before. */
   private moved: { servo: number; by: number } | null = null;
   /** The user's observation that points to the wiring. */
-  private seen: 'other' | 'none' | null = null;
+  private observed: 'other' | 'none' | null = null;
 
   forget(): void {
-    this.moved = this.seen = null;
+    this.moved = this.observed = null;
   }
 
   drawing({ servo }: Tools): Shown {
@@ -43,7 +43,7 @@ export class Signs implements Step {
     const { servo, session } = tools;
     const { pin } = session.description.servos[servo];
     const say = (what: 'other' | 'none') => () => {
-      this.seen = what;
+      this.observed = what;
       tools.show();
     };
     const advice = {
@@ -58,7 +58,7 @@ export class Signs implements Step {
         button('Another servo turned', say('other')),
         button('Nothing turned', say('none')),
       ),
-      ...(this.seen ? [words(advice[this.seen])] : []),
+      ...(this.observed ? [words(advice[this.observed])] : []),
     ];
   }
 
@@ -66,7 +66,7 @@ export class Signs implements Step {
     const { servo } = tools;
     tools.run(async (guide) => {
       const by = await guide.prove(servo);
-      this.seen = null;
+      this.observed = null;
       this.moved = { servo, by };
       return `A${servo + 1} was told to turn ${Math.abs(by)}° ${by > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });
