@@ -69,7 +69,7 @@ export interface Plate {
 }
 
 /** What drives the legs, as robot.toml calls it. */
-export type Kind = 'rigid' | 'strut' | 'spring';
+export type Kind = 'rigid' | 'strut';
 
 /** What the robot stands on, what it weighs, and what drives its legs. */
 export interface Floor {
@@ -80,10 +80,6 @@ export interface Floor {
   /** g */
   mass: number;
   kind: Kind;
-  /** Of an ideal spring, N mm/deg. */
-  stiffness: number;
-  /** Torque up to which a leg on it does not lag at all, N mm. */
-  preload: number;
   /** What the spring in a strut pulls, N, and how much more for each mm, N/mm. */
   force: number;
   rate: number;

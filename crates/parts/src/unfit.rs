@@ -31,11 +31,6 @@ pub enum Unfit {
         "the nut of a leg's anchor does not fit into its crank with a screw from the shop; raise parts.thickness or the servo's horn"
     )]
     Nut,
-    /// An ideal spring, which no part is.
-    #[error(
-        "leg.drive.kind is \"spring\", an ideal that no part here is; parts need \"rigid\" or \"strut\""
-    )]
-    Ideal,
     /// The leg's strut is shorter than its spring.
     #[error(
         "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; [leg.drive] kind = \"rigid\" needs no spring"
@@ -137,9 +132,6 @@ impl Assembly {
         if parts.height < least {
             let height = parts.height;
             return Err(Unfit::Low { height, least });
-        }
-        if matches!(self.robot().drive().kind, lizard_robot::Kind::Spring(_)) {
-            return Err(Unfit::Ideal);
         }
         let legs = lizard_robot::servo::LEGS.iter().zip(&self.layout().legs);
         for (leg, layout) in legs.filter(|_| self.robot().drive().strut().is_some()) {

@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_only_in_amplitude_start_and_gain_shares_a_waveform() {
+    fn gaits_that_differ_only_in_amplitude_start_and_gain_share_a_waveform() {
         // Two waves, two held shapes for four turns, one path for two servos that
         // mirror each other.
         assert_eq!(waves(&robot("paper")), 5);
