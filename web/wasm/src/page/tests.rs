@@ -252,7 +252,6 @@ fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
         force: 2.5,
         rate: 0.25,
         play: 0.5,
-        ..own(PAPER)
     };
     let slotted = written(PAPER, floor);
     assert_eq!(own(&slotted), floor);
