@@ -13,7 +13,7 @@
 //! movement over the floor is computed by `lizard-contact`, whose types are exported here, too.
 //!
 //! A file without its gaits becomes `Measures`. These and the gaits' `Tables` become the
-//! integers, [`lizard_core::section::Content`]. A [`Robot`] holds all of them, and a
+//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all of them, and a
 //! [`CoreRobot`] is the core's view of it. docs/firmware.md lists the types of other crates that
 //! also describe a robot.
 //!

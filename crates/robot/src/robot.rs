@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use lizard_avr::Region;
 use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
-use lizard_core::gait::Gait;
-use lizard_core::section::{Content, LONGEST_NAME, SPACE};
+use lizard_core::numbers::gaits::Gait;
+use lizard_core::numbers::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
@@ -102,11 +102,11 @@ impl Robot {
                 "the firmware would not take this robot: its numbers cannot be worked with";
             Fault::new("", sentence)
         };
-        let unchecked = lizard_core::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
+        let unchecked = lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
         let check = |(index, gait)| CheckedGait::new(gait, index, &tables, &measures, &unchecked);
         let gaits = gaits.into_iter().enumerate().map(check);
         let gaits = gaits.collect::<Checked<_>>()?;
-        lizard_core::robot::Robot::open(flash).map_err(|_| impossible())?;
+        lizard_core::numbers::robot::Robot::open(flash).map_err(|_| impossible())?;
         Ok(Self {
             gaits,
             measures,
@@ -243,10 +243,10 @@ impl Robot {
 
     /// The core's view of this robot, on a host: without the maps of certified cells, which
     /// change no decision.
-    pub fn core(&self) -> lizard_core::robot::Robot<'_> {
+    pub fn core(&self) -> lizard_core::numbers::robot::Robot<'_> {
         // It was opened when the robot was read.
-        lizard_core::robot::Robot::unchecked(Region::new(&self.section))
-            .unwrap_or(lizard_core::robot::Robot::NONE)
+        lizard_core::numbers::robot::Robot::unchecked(Region::new(&self.section))
+            .unwrap_or(lizard_core::numbers::robot::Robot::NONE)
     }
 
     /// The core's view of this robot for a simulation of the core. Its section stays in memory

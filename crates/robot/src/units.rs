@@ -1,6 +1,6 @@
 //! The units of the core in floating point.
 
-use lizard_core::units;
+use lizard_core::numbers::units;
 
 /// Steps of the core's angles in one degree.
 pub const STEPS_PER_DEGREE: f64 = units::TURN as f64 / 360.0;

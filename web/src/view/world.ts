@@ -1,11 +1,11 @@
-// The sliders of what is around the robot: drive, feet, floor, weight, servos, supply.
+// The sliders of leg drive, feet, floor, mass, servos and supply.
 import { type Floor, type Kind, lags, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 
 const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
 
-/** How a slider's number is written; its unit is in its label. */
+/** The number format of each slider; the unit is in its label. */
 const SHOWN = {
   force: (value: number) => value.toFixed(1),
   play: (value: number) => value.toFixed(1),
@@ -23,7 +23,7 @@ export class World {
   private readonly servos = element<HTMLSelectElement>('servos');
   private readonly supply = element<HTMLInputElement>('supply');
 
-  /** `onFloor` is called when the ways of gaits have changed. */
+  /** Calls `onFloor` when the predictions have changed. */
   constructor(
     private readonly session: () => Session,
     private readonly onFloor: () => void,
@@ -54,7 +54,7 @@ export class World {
     this.drive.value = floor.kind;
     for (const name of PLAIN) {
       const input = this.input(name);
-      // A robot may be heavier than most.
+      // The slider widens for a value beyond its range.
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
       input.value = String(floor[name]);
@@ -76,11 +76,11 @@ export class World {
     return element<HTMLInputElement>(name);
   }
 
-  /** What would move nothing is not to be set. */
+  /** Disables the sliders that have no effect. */
   private enable(floor: Floor): void {
     const springs = floor.kind !== 'rigid';
     this.input('force').disabled = !springs;
-    // Without springs friction cancels out, and without a foot that is too long weight as well.
+    // Friction cancels out without springs, and so does mass without a long foot.
     this.input('friction').disabled = !springs;
     this.input('mass').disabled = !springs && floor.twist === 0;
     this.input('leaf').disabled = floor.twist === 0;
@@ -93,7 +93,7 @@ export class World {
   }
 
   private use(): void {
-    // What a slider was not moved from stays as exactly as it was.
+    // A slider that was not moved keeps its exact value.
     const own = this.session().floor;
     const number = (name: Plain) => {
       const input = this.input(name);

@@ -3,8 +3,8 @@
 //! Simulating another chip would double the time. The core is plain integer Rust, so its answers
 //! and pulses are those of an UNO to the bit; only the cycles of the chip are missing.
 
-use lizard_core::restart::Restart;
-use lizard_core::supply::Reading;
+use lizard_core::control::supply::Reading;
+use lizard_core::memory::restart::Restart;
 use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;

@@ -1,8 +1,8 @@
 //! The description of a robot that the page reads before anything moves.
 
-use lizard_core::section::START;
-use lizard_core::text::Text;
-use lizard_core::word::Word;
+use lizard_core::console::text::Text;
+use lizard_core::console::word::Word;
+use lizard_core::numbers::section::START;
 use lizard_kinematics::Check;
 use lizard_robot::edit::HIPS;
 use lizard_robot::servo::{LEGS, NAMES};

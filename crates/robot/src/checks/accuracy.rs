@@ -1,7 +1,7 @@
 //! The error of the tables, as the firmware reads them, against the gaits in floating
 //! point.
 
-use lizard_core::units::CYCLE16;
+use lizard_core::numbers::units::CYCLE16;
 
 use crate::checks::checked_gait::CheckedGait;
 

@@ -2,11 +2,11 @@
 //! solution: head, tail, sides and legs against all limits. Then by the firmware's own guard,
 //! which would stop a gait that is closer to a limit than its integers resolve.
 
-use lizard_core::gait::SAMPLES;
-use lizard_core::guard::Clearance;
-use lizard_core::hazard::{Hazard, Margin};
-use lizard_core::pose::Pose;
-use lizard_core::units::Sweep;
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::guard::hazard::{Hazard, Margin};
+use lizard_core::numbers::gaits::SAMPLES;
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::checks::accuracy::{self, ALL_PHASES};
@@ -94,7 +94,7 @@ impl Least {
 pub(crate) fn check(
     gait: &CheckedGait,
     robot: &Measures,
-    firmware: &lizard_core::robot::Robot<'_>,
+    firmware: &lizard_core::numbers::robot::Robot<'_>,
 ) -> Result<Audit, String> {
     let mut found = Audit {
         peak: fastest(gait.gait()),

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use lizard_avr::Flash;
 use lizard_contact::{Ground, Prediction, Travel, Walker};
-use lizard_core::gait::Gait as TableGait;
-use lizard_core::units::phase16;
+use lizard_core::numbers::gaits::Gait as TableGait;
+use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
 
 use crate::checks::accuracy::{self, TableError};
@@ -34,7 +34,7 @@ impl CheckedGait {
         index: usize,
         tables: &Arc<Tables>,
         measures: &Measures,
-        firmware: &lizard_core::robot::Robot,
+        firmware: &lizard_core::numbers::robot::Robot,
     ) -> Checked<Self> {
         let mut checked = Self {
             gait,

@@ -3,9 +3,9 @@
 
 use std::collections::HashMap;
 
-use lizard_core::gait::{LONGEST_NAME, MOST_GAITS};
-use lizard_core::settings::key;
-use lizard_core::word::Word;
+use lizard_core::console::word::Word;
+use lizard_core::memory::settings::key;
+use lizard_core::numbers::gaits::{LONGEST_NAME, MOST_GAITS};
 use lizard_kinematics::End;
 
 use crate::file::{Checked, Fault, Section, hint};

@@ -29,7 +29,7 @@ pub(crate) use strut::{hung, of_coil};
 pub use supply::{Rail, Supplies, healthy_rail_mv};
 
 use lizard_contact::Ground;
-use lizard_core::five_bar::SHORTEST_COUPLER;
+use lizard_core::numbers::bars::SHORTEST_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::file::{Checked, Fault, Section};

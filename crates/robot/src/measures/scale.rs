@@ -1,14 +1,15 @@
 //! The finest step of a mechanism's lengths with which its longest bars still fit into
 //! the core's 16-bit integers.
 
-use lizard_core::{five_bar, slider, units::Scale};
+use lizard_core::numbers::units::Scale;
+use lizard_core::numbers::{bars, slider};
 use lizard_kinematics::{FiveBar, Slider};
 
 /// The longest bar that robot.toml may have, mm.
 pub(crate) const LONGEST_BAR: f64 = 1000.0;
 
 // Every mechanism in a robot.toml fits at some scale.
-const _: () = assert!(3.0 * LONGEST_BAR < five_bar::LONGEST);
+const _: () = assert!(3.0 * LONGEST_BAR < bars::LONGEST);
 const _: () = assert!(4.0 * LONGEST_BAR < slider::LONGEST_ARMS);
 
 /// The number of steps of a scale in a millimetre.
@@ -20,9 +21,9 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     let all = bars.base + bars.crank_left + bars.crank_right;
     finest(&[
-        (all, five_bar::LONGEST),
-        (bars.coupler_left, five_bar::LONGEST),
-        (bars.coupler_right, five_bar::LONGEST),
+        (all, bars::LONGEST),
+        (bars.coupler_left, bars::LONGEST),
+        (bars.coupler_right, bars::LONGEST),
     ])
 }
 

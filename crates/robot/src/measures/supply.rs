@@ -1,7 +1,7 @@
 //! The voltage of the board and of the servos: its measurement, and the thresholds at which the
 //! robot slows down, stops and rests.
 
-use lizard_core::supply::{Supplies as CoreSupplies, Thresholds};
+use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
 use crate::file::{Checked, Section};
 use crate::measures::servo::{NAMES, Servo, pin};
@@ -155,7 +155,7 @@ fn millivolts(volts: f64) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use lizard_core::supply::{Supplies, Thresholds};
+    use lizard_core::numbers::supplies::{Supplies, Thresholds};
 
     use crate::testing::with;
 

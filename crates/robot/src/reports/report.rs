@@ -3,7 +3,7 @@
 use std::fmt;
 
 use lizard_contact::Prediction;
-use lizard_core::section::SPACE;
+use lizard_core::numbers::section::SPACE;
 
 use crate::checks::{Audit, CheckedGait, TableError};
 use crate::measures::servo::NAMES;

@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 use lizard_avr::Region;
 
 /// The core's view of a robot.
-pub type CoreRobot = lizard_core::robot::Robot<'static>;
+pub type CoreRobot = lizard_core::numbers::robot::Robot<'static>;
 
 static KEPT: Mutex<Option<HashSet<&'static [u8]>>> = Mutex::new(None);
 

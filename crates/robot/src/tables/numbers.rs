@@ -4,15 +4,15 @@
 //! has its own scale. A number that is not an integer is rounded to the safe side: limits of margins up, strokes and travels inwards, the slew limit down.
 
 use lizard_avr::Flash;
-use lizard_core::adjustment::Reach;
-use lizard_core::calibration::Calibration;
-use lizard_core::couplers::Couplers;
-use lizard_core::gait::SAMPLES;
-use lizard_core::limits::Limits;
-use lizard_core::point_to_point::Slew;
-use lizard_core::section::{Content, Loop, Map};
-use lizard_core::slider::Slider;
-use lizard_core::units::{Angle, Scale, Sine, Sweep, Width};
+use lizard_core::numbers::calibration::Calibration;
+use lizard_core::numbers::calibration::Reach;
+use lizard_core::numbers::couplers::Couplers;
+use lizard_core::numbers::gaits::SAMPLES;
+use lizard_core::numbers::limits::Limits;
+use lizard_core::numbers::section::{Content, Loop, Map};
+use lizard_core::numbers::slew::Slew;
+use lizard_core::numbers::slider::Slider;
+use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep, Width};
 use lizard_kinematics as kinematics;
 
 use crate::measures::servo::Servo;
@@ -157,9 +157,9 @@ fn floor(value: f64) -> i64 {
 mod tests {
     use super::*;
     use crate::testing::{all, robot, with};
-    use lizard_core::gait::GaitId;
-    use lizard_core::part::{End, Side};
-    use lizard_core::section::{Header, Numbers};
+    use lizard_core::numbers::gaits::GaitId;
+    use lizard_core::numbers::part::{End, Side};
+    use lizard_core::numbers::section::{Header, Numbers};
 
     /// 256 steps to a millimetre: the scale of every mechanism of the unequal robot.
     const PER_MM: f64 = 256.0;
@@ -325,7 +325,7 @@ mod tests {
                     }
                 }
             }
-            let reach = lizard_core::part::Servo::ALL.map(|servo| {
+            let reach = lizard_core::numbers::part::Servo::ALL.map(|servo| {
                 let reach = firmware.reach(servo);
                 (reach.min.0, reach.max.0)
             });

@@ -2,10 +2,10 @@
 //! share, each servo with an offset and a gain.
 //!
 //! The meaning of a table, and the interpolation between its samples, belong to the core:
-//! [`lizard_core::gait`].
+//! [`lizard_core::numbers::gaits`].
 
-use lizard_core::gait::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
-use lizard_core::units::CYCLE;
+use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
+use lizard_core::numbers::units::CYCLE;
 
 use crate::file::{Checked, Fault};
 use crate::gaits::{Gait, Stride, Waveform, canonical};
@@ -233,8 +233,8 @@ mod tests {
         }
     }
 
-    fn id(robot: &Robot, place: usize) -> lizard_core::gait::GaitId {
-        lizard_core::gait::GaitId::all(robot.gaits().len())
+    fn id(robot: &Robot, place: usize) -> lizard_core::numbers::gaits::GaitId {
+        lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
             .nth(place)
             .expect("a gait")
     }

@@ -2,9 +2,9 @@
 
 use crate::testing::{all, body, robot, with};
 use crate::{CheckedGait, Robot};
-use lizard_core::hazard::{Hazard, Margin};
-use lizard_core::part::{End, Servo, Side as CoreSide};
-use lizard_core::units::Sine;
+use lizard_core::guard::hazard::{Hazard, Margin};
+use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
+use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
 /// The slider's least and greatest travel on each side over a gait, mm.

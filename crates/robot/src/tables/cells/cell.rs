@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use lizard_core::units::TURN;
+use lizard_core::numbers::units::TURN;
 use lizard_kinematics::Vector;
 
 /// Most divisions of a cell in four before it is given up. A bound over a cell is too wide by

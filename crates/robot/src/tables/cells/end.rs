@@ -17,10 +17,10 @@
 //! The integers' margins are smaller than that by at most their error bounds, and must
 //! still keep the integers' limits.
 
-use lizard_core::bounds::{self, DIRECTION};
-use lizard_core::limits::Limits;
-use lizard_core::section::Content;
-use lizard_core::units::Sine;
+use lizard_core::guard::bounds::{self, DIRECTION};
+use lizard_core::numbers::limits::Limits;
+use lizard_core::numbers::section::Content;
+use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lizard, Vector};
 
 use super::cell::{Cell, Condition, HAIR, Span, Verdict};

@@ -3,7 +3,7 @@
 //! The chip computes the distance of a pose from every hazard, and that takes most of a
 //! frame's time. Every condition depends on one servo or on the two of an end or of a side. So
 //! the poses that are far from every limit can be listed beforehand, in four maps over pairs of
-//! servos: [`lizard_core::cells`]. This module makes them from the robot's true measurements,
+//! servos: [`lizard_core::numbers::cells`]. This module makes them from the robot's true measurements,
 //! with bounds over a whole cell and a bound of the integers' error. No pose is sampled, so the
 //! proof holds for every pose in a cell.
 
@@ -13,11 +13,11 @@ mod side;
 
 use std::ops::RangeInclusive;
 
-use lizard_core::calibration::Calibration;
-use lizard_core::cells::{COLUMN_BITS, MOST_ROWS, ROW_BITS};
-use lizard_core::pose::Pose;
-use lizard_core::section::{Content, Map};
-use lizard_core::units::Angle;
+use lizard_core::numbers::calibration::Calibration;
+use lizard_core::numbers::cells::{COLUMN_BITS, MOST_ROWS, ROW_BITS};
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::section::{Content, Map};
+use lizard_core::numbers::units::Angle;
 use lizard_kinematics::{End, Lizard, Side};
 
 use cell::{Cell, Condition, Span};

@@ -5,8 +5,8 @@
 //! error bound of the integers added, the length must still be within the integers'
 //! stroke.
 
-use lizard_core::bounds;
-use lizard_core::section::Content;
+use lizard_core::guard::bounds;
+use lizard_core::numbers::section::Content;
 use lizard_kinematics::{Lizard, Side, Slider};
 
 use super::cell::{Cell, Condition, HAIR, Verdict};

@@ -1,9 +1,9 @@
 //! The maps against the integer guard, which knows nothing of them.
 
-use lizard_core::gait::GaitId;
-use lizard_core::guard::Clearance;
-use lizard_core::limits::Limits;
-use lizard_core::units::Sweep;
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::limits::Limits;
+use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{Links, Lizard};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -138,7 +138,7 @@ impl Subject {
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
         let least = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
-        let sides = [0, 1].map(|side| self.robot.side(lizard_core::part::Side::ALL[side]));
+        let sides = [0, 1].map(|side| self.robot.side(lizard_core::numbers::part::Side::ALL[side]));
         let mut cells = 0;
         for part in self.parts() {
             let Part {

@@ -1,0 +1,50 @@
+//! Every position of a servo, as the firmware and as floating point see it.
+
+use lizard_core::guard::trig::Direction;
+use lizard_core::numbers::units::Sweep;
+use lizard_kinematics::{End, Vector};
+use lizard_robot::CoreRobot;
+
+/// One servo's positions, in steps of 1/65536 turn over its whole travel.
+pub struct Positions {
+    /// The first one's sweep from neutral.
+    first: i16,
+    /// Its angle in the chassis frame, degrees.
+    pub degrees: Vec<f64>,
+    /// The crank's direction in the frame of its end, Q15.
+    pub fixed: Vec<Direction>,
+    /// The same in floating point.
+    pub exact: Vec<Vector>,
+}
+
+impl Positions {
+    /// All positions of a servo, by its index, as the firmware counts them.
+    pub fn of(guard: &CoreRobot, servo: usize) -> Self {
+        let neutral = guard.neutral()[servo];
+        let calibration = guard.calibration()[servo];
+        let end = End::of_servo(servo);
+        let mut positions = Self {
+            first: calibration.min.0,
+            degrees: Vec::new(),
+            fixed: Vec::new(),
+            exact: Vec::new(),
+        };
+        for sweep in calibration.min.0..=calibration.max.0 {
+            let angle = neutral.swept(Sweep(sweep));
+            let degrees = f64::from(angle.0) * 360.0 / 65536.0;
+            let fixed = Direction::of(angle);
+            positions.degrees.push(degrees);
+            positions.fixed.push(match end {
+                End::Head => fixed,
+                End::Tail => fixed.in_tail_frame(),
+            });
+            positions.exact.push(end.mirror(Vector::direction(degrees)));
+        }
+        positions
+    }
+
+    /// The sweep from neutral of a position.
+    pub fn sweep(&self, position: usize) -> Sweep {
+        Sweep((i32::from(self.first) + position as i32) as i16)
+    }
+}
