@@ -121,7 +121,7 @@ fn a_hazard_of_the_guard_has_the_name_of_its_condition() {
 fn every_sample_of_every_servo_is_checked() {
     for (name, robot) in all() {
         for gait in robot.gaits() {
-            let phases = super::phases(gait);
+            let phases = super::phases(gait.table());
             for channel in gait.table().channels {
                 for sample in (0..=u16::MAX).step_by(1024) {
                     let phase = sample.wrapping_sub(channel.offset);
