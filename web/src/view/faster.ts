@@ -71,10 +71,10 @@ export class FasterView {
     this.module ??= files.tune();
     // A failed download is tried again next time.
     this.module.catch(() => (this.module = null));
-    this.search = new FasterSearch(this.module, { toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.show(answer));
+    this.search = new FasterSearch(this.module, { toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.handle(answer));
   }
 
-  private show(answer: Answer): void {
+  private handle(answer: Answer): void {
     switch (answer.of) {
       case 'begun':
         this.before = answer.before;
