@@ -34,7 +34,8 @@ export const kept = {
       const state = JSON.parse(localStorage.getItem(KEY) ?? 'null') as Kept | null;
       if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return null;
       // An earlier page stored springs in another form, which is dropped.
-      return { ...state, floor: state.floor && typeof state.floor.twist === 'number' ? state.floor : null };
+      const isKnown = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
+      return { ...state, floor: isKnown ? state.floor : null };
     } catch {
       return null;
     }

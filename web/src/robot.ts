@@ -69,7 +69,7 @@ export interface Plate {
 }
 
 /** The kind of leg drive, by its name in robot.toml. */
-export type Kind = 'rigid' | 'strut' | 'spring';
+export type Kind = 'rigid' | 'strut';
 
 /** The floor, the robot's mass and its leg drive. */
 export interface Floor {
@@ -80,10 +80,6 @@ export interface Floor {
   /** Mass, g. */
   mass: number;
   kind: Kind;
-  /** Stiffness of an ideal spring, N mm/deg. */
-  stiffness: number;
-  /** Torque below which a leg on an ideal spring does not lag, N mm. */
-  preload: number;
   /** Preload of the spring in a strut, N, and its rate, N/mm. */
   force: number;
   rate: number;

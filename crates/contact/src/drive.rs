@@ -1,13 +1,10 @@
 //! The drive of a leg from its servo's link: `[leg.drive]` in robot.toml.
 //!
-//! Parts, bill, contact model, twin and page all use this table. With a bar with two
-//! holes, the leg moves exactly with its servo. A strut with a slot and a spring does the
-//! same up to the pull of its spring; beyond that it yields in one direction. An ideal
-//! spring yields in both directions: no part of `lizard parts` does that, but the paper's
-//! robot may have had one. In each case pins and gears have play, within which nothing
-//! drives the leg.
+//! Parts, bill, contact model, twin and page all use this table. With a rigid strut, a bar with
+//! two holes, the leg moves exactly with its servo. A strut with a slot and a spring does the
+//! same up to the pull of its spring; beyond that it yields in one direction. In both cases pins
+//! and gears have play, within which nothing drives the leg.
 
-use crate::spring::Spring;
 use crate::strut::Strut;
 use crate::yields::{Side, Yield};
 
@@ -27,13 +24,11 @@ pub enum Kind {
     Rigid,
     /// A strut with a slot and a tension spring, which yields one way.
     Strut(Strut),
-    /// A spring that yields both ways.
-    Spring(Spring),
 }
 
 impl Kind {
     /// Names of the kinds in robot.toml.
-    pub const WORDS: [&str; 3] = ["rigid", "strut", "spring"];
+    pub const WORDS: [&str; 2] = ["rigid", "strut"];
 }
 
 impl Drive {
@@ -42,15 +37,6 @@ impl Drive {
         kind: Kind::Rigid,
         play: 0.0,
     };
-
-    /// Makes a drive by an ideal spring without play.
-    #[must_use]
-    pub const fn spring(rate: f64, preload: f64) -> Self {
-        Self {
-            kind: Kind::Spring(Spring { rate, preload }),
-            play: 0.0,
-        }
-    }
 
     /// True if a leg can lag behind its servo.
     #[must_use]
@@ -63,7 +49,7 @@ impl Drive {
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
             Kind::Strut(strut) => Some(strut),
-            _ => None,
+            Kind::Rigid => None,
         }
     }
 
@@ -73,7 +59,6 @@ impl Drive {
         match self.kind {
             Kind::Rigid => Kind::WORDS[0],
             Kind::Strut(_) => Kind::WORDS[1],
-            Kind::Spring(_) => Kind::WORDS[2],
         }
     }
 
@@ -92,7 +77,6 @@ impl Drive {
         let [lower, upper] = match &self.kind {
             Kind::Rigid => [Side::Stop; 2],
             Kind::Strut(strut) => strut.sides(leg, sweep, force),
-            Kind::Spring(spring) => [spring.side(force); 2],
         };
         Yield {
             play: self.play.to_radians(),

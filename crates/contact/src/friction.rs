@@ -8,8 +8,8 @@
 //! the size of the slides to a hundred-millionth of it. The result is above the true
 //! minimum by at most eps for each pad; the tests prove that with the dual problem. Where
 //! the minimum is not unique (two pads against two), this ends at the point that the
-//! rounding favours, which is the symmetric one; [`crate::Ground::predict`] finds out
-//! where that matters.
+//! rounding favours, which is the symmetric one; [`crate::Ground::predict`] finds the
+//! movements that depend on it.
 
 use crate::linear::solve;
 use crate::yields::Yield;

@@ -54,12 +54,6 @@ impl Strut {
         self.stretch(leg, sweep).lever().abs()
     }
 
-    /// Torque that the leg withstands without a lag, N mm.
-    #[must_use]
-    pub fn preload(&self, leg: usize, sweep: f64) -> f64 {
-        self.force * self.lever(leg, sweep)
-    }
-
     /// Lag at the end of the slot, deg, and the torque there, N mm.
     #[must_use]
     pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
@@ -68,12 +62,6 @@ impl Strut {
         let force = self.force + self.rate * self.slot;
         let torque = force * stretch.lever_after(way);
         (way.to_degrees(), torque)
-    }
-
-    /// True if a leg yields when its foot is held on its way forward; false if on its way back.
-    #[must_use]
-    pub fn yields_forward(&self, leg: usize, sweep: f64) -> bool {
-        self.stretch(leg, sweep).lever() > 0.0
     }
 
     /// The energy of a lag against the sweep's direction and along it, in units of `force` N.

@@ -30,15 +30,11 @@ pub struct Walker {
     place: Place,
 }
 
-/// The movement from one pose to the next.
+/// The slides and loads of the feet from one pose to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slip {
     /// Distance that each foot slid over the floor, mm.
     pub feet: [f64; 4],
-    /// Length of the body's path over the floor, mm.
-    pub way: f64,
-    /// Sum of the body's turns without their sign, deg.
-    pub turned: f64,
     /// Load of each foot at the end, over the mean.
     pub loads: [f64; 4],
 }
@@ -105,14 +101,9 @@ impl Walker {
     pub fn step(&mut self, sweeps: [f64; 4]) -> Slip {
         let mut slip = Slip {
             feet: [0.0; 4],
-            way: 0.0,
-            turned: 0.0,
             loads: [1.0; 4],
         };
         self.parts(sweeps, |pads, displacement| {
-            let [forward, left, turn] = displacement.twist;
-            slip.way += forward.hypot(left);
-            slip.turned += turn.abs().to_degrees();
             slip.loads = pads.load;
             for (sum, [x, y]) in slip.feet.iter_mut().zip(pads.slides(displacement)) {
                 *sum += x.hypot(y);

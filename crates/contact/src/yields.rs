@@ -25,13 +25,6 @@ pub(crate) struct Yield {
 pub(crate) enum Side {
     /// A rigid stop.
     Stop,
-    /// An ideal spring.
-    Spring {
-        /// Torque at the smallest lag.
-        preload: f64,
-        /// Rate of the torque, per rad.
-        rate: f64,
-    },
     /// A spring in a strut, and a stop at the end of its slot.
     Strut {
         /// Geometry of the strut.
@@ -164,11 +157,6 @@ impl Side {
         let sum = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         match *self {
             Self::Stop => kink(stop),
-            Self::Spring { preload, rate } => {
-                let x = beyond.max(0.0);
-                let curvature = if beyond > 0.0 { rate } else { 0.0 };
-                sum(kink(preload), (rate * x * x / 2.0, rate * x, curvature))
-            }
             Self::Strut {
                 stretch,
                 force,
@@ -196,7 +184,6 @@ impl Side {
         match *self {
             _ if beyond <= 0.0 => 0.0,
             Self::Stop => 0.0,
-            Self::Spring { preload, rate } => preload + rate * beyond,
             Self::Strut {
                 stretch,
                 force,
@@ -210,7 +197,6 @@ impl Side {
     fn end(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
-            Self::Spring { .. } => f64::INFINITY,
             Self::Strut { way, .. } => *way,
         }
     }
@@ -243,10 +229,6 @@ impl Yield {
         let torque = torque.abs();
         let beyond = match side {
             Side::Stop if torque <= self.stop => 0.0,
-            Side::Spring { preload, rate } => {
-                let beyond = (torque - preload).max(0.0);
-                beyond * beyond / (2.0 * rate)
-            }
             // By golden section: torque times lag less the energy has one top.
             Side::Strut { .. } if torque <= self.stop => {
                 let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
@@ -271,10 +253,6 @@ mod tests {
     use super::*;
 
     const STOP: f64 = 400.0;
-    const SPRING: Side = Side::Spring {
-        preload: 30.0,
-        rate: 570.0,
-    };
 
     /// A strut with arms of 22 mm across a line of 30.2 mm, turned by `angle` deg.
     fn strut(angle: f64) -> Stretch {
@@ -313,28 +291,31 @@ mod tests {
                 lower,
                 upper,
             };
-            assert_slopes(drive(SPRING, SPRING), lags.clone());
-            assert_slopes(drive(Side::Stop, Side::Stop), lags.clone());
             let side = Side::strut(strut(70.0), 8.0, 0.7, 5.0);
-            assert_slopes(drive(Side::Stop, side), lags.clone());
+            for sides in [[Side::Stop; 2], [Side::Stop, side], [side; 2]] {
+                assert_slopes(drive(sides[0], sides[1]), lags.clone());
+            }
         }
     }
 
     #[test]
     fn a_leg_is_free_within_its_play_and_no_further() {
+        let strut = strut(70.0);
         let drive = Yield {
             play: 0.1,
             stop: STOP,
             lower: Side::Stop,
-            upper: SPRING,
+            upper: Side::strut(strut, 8.0, 0.7, 5.0),
         };
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
         }
-        assert!((drive.expand(0.11, 0.0).1 - 35.7).abs() < 1e-9);
+        let (longer, lever, _) = strut.at(0.01);
+        let torque = (8.0 + 0.7 * longer) * lever;
+        assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
         assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
-        assert_eq!(drive.stops(), [-0.1, f64::INFINITY]);
-        assert!((drive.pulls(0.11) - 35.7).abs() < 1e-9);
+        assert_eq!(drive.stops(), [-0.1, 0.1 + strut.way(5.0)]);
+        assert!((drive.pulls(0.11) - torque).abs() < 1e-9);
         assert_eq!(drive.pulls(-0.2), 0.0, "a stop does not pull");
     }
 
@@ -349,6 +330,7 @@ mod tests {
         assert!((longer - 5.0).abs() < 1e-9, "{longer}");
         assert_eq!(strut.way(50.0), f64::INFINITY);
     }
+
     #[test]
     fn the_energy_of_a_hair_of_lag_is_no_rounding() {
         let strut = strut(70.0);

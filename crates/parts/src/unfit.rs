@@ -38,7 +38,6 @@ const SLEEVE: f64 = 25.0;
 
 const NUT: &str = "the nut of a leg's anchor does not fit into its crank with a screw from the shop; \
                    raise parts.thickness or the servo's horn";
-const IDEAL: &str = "leg.drive.kind is \"spring\", an ideal that no part here is; parts need \"rigid\" or \"strut\"";
 
 impl Assembly {
     /// Checks that the robot can be built: that its measures go together, every screw can
@@ -79,9 +78,6 @@ impl Assembly {
                 "parts.height is {} mm; the feet need {least:.1} mm to keep the servos off the floor",
                 parts.height
             ));
-        }
-        if matches!(drive.kind, lizard_robot::Kind::Spring(_)) {
-            return refuse(IDEAL.to_owned());
         }
         if drive.strut().is_some() && robot.hung() <= parts.spring.length {
             return refuse(format!(

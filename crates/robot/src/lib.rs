@@ -38,17 +38,14 @@ pub use file::{Error, LONGEST, edit, mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Stride, Waveform};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Kind, Place, Prediction, SLOT, Slip,
-    Spring, Stance, Strut, Travel, Walker,
+    Stance, Strut, Travel, Walker,
 };
 pub use measures::servo;
 pub use measures::{
     Coil, Horn, LegPlace, LegPlan, Pace, Parts, Plate, Rail, Screw, Servo, ServoBody, Supplies,
     healthy_rail_mv,
 };
-pub use reports::{
-    LEAVES, LONG, MOUNTS, PLAYS, RATIOS, Report, Row, Sensitive, Sensitivity, Sprung, TWISTS,
-    UNDECIDED,
-};
+pub use reports::{Report, Row, Sensitivity, Sprung, UNDECIDED};
 pub use robot::Robot;
 pub use tables::{CellMaps, CoreRobot, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

@@ -102,7 +102,8 @@ impl Robot {
                 "the firmware would not take this robot: its numbers cannot be worked with";
             Fault::new("", sentence)
         };
-        let unchecked = lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
+        let unchecked =
+            lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
         let check = |(index, gait)| CheckedGait::new(gait, index, &tables, &measures, &unchecked);
         let gaits = gaits.into_iter().enumerate().map(check);
         let gaits = gaits.collect::<Checked<_>>()?;

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn where_all_is_refused_nothing_is_found() {
+    fn if_all_trials_are_refused_nothing_is_found() {
         assert_eq!(searched(&[vec![0.5; 3]], 2, 1, |_| None), []);
         let mut search = Search::new(&[vec![0.5; 3]], 1);
         search.score([Some(1.0)]);
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn it_has_as_many_trials_as_it_says() {
+    fn a_search_has_the_predicted_number_of_trials() {
         let calls = std::cell::Cell::new(0);
         searched(&[vec![0.5; 2]], 3, 1, |_| {
             calls.set(calls.get() + 1);

@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use lizard_robot::{
-    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Spring, Stance, Strut, Travel, Walker,
+    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Stance, Strut, Travel, Walker,
 };
 use lizard_twin::ServoModel;
 
@@ -70,10 +70,6 @@ impl Variation {
                         force: strut.force * within(SPRING),
                         rate: strut.rate * within(SPRING),
                         ..strut
-                    }),
-                    Kind::Spring(spring) => Kind::Spring(Spring {
-                        rate: spring.rate * within(SPRING),
-                        preload: spring.preload * within(SPRING),
                     }),
                 },
                 ..ground.drive
@@ -211,7 +207,7 @@ mod tests {
         let text = include_str!("../../../robots/paper.toml");
         let springs = text.replace(
             "[leg]",
-            "[leg]\ndrive = { kind = \"spring\", stiffness = 5.0 }",
+            "[leg]\ndrive = { kind = \"strut\", force = 0.5, rate = 0.4 }",
         );
         for text in [text, &springs] {
             let robot = Robot::parse(text).expect("right");

@@ -1,6 +1,6 @@
 //! Frames pushed one by one, compared with the prediction for the gait.
 
-use lizard_robot::{CheckedGait, Drive, Ground, Place, Robot};
+use lizard_robot::{CheckedGait, Drive, Ground, Kind, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin};
 
 fn paper() -> Robot {
@@ -37,7 +37,10 @@ fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally
 fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     let robot = paper();
     let springs = Ground {
-        drive: Drive::spring(5.0, 0.0),
+        drive: Drive {
+            kind: Kind::Strut(robot.strut_with(0.5, 0.4)),
+            play: 0.0,
+        },
         ..*robot.ground()
     };
     for ground in [*robot.ground(), springs] {

@@ -3,14 +3,10 @@ import { type Floor, type Kind, lags, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 
-/** Stiffnesses on the slider of an ideal spring, N mm/deg. */
-const STIFFNESS = [0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 7, 10, 15, 20, 30, 50];
-
 const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
 
 /** The number format of each slider; the unit is in its label. */
 const SHOWN = {
-  preload: (value: number) => round(value, 1),
   force: (value: number) => value.toFixed(1),
   play: (value: number) => value.toFixed(1),
   leaf: (value: number) => value.toFixed(1),
@@ -21,19 +17,11 @@ const SHOWN = {
 };
 type Plain = keyof typeof SHOWN;
 const PLAIN = Object.keys(SHOWN) as Plain[];
-/** The sliders of only one kind of drive; `springs` is that of the stiffness. */
-const OF_KIND: [string, Kind][] = [
-  ['springs', 'spring'],
-  ['preload', 'spring'],
-  ['force', 'strut'],
-];
 
 export class World {
   private readonly drive = element<HTMLSelectElement>('drive');
-  private readonly springs = element<HTMLInputElement>('springs');
   private readonly servos = element<HTMLSelectElement>('servos');
   private readonly supply = element<HTMLInputElement>('supply');
-  private stiffness: number[] = STIFFNESS;
 
   /** Calls `onFloor` when the predictions have changed. */
   constructor(
@@ -41,8 +29,6 @@ export class World {
     private readonly onFloor: () => void,
   ) {
     this.drive.addEventListener('change', () => this.use());
-    this.springs.addEventListener('input', () => this.show(this.springs, round(this.rate, 2)));
-    this.springs.addEventListener('change', () => this.use());
     for (const name of PLAIN) {
       const input = this.input(name);
       input.addEventListener('input', () => this.show(input, SHOWN[name](input.valueAsNumber)));
@@ -66,10 +52,6 @@ export class World {
   take(): void {
     const { floor, description } = this.session();
     this.drive.value = floor.kind;
-    this.stiffness = [...new Set([...STIFFNESS, description.floor.stiffness, floor.stiffness])].sort((a, b) => a - b);
-    this.springs.max = String(this.stiffness.length - 1);
-    this.springs.value = String(this.stiffness.indexOf(floor.stiffness));
-    this.show(this.springs, round(this.rate, 2));
     for (const name of PLAIN) {
       const input = this.input(name);
       // The slider widens for a value beyond its range.
@@ -94,15 +76,10 @@ export class World {
     return element<HTMLInputElement>(name);
   }
 
-  /** The stiffness of the slider, N mm/deg. */
-  private get rate(): number {
-    return this.stiffness[this.springs.valueAsNumber];
-  }
-
   /** Disables the sliders that have no effect. */
   private enable(floor: Floor): void {
-    for (const [name, kind] of OF_KIND) element<HTMLInputElement>(name).disabled = floor.kind !== kind;
     const springs = floor.kind !== 'rigid';
+    this.input('force').disabled = !springs;
     // Friction cancels out without springs, and so does mass without a long foot.
     this.input('friction').disabled = !springs;
     this.input('mass').disabled = !springs && floor.twist === 0;
@@ -127,8 +104,6 @@ export class World {
       ratio: number('ratio'),
       mass: number('mass'),
       kind: this.drive.value as Kind,
-      stiffness: this.rate,
-      preload: number('preload'),
       force: number('force'),
       rate: own.rate,
       play: number('play'),

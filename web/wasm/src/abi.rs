@@ -12,7 +12,7 @@ use lizard_robot::Bars;
 use serde::{Deserialize, Serialize};
 use serde_json::Result;
 
-use crate::description::Way;
+use crate::description::Movement;
 use crate::drawn::Drawn;
 #[cfg(feature = "tune")]
 use crate::faster::Wish;
@@ -39,7 +39,7 @@ enum Question {
     Section,
     /// [`Page::restart`].
     Restart,
-    /// [`Place::way_to`].
+    /// [`Place::movement_to`].
     Way(Place, Place),
     /// [`Page::set_floor`].
     SetFloor(Floor),
@@ -89,7 +89,7 @@ impl Question {
                 page.restart();
                 json(())
             }
-            Self::Way(from, to) => json(Way::from(from.way_to(to))),
+            Self::Way(from, to) => json(Movement::from(from.movement_to(to))),
             Self::SetFloor(floor) => {
                 page.set_floor(floor);
                 json(())

@@ -15,7 +15,7 @@ const REFERENCE: f64 = 1.1;
 
 /// The output of a frame.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Said {
+pub struct CoreFrame {
     /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for none.
     pub widths: [u16; 4],
     /// Text that was written to the serial line.
@@ -46,7 +46,7 @@ impl CoreRun {
     }
 
     /// Runs one frame of 20 ms, after these bytes of the serial line, at a supply in V.
-    pub fn frame(&mut self, bytes: &[u8], volts: f64) -> Said {
+    pub fn frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
         let parts = |volts: f64, of: f64| (FULL_SCALE * volts / of).clamp(0.0, FULL_SCALE - 1.0);
         self.running.board.converter.set(Reading {
             reference: parts(REFERENCE, volts).round() as u16,
@@ -58,7 +58,7 @@ impl CoreRun {
             self.running.settle();
         }
         self.running.frame();
-        Said {
+        CoreFrame {
             widths: self.running.board.submitted().0.map(|width| width.0),
             text: std::mem::take(&mut self.running.board.transmitter.text),
         }

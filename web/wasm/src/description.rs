@@ -297,7 +297,7 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
 
 /// The movement of a cycle as the page reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Way {
+pub struct Movement {
     /// Ahead, mm; none if it is undecided.
     forward: Option<f64>,
     /// To the left, mm; none if it is undecided.
@@ -306,7 +306,7 @@ pub struct Way {
     turn: Option<f64>,
 }
 
-impl From<Travel> for Way {
+impl From<Travel> for Movement {
     fn from(way: Travel) -> Self {
         Self {
             forward: Some(way.forward),
@@ -316,7 +316,7 @@ impl From<Travel> for Way {
     }
 }
 
-impl From<Prediction> for Way {
+impl From<Prediction> for Movement {
     fn from(way: Prediction) -> Self {
         let Prediction {
             forward,
@@ -331,7 +331,7 @@ impl From<Prediction> for Way {
     }
 }
 
-impl Way {
+impl Movement {
     /// The movement ahead, mm; none if it is undecided.
     #[must_use]
     pub fn forward(&self) -> Option<f64> {
@@ -344,7 +344,7 @@ impl Way {
 pub struct Outlook {
     /// Movement of the body.
     #[serde(flatten)]
-    pub way: Way,
+    pub way: Movement,
     /// Largest lag of a leg, deg; none if legs are rigid.
     pub lag: Option<f64>,
     /// Its movement over that of rigid legs; none if legs are rigid, or rigid legs go nowhere.
@@ -362,7 +362,7 @@ impl Outlook {
         let way = outlook.way;
         let went = twin.cycle(gait).travel();
         Self {
-            way: Way {
+            way: Movement {
                 forward: way.forward.and(Some(went.forward)),
                 left: way.left.and(Some(went.left)),
                 turn: way.turn.and(Some(went.turn)),

@@ -75,7 +75,7 @@ impl Faster {
     /// # Errors
     /// The limit that the given gait breaks, or the reason why it cannot be made faster.
     pub fn begin(twin: &Twin, wish: &Wish) -> Result<Self, Refused> {
-        let said = |key: &str, refused: String| Refused {
+        let refusal = |key: &str, refused: String| Refused {
             refused,
             line: None,
             key: key.to_string(),
@@ -85,8 +85,8 @@ impl Faster {
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, wish.rate, &wish.bars.name, wish.seed);
         let tuning = tuning.map_err(|no| match no {
-            NoTuning::Goal(_) => said("", no.to_string()),
-            NoTuning::Rate { .. } => said("rate", format!("servos of at most {no}")),
+            NoTuning::Goal(_) => refusal("", no.to_string()),
+            NoTuning::Rate { .. } => refusal("rate", format!("servos of at most {no}")),
         })?;
         Ok(Self {
             searches: Kind::ALL.map(|kind| tuning.search(kind)),
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_made_faster_says_why() {
+    fn a_gait_that_cannot_be_made_faster_is_refused_with_the_reason() {
         assert!(refused(&wish("arc-left")).contains("goes ahead and turns"));
         let rate = Some(900.0);
         assert_eq!(

@@ -1,6 +1,6 @@
 //! The values of the page's sliders: floor, mass, feet, and the drive of the legs.
 
-use lizard_robot::{Body, Drive, Ground, Kind, Robot, Spring, Stance};
+use lizard_robot::{Body, Drive, Ground, Kind, Robot, Stance};
 use serde::{Deserialize, Serialize};
 
 /// The kind of drive of the legs, by its name in robot.toml.
@@ -11,8 +11,6 @@ pub enum Legs {
     Rigid,
     /// A slotted strut with a spring, which yields one way.
     Strut,
-    /// An ideal spring, which yields both ways.
-    Spring,
 }
 
 impl Legs {
@@ -22,7 +20,6 @@ impl Legs {
         match self {
             Self::Rigid => "rigid",
             Self::Strut => "strut",
-            Self::Spring => "spring",
         }
     }
 
@@ -30,7 +27,6 @@ impl Legs {
         match kind {
             Kind::Rigid => Self::Rigid,
             Kind::Strut(_) => Self::Strut,
-            Kind::Spring(_) => Self::Spring,
         }
     }
 }
@@ -46,10 +42,6 @@ pub struct Floor {
     pub mass: f64,
     /// Kind of drive of the legs.
     pub kind: Legs,
-    /// Stiffness of an ideal spring, N mm/deg, above 0.
-    pub stiffness: f64,
-    /// Torque up to which a leg on an ideal spring does not lag, N mm.
-    pub preload: f64,
     /// Pull of the spring in a strut, N, above 0.
     pub force: f64,
     /// Rate of the spring in a strut, N/mm.
@@ -62,21 +54,11 @@ pub struct Floor {
     pub twist: f64,
 }
 
-/// Stiffness of an ideal spring for a robot that has none, N mm/deg.
-const STIFFNESS: f64 = 10.0;
-
 impl Floor {
     /// The values of a robot.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
-        let spring = match ground.drive.kind {
-            Kind::Spring(spring) => spring,
-            _ => Spring {
-                rate: STIFFNESS,
-                preload: 0.0,
-            },
-        };
         let own = robot.strut_of(&robot.parts().spring);
         let strut = ground.drive.strut().unwrap_or(&own);
         Self {
@@ -84,8 +66,6 @@ impl Floor {
             ratio: ground.ratio,
             mass: ground.body.mass,
             kind: Legs::of(&ground.drive.kind),
-            stiffness: spring.rate,
-            preload: spring.preload,
             force: strut.force,
             rate: strut.rate,
             play: ground.drive.play,
@@ -111,8 +91,6 @@ impl Floor {
             ratio: pick(self.ratio, own.ratio),
             mass: pick(self.mass, own.mass),
             kind: self.kind,
-            stiffness: pick(self.stiffness, own.stiffness),
-            preload: least(self.preload, own.preload),
             force: pick(self.force, own.force),
             rate: least(self.rate, own.rate),
             play: least(self.play, own.play),
@@ -143,10 +121,6 @@ impl Floor {
             drive: Drive {
                 kind: match floor.kind {
                     Legs::Strut => Kind::Strut(robot.strut_with(floor.force, floor.rate)),
-                    Legs::Spring => Kind::Spring(Spring {
-                        rate: floor.stiffness,
-                        preload: floor.preload,
-                    }),
                     Legs::Rigid => Kind::Rigid,
                 },
                 play: floor.play,
@@ -174,8 +148,6 @@ mod tests {
                 friction: 0.0,
                 ratio: -1.0,
                 mass: f64::NAN,
-                stiffness: f64::NAN,
-                preload: f64::NAN,
                 force: 0.0,
                 rate: -1.0,
                 play: -0.1,
@@ -191,7 +163,6 @@ mod tests {
     fn the_floor_of_a_robot_is_its_ground() {
         for more in [
             "",
-            "[leg.drive]\nkind = \"spring\"\nstiffness = 5.0\npreload = 12.0",
             "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",
             "[feet]\nstiffness = 2.0\ntwist = -0.6",
         ] {

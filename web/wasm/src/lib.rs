@@ -28,9 +28,9 @@ mod room;
 mod scene;
 mod trial;
 
-pub use core_run::{CoreRun, Said};
+pub use core_run::{CoreFrame, CoreRun};
 pub use description::{
-    Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Outlook, ServoEntry, Way,
+    Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Movement, Outlook, ServoEntry,
 };
 pub use drawn::Drawn;
 #[cfg(feature = "tune")]

@@ -9,12 +9,12 @@ use lizard_robot::{Bars, Place as Walked, Robot};
 use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
 
-use crate::core_run::{CoreRun, Said};
+use crate::core_run::{CoreFrame, CoreRun};
 use crate::description::{Description, Outlook, SERVO_MODELS};
 use crate::drawn::Drawn;
 #[cfg(feature = "tune")]
 use crate::faster::{Begun, Faster, Wish};
-use crate::floor::Floor;
+use crate::floor::{Floor, Legs};
 use crate::map::Map;
 use crate::place::Place;
 use crate::refused::Refused;
@@ -122,24 +122,17 @@ impl Page {
         if wanted.kind != own.kind {
             text = with_word(&text, "leg.drive.kind", kind)?;
         }
-        for (of, key, own, wanted) in [
-            (
-                "spring",
-                "leg.drive.stiffness",
-                own.stiffness,
-                wanted.stiffness,
-            ),
-            ("spring", "leg.drive.preload", own.preload, wanted.preload),
-            ("strut", "leg.drive.force", own.force, wanted.force),
-            ("strut", "leg.drive.rate", own.rate, wanted.rate),
+        for (key, own, wanted) in [
+            ("leg.drive.force", own.force, wanted.force),
+            ("leg.drive.rate", own.rate, wanted.rate),
         ] {
-            text = match of == kind {
-                false => without(&text, key),
-                true if kind != robot.drive().word() || own != wanted => {
-                    with_number(&text, key, wanted)
+            text = match floor.kind {
+                Legs::Rigid => without(&text, key)?,
+                Legs::Strut if kind != robot.drive().word() || own != wanted => {
+                    with_number(&text, key, wanted)?
                 }
-                true => Ok(text),
-            }?;
+                Legs::Strut => text,
+            };
         }
         for (key, own, wanted) in [
             ("leg.drive.play", own.play, wanted.play),
@@ -287,7 +280,7 @@ impl Page {
     }
 
     /// Runs a frame of the core, after bytes from the serial line, at a supply in V.
-    pub fn core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<Said> {
+    pub fn core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
         Some(self.run.as_mut()?.frame(bytes, volts))
     }
 }

@@ -17,7 +17,7 @@ pub struct Place {
 impl Place {
     /// The movement from this place to another, seen from this one.
     #[must_use]
-    pub fn way_to(self, other: Self) -> Travel {
+    pub fn movement_to(self, other: Self) -> Travel {
         Walked::from(other).seen_from(self.into())
     }
 }
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn a_body_that_faces_left_and_goes_ahead_moves_to_the_left() {
         let place = |x, y, heading| Place { x, y, heading };
-        let way = place(0.0, 0.0, 90.0).way_to(place(-10.0, -2.0, 95.0));
+        let way = place(0.0, 0.0, 90.0).movement_to(place(-10.0, -2.0, 95.0));
         let off = (way.forward - 10.0)
             .hypot(way.left - 2.0)
             .hypot(way.turn - 5.0);

@@ -3,7 +3,8 @@
 
 use lizard_core::numbers::units::CYCLE16;
 
-use crate::checks::checked_gait::CheckedGait;
+use crate::gaits::Gait;
+use crate::tables::Tables;
 
 /// The error of a gait's tables over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,8 +22,8 @@ pub struct TableError {
 /// Number of phases that the firmware can be in.
 pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
 
-/// Computes the error over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
-pub(crate) fn worst(gait: &CheckedGait, count: usize) -> TableError {
+/// Computes the error of the tables of a gait, by its index, over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
+pub(crate) fn worst(gait: &Gait, index: usize, tables: &Tables, count: usize) -> TableError {
     let mut error = TableError {
         max: 0.0,
         rms: 0.0,
@@ -33,7 +34,7 @@ pub(crate) fn worst(gait: &CheckedGait, count: usize) -> TableError {
     for i in 0..count {
         let step = (i * (ALL_PHASES / count)) as u16;
         let phase = f64::from(step) / ALL_PHASES as f64;
-        let table = gait.table_angles(step);
+        let table = gait.table_angles(tables.sweeps(index, step));
         let float = gait.angles(phase);
         for servo in 0..4 {
             let off = (table[servo] - float[servo]).abs();
@@ -69,7 +70,7 @@ mod tests {
                         errors[servo] = errors[servo].max((table[servo] - float[servo]).abs());
                     }
                 }
-                let worst = super::worst(gait, COUNT);
+                let worst = gait.error_over(COUNT);
                 let most = errors.into_iter().fold(0.0, f64::max);
                 assert_eq!(worst.max, most, "{name} {}", gait.name());
                 assert_eq!(errors[worst.servo], most);

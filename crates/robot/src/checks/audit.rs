@@ -4,16 +4,16 @@
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
-use lizard_core::numbers::gaits::SAMPLES;
+use lizard_core::numbers::gaits::{Gait as TableGait, SAMPLES};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::checks::accuracy::{self, ALL_PHASES};
-use crate::checks::checked_gait::CheckedGait;
 use crate::gaits::Gait;
 use crate::measures::Measures;
 use crate::measures::servo::NAMES;
+use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
 /// Evenly spaced phases that are checked besides the tables' own samples.
@@ -92,20 +92,23 @@ impl Least {
 /// the worst violation of the first limit broken; else for the pose that the firmware's guard
 /// would stop at; else for a frame that is too fast, or a table that is too coarse.
 pub(crate) fn check(
-    gait: &CheckedGait,
+    gait: &Gait,
+    index: usize,
+    tables: &Tables,
     robot: &Measures,
     firmware: &lizard_core::numbers::robot::Robot<'_>,
 ) -> Result<Audit, String> {
     let mut found = Audit {
-        peak: fastest(gait.gait()),
+        peak: fastest(gait),
         ..Audit::NONE
     };
     let mut worst: Option<(f64, Violation)> = None;
     let mut held: Option<(f64, Check)> = None;
     let at = |phase: f64| format!("at phase {phase:.4}");
-    for phase in phases(gait) {
-        let angles = gait.table_angles(phase);
-        let sweeps = Pose(gait.table_sweeps(phase).map(Sweep));
+    for phase in phases(&tables.gaits[index]) {
+        let sweeps = tables.sweeps(index, phase);
+        let angles = gait.table_angles(sweeps);
+        let sweeps = Pose(sweeps.map(Sweep));
         let phase = f64::from(phase) / PHASES;
         check_travels(robot, angles, phase)?;
         if let Some(hazard) = Clearance::of(firmware, &sweeps).hazard(firmware) {
@@ -144,7 +147,7 @@ pub(crate) fn check(
             NAMES[servo]
         ));
     }
-    let coarse = accuracy::worst(gait, CHECKED);
+    let coarse = accuracy::worst(gait, index, tables, CHECKED);
     if coarse.max > ERROR_LIMIT {
         return Err(format!(
             "its table of {SAMPLES} samples is {:.3} deg off at phase {:.4} (servo {}); at most {ERROR_LIMIT:.2} deg is allowed",
@@ -174,10 +177,10 @@ fn exceeds(violation: Violation, earlier: Violation) -> bool {
 }
 
 /// Lists the phases to check: evenly spaced ones, and every sample of every servo.
-fn phases(gait: &CheckedGait) -> Vec<u16> {
+fn phases(table: &TableGait) -> Vec<u16> {
     let every = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
     let mut phases: Vec<u16> = every(CHECKED).collect();
-    for channel in &gait.table().channels {
+    for channel in &table.channels {
         phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
     }
     phases.sort_unstable();

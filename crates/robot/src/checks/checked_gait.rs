@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use lizard_avr::Flash;
 use lizard_contact::{Ground, Prediction, Travel, Walker};
 use lizard_core::numbers::gaits::Gait as TableGait;
 use lizard_core::numbers::units::phase16;
@@ -14,7 +13,7 @@ use crate::file::{Checked, Fault};
 use crate::gaits::{Bars, Gait, Stride};
 use crate::measures::Measures;
 use crate::tables::Tables;
-use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
+use crate::units::FRAMES_PER_SECOND;
 
 /// A gait of robot.toml, every sample of which has been checked: in floating point, and as the
 /// firmware's tables have it.
@@ -36,21 +35,15 @@ impl CheckedGait {
         measures: &Measures,
         firmware: &lizard_core::numbers::robot::Robot,
     ) -> Checked<Self> {
-        let mut checked = Self {
+        let audit = audit::check(&gait, index, tables, measures, firmware);
+        let audit =
+            audit.map_err(|problem| Fault::clause(format!("gait.{}", gait.name), problem))?;
+        Ok(Self {
             gait,
             index,
             tables: Arc::clone(tables),
-            audit: Audit::NONE,
-        };
-        let found = audit::check(&checked, measures, firmware);
-        checked.audit =
-            found.map_err(|problem| Fault::clause(format!("gait.{}", checked.name()), problem))?;
-        Ok(checked)
-    }
-
-    /// The gait in floating point.
-    pub(crate) fn gait(&self) -> &Gait {
-        &self.gait
+            audit,
+        })
     }
 
     /// The gait as the firmware has it.
@@ -125,17 +118,13 @@ impl CheckedGait {
     /// The servos' sweeps at a phase of 1/65536 cycle as the firmware has them:
     /// 1/65536 turn from neutral, counter-clockwise positive, servo order.
     pub fn table_sweeps(&self, phase: u16) -> [i16; 4] {
-        self.table().channels.map(|channel| {
-            let wave = Flash::from(&self.tables.waves[usize::from(channel.wave)]);
-            channel.sweep(wave, phase).0
-        })
+        self.tables.sweeps(self.index, phase)
     }
 
     /// The servo angles at a phase of 1/65536 cycle as the firmware has them: deg,
     /// chassis frame, servo order.
     pub fn table_angles(&self, phase: u16) -> [f64; 4] {
-        let sweeps = self.table_sweeps(phase);
-        std::array::from_fn(|i| self.gait.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
+        self.gait.table_angles(self.table_sweeps(phase))
     }
 
     /// The frames of one cycle at full speed from phase 0 on: the time of each in s, and its
@@ -158,7 +147,12 @@ impl CheckedGait {
 
     /// The error of the tables over all phases.
     pub fn table_error(&self) -> TableError {
-        accuracy::worst(self, accuracy::ALL_PHASES)
+        self.error_over(accuracy::ALL_PHASES)
+    }
+
+    /// The error of the tables over `count` evenly spaced phases.
+    pub(crate) fn error_over(&self, count: usize) -> TableError {
+        accuracy::worst(&self.gait, self.index, &self.tables, count)
     }
 
     /// Predicts one cycle on this ground, beginning at phase 0, by the contact model. If legs

@@ -8,12 +8,10 @@ use toml::de::{DeTable, DeValue};
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
 /// Keys that a robot.toml may leave out, and that are added when they get a value.
-const OPTIONAL: [&str; 12] = [
+const OPTIONAL: [&str; 10] = [
     HIPS[0],
     HIPS[1],
     "leg.drive.kind",
-    "leg.drive.stiffness",
-    "leg.drive.preload",
     "leg.drive.force",
     "leg.drive.rate",
     "leg.drive.play",
@@ -223,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_left_alone() {
+    fn a_value_that_is_no_number_is_not_changed() {
         for key in ["links.l2", "links.name", "wings.l0", "links", "servo.A1"] {
             assert!(with_number(TEXT, key, 1.0).is_err(), "{key}");
         }

@@ -5,17 +5,17 @@
 //! that. So this module checks the line for such mistakes. If it finds none, the parser's
 //! sentence stays.
 
-/// Makes the sentence for a mistake at byte `at` of a text; `said` is the parser's own.
+/// Makes the sentence for a mistake at byte `at` of a text; `message` is the parser's own.
 #[must_use]
-pub fn mistake(text: &str, at: usize, said: &str) -> String {
+pub fn mistake(text: &str, at: usize, message: &str) -> String {
     let number = text.get(..at).map_or(0, |text| text.matches('\n').count());
     let lines: Vec<&str> = text.lines().map(without_comment).collect();
     let line = lines.get(number).copied().unwrap_or_default();
-    let twice = (said == "duplicate key").then(|| twice(&lines, number));
+    let twice = (message == "duplicate key").then(|| twice(&lines, number));
     twice
         .flatten()
         .or_else(|| in_line(line))
-        .unwrap_or_else(|| format!("this is not TOML: {said}"))
+        .unwrap_or_else(|| format!("this is not TOML: {message}"))
 }
 
 /// Removes the comment of a line, and blanks at its ends.
@@ -138,14 +138,14 @@ mod tests {
     use super::mistake;
 
     /// The sentence for a text whose last line has the mistake.
-    fn said(text: &str) -> String {
+    fn sentence(text: &str) -> String {
         let at = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
         mistake(text, at, "expected newline")
     }
 
     #[test]
     fn a_mistake_is_named_with_its_correction() {
-        for (line, sentence) in [
+        for (line, expected) in [
             ("l1 = ", "`l1` has no value behind the ="),
             ("l1 = # mm", "`l1` has no value behind the ="),
             (
@@ -171,8 +171,8 @@ mod tests {
             ("pin = D9", "`D9` lacks its quotation marks; write \"D9\""),
             ("[links", "`[links` lacks the ] behind the table's name"),
         ] {
-            assert_eq!(said(line), sentence);
-            assert_eq!(said(&format!("[links]\nl0 = 20.0\n{line}\n")), sentence);
+            assert_eq!(sentence(line), expected);
+            assert_eq!(sentence(&format!("[links]\nl0 = 20.0\n{line}\n")), expected);
         }
     }
 
@@ -193,9 +193,13 @@ mod tests {
     }
 
     #[test]
-    fn another_mistake_keeps_the_parsers_sentence() {
+    fn any_other_mistake_keeps_the_parsers_sentence() {
         for line in ["l1 = \"a", "l1 = [1, 2", "l1 = 1 2", "= 3", "l1 = 'it''s'"] {
-            assert_eq!(said(line), "this is not TOML: expected newline", "{line}");
+            assert_eq!(
+                sentence(line),
+                "this is not TOML: expected newline",
+                "{line}"
+            );
         }
         assert_eq!(mistake("", 0, "x"), "this is not TOML: x");
         assert_eq!(mistake("a = 1", 99, "x"), "this is not TOML: x");

@@ -2,6 +2,7 @@
 
 use crate::gaits::waveform::Waveform;
 use crate::measures::servo::{FORWARD, OPPOSITE};
+use crate::units::STEPS_PER_DEGREE;
 
 /// The movement of one leg over a cycle: `amplitude * waveform(phase - start)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +62,12 @@ impl Gait {
     pub fn angles(&self, phase: f64) -> [f64; 4] {
         let sweeps = self.sweeps(phase);
         std::array::from_fn(|i| self.neutral[i] + FORWARD[i] * sweeps[i])
+    }
+
+    /// The servo angles at sweeps from neutral as the firmware has them, in angle steps: deg,
+    /// chassis frame, servo order.
+    pub fn table_angles(&self, sweeps: [i16; 4]) -> [f64; 4] {
+        std::array::from_fn(|i| self.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
     }
 
     /// Exchanges left and right.

@@ -40,7 +40,7 @@ use scale::LONGEST_BAR;
 const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
 
 /// The table that replaces `[leg] spring` and `preload`.
-const SPRING: &str = "[leg.drive] with kind = \"spring\", stiffness and preload, or with kind = \"strut\" and the force and rate of its spring";
+const SPRING: &str = "[leg.drive] with kind = \"strut\" and the force and rate of its spring";
 
 const LINKS: [&str; 20] = [
     "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",

@@ -165,10 +165,6 @@ mod tests {
         with("paper", &[(BEFORE, &format!("{table}\n{BEFORE}"))])
     }
 
-    fn refused(table: &str) -> String {
-        supplied(table).expect_err(table).to_string()
-    }
-
     #[test]
     fn without_a_table_the_board_is_measured_by_a_reference_of_1100_mv() {
         let robot = with("paper", &[]).expect("the paper's");
@@ -203,39 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_supply_that_cannot_be_measured_is_refused_with_its_key() {
-        for (table, sentence) in [
-            (
-                "[supply]\nreference = 1.3\n",
-                "supply.reference is 1.3; it must be within 1 to 1.2 V",
-            ),
-            (
-                "[supply]\nslow = 5.6\n",
-                "supply.slow is 5.6; it must be within 2.7 to 5.5 V",
-            ),
-            ("[supply]\nstop = 4.3\n", "supply.stop"),
-            ("[supply]\nrest = 4.1\n", "supply.rest"),
-            ("[supply]\nlow = 4.1\n", "supply.low is not a known key"),
-            (
-                "[supply.rail]\npin = \"D7\"\nratio = 2.0\n",
-                "supply.rail.pin is \"D7\"; it must be one of A0 to A5",
-            ),
-            (
-                "[supply.rail]\npin = \"A1\"\n",
-                "supply.rail.ratio is missing",
-            ),
-            (
-                "[supply.rail]\npin = \"A1\"\nratio = 0.5\n",
-                "supply.rail.ratio is 0.5",
-            ),
-            (
-                "[supply.rail]\npin = \"A1\"\nratio = 1.0\nslow = 5.2\n",
-                "supply.rail.slow is 5.2; it must be within 1 to 5 V",
-            ),
-        ] {
-            let refused = refused(table);
-            assert!(refused.contains(sentence), "{refused}");
-        }
+    fn a_pin_of_a_servo_measures_no_rail() {
         let taken = with(
             "paper",
             &[

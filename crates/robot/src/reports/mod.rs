@@ -8,5 +8,5 @@ mod sensitivity;
 mod sprung;
 
 pub use report::{Report, Row, UNDECIDED};
-pub use sensitivity::{LEAVES, LONG, MOUNTS, PLAYS, RATIOS, Sensitive, Sensitivity, TWISTS};
+pub use sensitivity::Sensitivity;
 pub use sprung::Sprung;

@@ -4,6 +4,7 @@
 //! The meaning of a table, and the interpolation between its samples, belong to the core:
 //! [`lizard_core::numbers::gaits`].
 
+use lizard_avr::Flash;
 use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
 use lizard_core::numbers::units::CYCLE;
 
@@ -87,6 +88,17 @@ impl Tables {
             waves: waves.collect(),
             gaits: table,
             names,
+        })
+    }
+}
+
+impl Tables {
+    /// The sweeps of a gait, by its index, from neutral at a phase of 1/65536 cycle: in angle
+    /// steps, counter-clockwise positive, servo order.
+    pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
+        self.gaits[gait].channels.map(|channel| {
+            let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
+            channel.sweep(wave, phase).0
         })
     }
 }
@@ -293,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_only_in_amplitude_start_and_gain_shares_a_waveform() {
+    fn gaits_that_differ_only_in_amplitude_start_and_gain_share_a_waveform() {
         // Two waves, two held shapes for four turns, one path for two servos that
         // mirror each other.
         assert_eq!(waves(&robot("paper")), 5);

@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use lizard_robot::{CheckedGait, Error, Robot};
+use lizard_robot::{Body, CheckedGait, Error, Ground, Robot};
 
 mod docs;
 mod drives;
@@ -11,7 +11,6 @@ mod golden;
 mod predictions;
 mod refusals;
 mod robots;
-mod springs;
 mod standing;
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
@@ -28,6 +27,21 @@ fn paper() -> &'static Robot {
 
 fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
+}
+
+/// The mass for which another implementation of the contact model gave its figures.
+const STUDIED: Body = Body {
+    mass: 307.0,
+    ..Body::DEFAULT
+};
+
+/// The movement of a cycle: ahead in mm, or in deg for a gait that turns on the spot.
+fn way(gait: &CheckedGait, ground: &Ground) -> f64 {
+    let travel = gait.walked(ground).travel;
+    match gait.name() {
+        "left" | "right" => travel.turn,
+        _ => travel.forward,
+    }
 }
 
 /// Reads the paper's robot with one part of its file replaced.

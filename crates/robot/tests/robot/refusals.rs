@@ -88,7 +88,7 @@ fn refused(path: &std::path::Path) -> String {
 }
 
 #[test]
-fn what_is_no_text_file_is_refused_without_reading_it_to_its_end() {
+fn a_file_that_is_no_text_is_refused_without_reading_it_to_its_end() {
     // Without a bound this would read until memory is full.
     assert_eq!(
         refused("/dev/zero".as_ref()),
