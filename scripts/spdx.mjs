@@ -1,4 +1,4 @@
-// Prints what a release is made of, as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
+// Prints the list of all parts of a release, as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
 //     node scripts/spdx.mjs VERSION COMMIT
 // Run from the root of what was built. The program, the images and the page are the packages
 // that it describes; crates come from `cargo metadata`, Node's packages from the lock files,
@@ -86,8 +86,8 @@ function crates(folder, top, of, ...filter) {
   relate(of, 'CONTAINS', visit(first.id));
 }
 const machine = run('rustc', '--print', 'host-tuple').trim();
-crates('host', 'lizard-host', program, '--filter-platform', machine);
-crates('host', 'lizard-web', page, '--filter-platform', 'wasm32-unknown-unknown');
+crates('crates', 'lizard-host', program, '--filter-platform', machine);
+crates('crates', 'lizard-web', page, '--filter-platform', 'wasm32-unknown-unknown');
 // Cargo knows the AVR's target by a file; what these crates need does not depend on it.
 crates('.', 'lizard', image);
 
@@ -113,7 +113,7 @@ function nodePackages(folder) {
   }
 }
 nodePackages('web');
-nodePackages('judge');
+nodePackages('tools/judge');
 
 // --- Libraries from Debian -------------------------------------------------
 
