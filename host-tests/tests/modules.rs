@@ -7,13 +7,15 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 13] = [
     "crates/contact",
     "crates/core",
     "crates/host",
     "crates/kinematics",
     "crates/parts",
+    "crates/pulses",
     "crates/robot",
+    "crates/simulated-uno",
     "crates/tune",
     "crates/twin",
     "tools/linker",
