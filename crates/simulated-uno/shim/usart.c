@@ -3,9 +3,6 @@
 
 #include <math.h>
 
-#include "chip.h"
-#include "hook.h"
-
 enum { /* UCSR0A */
 	RXC = 1 << 7, TXC = 1 << 6, UDRE = 1 << 5, FE = 1 << 4, DOR = 1 << 3,
 	U2X = 1 << 1, MPCM = 1 << 0,
@@ -42,29 +39,22 @@ static void show_receiver(struct usart *usart)
 	avr_t *avr = usart->avr;
 	uint8_t *a = &avr->data[REG_UCSR0A];
 	*a &= ~(RXC | FE | DOR);
-	if (usart->count && usart->fifo_frame_error[0])
+	if (usart->count && usart->received[0].frame_error)
 		*a |= FE;
 	if (usart->overrun)
 		*a |= DOR;
-	if (usart->count)
+	if (usart->count) {
 		avr_raise_interrupt(avr, &usart->vectors->rxc); /* sets RXC */
-	if (usart->count)
 		*a |= RXC; /* also when it is pending already */
-}
-
-static void into_fifo(struct usart *usart, uint8_t byte, bool frame_error)
-{
-	usart->fifo[usart->count] = byte;
-	usart->fifo_frame_error[usart->count] = frame_error;
-	usart->count++;
+	}
 }
 
 static void start_bit(void *param)
 {
 	struct usart *usart = param;
-	if (!usart->holding)
+	if (usart->count < RECEIVED)
 		return;
-	usart->holding = false; /* overwritten by what comes in */
+	usart->count--; /* the incoming byte overwrites the shift register */
 	usart->overrun = true;
 	usart->overruns++;
 	show_receiver(usart);
@@ -78,32 +68,21 @@ static void receive(void *param, struct line_byte byte, double sender_cycles_per
 		return;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
 	bool frame_error = byte.stop_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
-	byte.value = usart_sampled(byte.value, ratio);
-	if (usart->count == 2) {
-		usart->held = byte.value;
-		usart->held_frame_error = frame_error;
-		usart->holding = true;
-	} else {
-		into_fifo(usart, byte.value, frame_error);
-	}
+	usart->received[usart->count++] =
+		(struct received){ usart_sampled(byte.value, ratio), frame_error };
 	show_receiver(usart);
 }
 
 static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 {
-	(void)addr;
 	struct usart *usart = param;
-	uint8_t byte = usart->fifo[0];
+	uint8_t byte = usart->received[0].value;
 	if (!usart->count)
 		return byte;
-	usart->fifo[0] = usart->fifo[1];
-	usart->fifo_frame_error[0] = usart->fifo_frame_error[1];
 	usart->count--;
+	for (int i = 0; i < usart->count; i++)
+		usart->received[i] = usart->received[i + 1];
 	usart->overrun = false;
-	if (usart->holding) {
-		usart->holding = false;
-		into_fifo(usart, usart->held, usart->held_frame_error);
-	}
 	usart->vectors->rxc.pending = 0;
 	interrupts_changed(usart->interrupts);
 	show_receiver(usart);
@@ -128,7 +107,6 @@ static avr_cycle_count_t sent(avr_t *avr, avr_cycle_count_t when, void *param)
 
 static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
-	(void)addr;
 	struct usart *usart = param;
 	if (!(avr->data[REG_UCSR0B] & TXEN) || usart->next_full)
 		return; /* ignored by the transmitter */
@@ -146,7 +124,6 @@ static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *para
 
 static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
-	(void)addr;
 	struct usart *usart = param;
 	uint8_t *a = &avr->data[REG_UCSR0A];
 	if (value & TXC) {
@@ -156,34 +133,21 @@ static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *pa
 	*a = (*a & ~(U2X | MPCM)) | (value & (U2X | MPCM));
 }
 
-static uint8_t read_status(avr_t *avr, avr_io_addr_t addr, void *param)
-{
-	(void)param;
-	return avr->data[addr];
-}
-
 static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
 	struct usart *usart = param;
 	avr->data[addr] = value;
 	if (!(value & RXEN)) {
 		usart->count = 0;
-		usart->holding = usart->overrun = false;
+		usart->overrun = false;
 		show_receiver(usart);
 	}
 	interrupts_changed(usart->interrupts); /* enabling an interrupt whose flag is up fires it */
 }
 
-static void write_plain(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
-{
-	(void)param;
-	avr->data[addr] = value;
-}
-
 /* The frame is as long as the sender makes it. */
 static double frame_cycles(void *param, double frame)
 {
-	(void)param;
 	return frame;
 }
 
@@ -218,10 +182,10 @@ void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t
 	usart->transmitted = transmitted;
 	hook_read(avr, REG_UDR0, read_data, usart);
 	hook_write(avr, REG_UDR0, write_data, usart);
-	hook_read(avr, REG_UCSR0A, read_status, usart);
+	hook_read(avr, REG_UCSR0A, NULL, NULL);
 	hook_write(avr, REG_UCSR0A, write_status, usart);
-	hook_read(avr, REG_UCSR0B, NULL, usart);
+	hook_read(avr, REG_UCSR0B, NULL, NULL);
 	hook_write(avr, REG_UCSR0B, write_control, usart);
-	hook_read(avr, REG_UBRR0L, NULL, usart);
-	hook_write(avr, REG_UBRR0L, write_plain, usart);
+	hook_read(avr, REG_UBRR0L, NULL, NULL);
+	hook_write(avr, REG_UBRR0L, NULL, NULL);
 }
