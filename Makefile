@@ -17,11 +17,11 @@ export LIZARD_ROBOT := $(abspath $(ROBOT))
 FOR_ROBOT := --robot $(LIZARD_ROBOT)
 endif
 
-# Cargo knows make's jobs only from a rule that calls make, and warns in others.
+# Cargo can use make's jobserver only in a rule that calls make, and warns in others.
 CARGO := MAKEFLAGS= cargo
 
 # Set-up decides which compiler is used, so it runs before anything else and
-# hands over to a make that has read its answer.
+# calls a make that has read its answer.
 define prepared
 	@scripts/setup
 	@$(MAKE) $(1)
@@ -81,7 +81,7 @@ docs: ## write the generated pages and pictures; build the book of docs/ in out/
 	$(call prepared,.docs)
 install: ## the program, its manual pages and completions, into PREFIX=~/.local
 	$(call prepared,.install)
-docs-check: ## whether the figures in the book that take long to compute are current
+docs-check: ## check that the figures in the book that take long to compute are current
 	$(call prepared,.docs-check)
 release: ## build all files of a release from the current commit, in dist/; takes a while
 	$(call prepared,.release)
@@ -109,7 +109,7 @@ clean: ## remove everything that was built
 	@echo
 	@cat $(dir $(ELF))gaits.txt
 
-# The port is looked at first, so that nobody waits for a build without a board.
+# The port is checked first, so that without a board nobody waits for a build.
 .flash:
 	@scripts/flash --check
 	@$(MAKE) .firmware
@@ -128,7 +128,7 @@ clean: ## remove everything that was built
 	@scripts/setup-web
 	@scripts/build-web
 
-# The firmware, since a test compares the page's robot.toml with what the compiler makes of it.
+# The firmware is needed because a test compares its section for robot.toml with the page's.
 .web-test:
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
@@ -136,13 +136,13 @@ clean: ## remove everything that was built
 	@cd crates && cargo build --workspace --bin lizard --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 web/tests/*.test.js
 
-# The second line puts the program where the documentation says it is.
+# The second line puts the program at the path that the documentation names.
 .cli:
 	@cd crates && cargo build --release
 	@mkdir -p $(dir $(LIZARD))
 	@ln -f $(HOST)/release/lizard $(LIZARD)
 
-# What a simulation needs of the host program, in a profile that compiles fast.
+# The parts of the host program that a simulation needs, in a profile that compiles fast.
 .simulator:
 	@cd crates && $(CARGO) build --profile sim --no-default-features --features simulator
 
@@ -151,33 +151,33 @@ clean: ## remove everything that was built
 	@$(MAKE) -j2 .firmware .simulator
 	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
-# Which packages are tested: TESTS="-p lizard-host-tests" has those that run the image.
+# The tested packages: TESTS="-p lizard-host-tests" has those that run the image.
 TESTS ?= --workspace
 
 # The tests, compiled beside the firmware: each has phases that keep one core busy.
 .tests:
 	@cd crates && $(CARGO) test $(TESTS) --no-run --quiet
 
-# The same random inputs every time; PROPTEST_RNG_SEED=2 make test takes others. One that
-# fails a test is written to a folder proptest-regressions, is tried first from then on,
-# and belongs into the repository.
+# The random inputs are the same in every run; PROPTEST_RNG_SEED=2 make test uses others. An
+# input that fails a test is written to a folder proptest-regressions, is tried first from then on,
+# and should be committed.
 .workspace:
 	@cd crates && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test $(TESTS) --no-fail-fast --quiet
 
-# Beside the tests above, many of which wait; what it says is shown at the end.
+# Runs beside the tests above, many of which wait; its output is shown at the end.
 WALKS := target/walks.log
 .walks:
 	@mkdir -p $(dir $(WALKS))
 	@MAKEFLAGS= scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) walks > $(WALKS) 2>&1
 
-# Where the judge cannot be set up, its tests fail and say so; the others run.
+# If the judge cannot be set up, its tests fail with that reason, and the others run.
 .test:
 	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
 	@$(MAKE) .sweep
 	$(if $(ROBOT),@$(MAKE) .workspace,@$(MAKE) -j2 -k .workspace .walks; result=$$?; cat $(WALKS); exit $$result)
 
-# FreeCAD and PrusaSlicer are large, so they are set up here alone.
+# FreeCAD and PrusaSlicer are large, so only this target installs them.
 .parts-test:
 	@scripts/setup-parts
 	@cd crates && cargo build --workspace --bin lizard --quiet
@@ -195,14 +195,12 @@ WALKS := target/walks.log
 .fit: .cli
 	@$(LIZARD) fit $(FOR_ROBOT)
 
-# Apart from the other tests, because MuJoCo is installed here alone.
+# Apart from the other tests, because only this target installs MuJoCo.
 .physics: .firmware
 	@scripts/setup-physics
-	@cd crates && cargo clippy -p lizard-physics --features engine --all-targets --quiet -- -D warnings
-	@cd crates && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build --workspace --bin lizard --bin lizard-physics --quiet
 	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python tools/physics/judge.py target/physics/walk.xml
-	@cd crates && cargo build --workspace --features lizard-physics/engine --bin lizard-physics --quiet
 	@cd crates && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
 # ONLY=serial.rs narrows it down.
@@ -212,7 +210,7 @@ WALKS := target/walks.log
 .other-robots: .firmware
 	@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10)
 
-# ONLY=4711 plays one scenario of the seed again, and says all that was said.
+# ONLY=4711 repeats one scenario of the seed and prints its dialogue.
 .trouble: .firmware
 	@cd crates && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
 
@@ -241,7 +239,7 @@ WALKS := target/walks.log
 .docs-check:
 	@cd crates && $(CARGO) test --workspace --quiet --test robot -- docs:: --ignored
 
-# Also what is not committed, so that it can be tried before.
+# Uncommitted changes are packaged, too, so that they can be tried before a commit.
 .package:
 	@rm -f crates/target/package/*.crate
 	@cd crates && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core

@@ -1,4 +1,4 @@
-// Prints what a release is made of, as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
+// Prints the list of all parts of a release, as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
 //     node scripts/spdx.mjs VERSION COMMIT
 // Run from the root of what was built. The program, the images and the page are the packages
 // that it describes; crates come from `cargo metadata`, Node's packages from the lock files,

@@ -42,8 +42,3 @@ void call_timer_check(struct call_timer *timer)
 		timer->inside = true;
 	}
 }
-
-void call_timer_free(struct call_timer *timer)
-{
-	list_free(&timer->calls);
-}

@@ -26,4 +26,3 @@ void call_timer_reset(struct call_timer *timer);
 void call_timer_set(struct call_timer *timer, bool on, uint32_t entry);
 /* Checks the next instruction for an entry or a return. */
 void call_timer_check(struct call_timer *timer);
-void call_timer_free(struct call_timer *timer);

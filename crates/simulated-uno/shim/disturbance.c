@@ -16,7 +16,7 @@ static bool is_open(const avr_t *avr)
 	return avr->sreg[S_I] && (avr->interrupt_state >= 0 || avr->state == cpu_Sleeping);
 }
 
-/* The instruction after `sei` or a store to SREG comes before any interrupt. */
+/* The instruction after `sei` or a store to SREG is executed before any interrupt. */
 static bool follows_enable(const avr_t *avr)
 {
 	if (avr->pc < 2 || avr->interrupt_state >= 0)

@@ -210,8 +210,3 @@ void eeprom_keep_power(struct eeprom *eeprom)
 	eeprom->cut = 0;
 	avr_cycle_timer_cancel(eeprom->avr, cut_power, eeprom);
 }
-
-void eeprom_free(struct eeprom *eeprom)
-{
-	list_free(&eeprom->operations);
-}

@@ -56,4 +56,3 @@ void eeprom_reset(struct eeprom *eeprom);
 void eeprom_tear(struct eeprom *eeprom);
 /* Cancels a power cut that has not happened. */
 void eeprom_keep_power(struct eeprom *eeprom);
-void eeprom_free(struct eeprom *eeprom);

@@ -9,7 +9,7 @@ uint64_t handlers_cycles(const struct handlers *handlers)
 	return handlers->finished + (handlers->depth ? running : 0);
 }
 
-/* Adds what has passed to the innermost handler. */
+/* Adds the elapsed cycles to the innermost handler. */
 static void account(struct handlers *handlers, uint64_t cycle)
 {
 	if (handlers->depth) {

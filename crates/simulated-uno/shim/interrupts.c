@@ -16,7 +16,7 @@ static bool is_due(const struct interrupts *interrupts, const avr_int_vector_t *
 	return vector->raised.reg ? avr_regbit_get(avr, vector->raised) : vector->pending;
 }
 
-/* Rebuilds simavr's list of pending interrupts, which `sleep` looks at, from
+/* Rebuilds simavr's list of pending interrupts, which `sleep` checks, from
  * the flags. Returns the one that outranks the others. */
 static avr_int_vector_t *collect_due(const struct interrupts *interrupts)
 {

@@ -14,7 +14,6 @@ struct list {
 /* Address of a new last item, not initialised. Ends the program when memory
  * does. */
 void *list_push(struct list *list);
-void list_free(struct list *list);
 
 /* The bytes of one direction of the serial line, each with the cycle at which it was complete. */
 struct serial_byte { uint64_t cycle; uint8_t byte; };
@@ -26,4 +25,3 @@ struct serial_bytes {
 
 void serial_bytes_init(struct serial_bytes *bytes);
 void serial_bytes_push(struct serial_bytes *bytes, uint64_t cycle, uint8_t byte);
-void serial_bytes_free(struct serial_bytes *bytes);

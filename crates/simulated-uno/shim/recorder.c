@@ -33,6 +33,11 @@ static void on_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
 	*mark = (struct mark){ instruction_effect_cycle(recorder->instruction), value };
 }
 
+static avr_irq_t *pin_irq(avr_t *avr, const struct recorded_port *port, int bit)
+{
+	return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port->name), bit);
+}
+
 void recorder_attach(struct recorder *recorder, const struct instruction *instruction,
                      uint32_t pins)
 {
@@ -48,9 +53,7 @@ void recorder_attach(struct recorder *recorder, const struct instruction *instru
 		*port = board[i];
 		port->recorder = recorder;
 		for (int bit = 0; bit < port->bits; bit++)
-			avr_irq_register_notify(
-				avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port->name), bit),
-				on_pin, port);
+			avr_irq_register_notify(pin_irq(avr, port, bit), on_pin, port);
 	}
 	avr_register_io_write(avr, REG_GPIOR0, on_mark, recorder);
 }
@@ -61,13 +64,6 @@ void recorder_release_pins(struct recorder *recorder)
 	for (int i = 0; i < 3; i++) {
 		const struct recorded_port *port = &recorder->ports[i];
 		for (int bit = 0; bit < port->bits; bit++)
-			avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port->name), bit),
-			              0);
+			avr_raise_irq(pin_irq(avr, port, bit), 0);
 	}
-}
-
-void recorder_free(struct recorder *recorder)
-{
-	list_free(&recorder->edges);
-	list_free(&recorder->marks);
 }

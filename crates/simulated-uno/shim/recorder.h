@@ -31,4 +31,3 @@ void recorder_attach(struct recorder *recorder, const struct instruction *instru
                      uint32_t pins);
 /* Every recorded pin that is high goes low: a reset makes all pins inputs. */
 void recorder_release_pins(struct recorder *recorder);
-void recorder_free(struct recorder *recorder);

@@ -114,9 +114,3 @@ uint16_t reset_first_used(const struct reset *reset, uint16_t from)
 		address++;
 	return address;
 }
-
-void reset_free(struct reset *reset)
-{
-	free(reset->sram);
-	list_free(&reset->events);
-}

@@ -45,4 +45,3 @@ void reset_show(const struct reset *reset);
 void reset_fill_sram(struct reset *reset);
 /* The first SRAM address from `from` on that does not contain its noise any more. */
 uint16_t reset_first_used(const struct reset *reset, uint16_t from);
-void reset_free(struct reset *reset);

@@ -15,7 +15,7 @@ void restart(struct uno *uno, uint8_t cause)
 		reset_fill_sram(&uno->reset);
 	if (cause & RESET_WATCHDOG)
 		uno->resets++;
-	/* First: the watchdog's own reset looks at WDRF. */
+	/* First, since the watchdog's own reset reads WDRF. */
 	reset_note(&uno->reset, cause, uno->avr->cycle);
 	avr_reset(uno->avr);
 	reset_show(&uno->reset);

@@ -32,10 +32,9 @@ static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *para
 	sender->busy = false;
 	serial_bytes_push(&sender->delivered, avr->cycle, sender->byte.value);
 	sender->receiver.byte(sender->receiver.param, sender->byte, sender->cycles_per_bit);
-	/* Always look again when the line is free: a byte queued meanwhile starts
+	/* Always check again when the line is free: a byte queued meanwhile starts
 	 * then. */
-	uint64_t start = ceil(sender->line_free);
-	uint64_t wait = start > avr->cycle ? start - avr->cycle : 1;
+	uint64_t wait = chip_cycles_until(avr, ceil(sender->line_free));
 	avr_cycle_timer_register(avr, wait, begin_byte, sender);
 	return 0;
 }
@@ -54,7 +53,7 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 	sender->line_free = start + receiver->frame_cycles(receiver->param, frame);
 	receiver->start_bit(receiver->param);
 	uint64_t end = ceil(start + SAMPLED_BITS * sender->cycles_per_bit);
-	avr_cycle_timer_register(avr, end > avr->cycle ? end - avr->cycle : 1, end_byte, sender);
+	avr_cycle_timer_register(avr, chip_cycles_until(avr, end), end_byte, sender);
 	return 0;
 }
 
@@ -118,11 +117,4 @@ void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, ui
 size_t sender_unsent(const struct sender *sender)
 {
 	return sender->queue.count - sender->next + sender->busy;
-}
-
-void sender_free(struct sender *sender)
-{
-	list_free(&sender->queue);
-	free(sender->flood);
-	serial_bytes_free(&sender->delivered);
 }

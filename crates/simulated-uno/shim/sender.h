@@ -50,4 +50,3 @@ void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, boo
 void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
 /* The number of queued bytes that have not arrived. */
 size_t sender_unsent(const struct sender *sender);
-void sender_free(struct sender *sender);

@@ -9,7 +9,7 @@ static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
 }
 
 /* Stock simavr takes 11 bits for a frame: sent at the true rate, a long stream
- * would overflow its 64 bytes, which no UNO has. So it gets what it can take. */
+ * would overflow its 64 bytes, which no UNO has. So bytes are sent no faster than it reads. */
 static double frame_cycles(void *param, double frame)
 {
 	const struct stock_uart *stock = param;

@@ -38,9 +38,9 @@ static uint64_t crossing(const struct supply *supply, double level)
 	return cycle > supply->avr->cycle ? cycle : 0;
 }
 
-static avr_cycle_count_t look(avr_t *avr, avr_cycle_count_t when, void *param);
+static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param);
 
-/* Looks again when the line crosses the next level. */
+/* Checks the supply again when the line crosses the next level. */
 static void schedule(struct supply *supply)
 {
 	const double levels[] = {
@@ -53,12 +53,12 @@ static void schedule(struct supply *supply)
 			next = cycle;
 	}
 	avr_t *avr = supply->avr;
-	avr_cycle_timer_cancel(avr, look, supply);
+	avr_cycle_timer_cancel(avr, check_supply, supply);
 	if (next && supply->data_sheet)
-		avr_cycle_timer_register(avr, next - avr->cycle, look, supply);
+		avr_cycle_timer_register(avr, next - avr->cycle, check_supply, supply);
 }
 
-static void judge(struct supply *supply, double mv)
+static void apply(struct supply *supply, double mv)
 {
 	if (mv < LEAST_OPERATING)
 		eeprom_tear(supply->eeprom);
@@ -74,11 +74,18 @@ static void judge(struct supply *supply, double mv)
 	}
 }
 
-static avr_cycle_count_t look(avr_t *avr, avr_cycle_count_t when, void *param)
+/* Resets or releases the chip by the present voltage. */
+static void update(struct supply *supply, uint64_t now)
 {
-	struct supply *supply = param;
-	judge(supply, supply_mv(supply, avr->cycle));
+	if (!supply->data_sheet)
+		return;
+	apply(supply, supply_mv(supply, now));
 	schedule(supply);
+}
+
+static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+	update(param, avr->cycle);
 	return 0;
 }
 
@@ -99,7 +106,7 @@ void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
 		.eeprom = eeprom,
 		.from = NOMINAL,
 		.to = NOMINAL,
-		.brown_out = data_sheet ? BROWN_OUT : 0,
+		.brown_out = BROWN_OUT,
 		.data_sheet = data_sheet,
 	};
 }
@@ -111,20 +118,14 @@ void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles
 	supply->to = mv;
 	supply->start = now;
 	supply->end = now + cycles;
-	avr->vcc = avr->avcc = avr->aref = mv; /* what stock simavr's ADC looks at */
-	if (!supply->data_sheet)
-		return;
-	judge(supply, supply_mv(supply, now));
-	schedule(supply);
+	avr->vcc = avr->avcc = avr->aref = mv; /* read by stock simavr's ADC */
+	update(supply, now);
 }
 
 void supply_set_brown_out(struct supply *supply, double mv, uint64_t now)
 {
-	if (!supply->data_sheet)
-		return;
 	supply->brown_out = mv;
-	judge(supply, supply_mv(supply, now));
-	schedule(supply);
+	update(supply, now);
 }
 
 static void arm_cut(struct supply *supply)

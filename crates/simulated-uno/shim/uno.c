@@ -129,12 +129,15 @@ void uno_free(struct uno *uno)
 {
 	avr_terminate(uno->avr);
 	free(uno->avr);
-	recorder_free(&uno->recorder);
-	call_timer_free(&uno->call_timer);
-	serial_bytes_free(&uno->transmitted);
-	sender_free(&uno->sender);
-	reset_free(&uno->reset);
-	eeprom_free(&uno->eeprom);
+	const struct list *lists[] = {
+		&uno->recorder.edges, &uno->recorder.marks, &uno->call_timer.calls,
+		&uno->transmitted.bytes, &uno->sender.delivered.bytes, &uno->sender.queue,
+		&uno->reset.events, &uno->eeprom.operations,
+	};
+	for (size_t i = 0; i < ARRAY_SIZE(lists); i++)
+		free(lists[i]->items);
+	free(uno->sender.flood);
+	free(uno->reset.sram);
 	free(uno);
 }
 
@@ -249,7 +252,7 @@ static bool step(struct uno *uno, avr_run_t normal, uint64_t until)
 		if (!sleep_cycles(uno, sleep, until))
 			return false;
 		if (uno->data_sheet) {
-			avr_cycle_timer_process(avr); /* fires what woke it, now */
+			avr_cycle_timer_process(avr); /* fires now the timer that woke it */
 			stay_asleep(avr);
 		}
 	}

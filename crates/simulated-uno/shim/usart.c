@@ -39,29 +39,22 @@ static void show_receiver(struct usart *usart)
 	avr_t *avr = usart->avr;
 	uint8_t *a = &avr->data[REG_UCSR0A];
 	*a &= ~(RXC | FE | DOR);
-	if (usart->count && usart->fifo_frame_error[0])
+	if (usart->count && usart->received[0].frame_error)
 		*a |= FE;
 	if (usart->overrun)
 		*a |= DOR;
-	if (usart->count)
+	if (usart->count) {
 		avr_raise_interrupt(avr, &usart->vectors->rxc); /* sets RXC */
-	if (usart->count)
 		*a |= RXC; /* also when it is pending already */
-}
-
-static void into_fifo(struct usart *usart, uint8_t byte, bool frame_error)
-{
-	usart->fifo[usart->count] = byte;
-	usart->fifo_frame_error[usart->count] = frame_error;
-	usart->count++;
+	}
 }
 
 static void start_bit(void *param)
 {
 	struct usart *usart = param;
-	if (!usart->holding)
+	if (usart->count < RECEIVED)
 		return;
-	usart->holding = false; /* overwritten by what comes in */
+	usart->count--; /* the incoming byte overwrites the shift register */
 	usart->overrun = true;
 	usart->overruns++;
 	show_receiver(usart);
@@ -75,31 +68,21 @@ static void receive(void *param, struct line_byte byte, double sender_cycles_per
 		return;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
 	bool frame_error = byte.stop_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
-	byte.value = usart_sampled(byte.value, ratio);
-	if (usart->count == 2) {
-		usart->held = byte.value;
-		usart->held_frame_error = frame_error;
-		usart->holding = true;
-	} else {
-		into_fifo(usart, byte.value, frame_error);
-	}
+	usart->received[usart->count++] =
+		(struct received){ usart_sampled(byte.value, ratio), frame_error };
 	show_receiver(usart);
 }
 
 static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 {
 	struct usart *usart = param;
-	uint8_t byte = usart->fifo[0];
+	uint8_t byte = usart->received[0].value;
 	if (!usart->count)
 		return byte;
-	usart->fifo[0] = usart->fifo[1];
-	usart->fifo_frame_error[0] = usart->fifo_frame_error[1];
 	usart->count--;
+	for (int i = 0; i < usart->count; i++)
+		usart->received[i] = usart->received[i + 1];
 	usart->overrun = false;
-	if (usart->holding) {
-		usart->holding = false;
-		into_fifo(usart, usart->held, usart->held_frame_error);
-	}
 	usart->vectors->rxc.pending = 0;
 	interrupts_changed(usart->interrupts);
 	show_receiver(usart);
@@ -156,7 +139,7 @@ static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *p
 	avr->data[addr] = value;
 	if (!(value & RXEN)) {
 		usart->count = 0;
-		usart->holding = usart->overrun = false;
+		usart->overrun = false;
 		show_receiver(usart);
 	}
 	interrupts_changed(usart->interrupts); /* enabling an interrupt whose flag is up fires it */

@@ -13,19 +13,17 @@
 
 #include "interrupts.h"
 #include "sender.h"
-#include "list.h"
+
+#define RECEIVED 3 /* two in the buffer, one in the shift register */
 
 struct usart {
 	avr_t *avr;
 	avr_uart_t *vectors;        /* simavr's USART0, for its interrupt vectors */
 	struct interrupts *interrupts;
 	struct serial_bytes *transmitted;
-	uint8_t fifo[2];
-	bool fifo_frame_error[2];
-	uint8_t held;               /* complete byte that waits in the shift register */
-	bool held_frame_error;
-	uint8_t count;              /* bytes in fifo, 0..2 */
-	bool holding, overrun;
+	struct received { uint8_t value; bool frame_error; } received[RECEIVED];
+	uint8_t count;              /* bytes in `received` */
+	bool overrun;
 	uint8_t transmitting, next;
 	bool busy, next_full;
 	uint64_t overruns;          /* bytes lost since power-on */

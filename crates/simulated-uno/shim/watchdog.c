@@ -92,7 +92,7 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 
 /* "Executing the corresponding interrupt vector will clear WDIE and WDIF
  * automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2),
- * said of WDE and WDIE set. simavr clears WDIE in interrupt mode, too, unless it
+ * for WDE and WDIE set. simavr clears WDIE in interrupt mode, too, unless it
  * finds WDIF cleared. */
 static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
 {

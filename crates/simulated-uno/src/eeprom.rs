@@ -32,7 +32,7 @@ pub struct EepromOperation {
     pub cycle: u64,
     /// The byte's address, 0 to 1023.
     pub address: u16,
-    /// Its kind.
+    /// The kind of the operation.
     pub mode: EepromMode,
     /// The byte's value before it.
     pub old: u8,

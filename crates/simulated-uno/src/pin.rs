@@ -9,7 +9,7 @@ pub struct Pin(u8);
 const A0: u8 = 14;
 
 impl Pin {
-    /// Pin `Dn`.
+    /// The digital pin `Dn`.
     ///
     /// # Panics
     /// If the UNO has no such pin (`n` > 13).
@@ -19,7 +19,7 @@ impl Pin {
         Self(n)
     }
 
-    /// Pin `An`.
+    /// The analogue pin `An`.
     ///
     /// # Panics
     /// If the UNO has no such pin (`n` > 5).
@@ -64,7 +64,7 @@ impl std::fmt::Display for Pin {
 pub struct Edge {
     /// Cycle since power-on, 62.5 ns each.
     pub cycle: u64,
-    /// The pin.
+    /// The pin that changed.
     pub pin: Pin,
     /// True for a rising edge.
     pub high: bool,

@@ -168,7 +168,7 @@ impl Pty {
     /// The speed last set by a program, in baud.
     ///
     /// # Errors
-    /// The system's.
+    /// The system's, at the pseudo terminal.
     pub(crate) fn baud(&self) -> io::Result<f64> {
         // Linux returns the settings of the other end. Speed 0 makes a modem hang up.
         Ok(match tcgetattr(&self.ours)?.output_speed() {
@@ -180,7 +180,7 @@ impl Pty {
     /// Reads bytes that programs have written; 0 if there are none.
     ///
     /// # Errors
-    /// The system's.
+    /// The system's, at the pseudo terminal.
     pub(crate) fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         match self.ours.read(into) {
             // EIO: no program has it open and nothing is left to read.
@@ -192,7 +192,7 @@ impl Pty {
     /// Writes to the program that has it open; returns the number of bytes accepted.
     ///
     /// # Errors
-    /// The system's.
+    /// The system's, at the pseudo terminal.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         or_nothing(self.ours.write(bytes))
     }

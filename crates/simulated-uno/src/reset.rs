@@ -25,7 +25,7 @@ pub enum ResetCause {
 pub struct Reset {
     /// The cycle at which the program restarted.
     pub cycle: u64,
-    /// Its cause.
+    /// The cause of the reset.
     pub cause: ResetCause,
 }
 

@@ -10,7 +10,7 @@
 pub struct SerialByte {
     /// Cycle since power-on.
     pub cycle: u64,
-    /// The byte.
+    /// The value of the byte.
     pub byte: u8,
 }
 
@@ -21,7 +21,7 @@ pub struct SerialByte {
 pub struct Mark {
     /// Cycle since power-on.
     pub cycle: u64,
-    /// The value stored.
+    /// The value that was stored.
     pub value: u8,
 }
 

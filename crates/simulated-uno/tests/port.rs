@@ -193,7 +193,7 @@ fn the_chip_keeps_time_with_the_wall_clock() {
 }
 
 #[test]
-fn a_reset_lets_go_of_the_pins_and_keeps_time_and_memory() {
+fn a_reset_makes_the_pins_low_and_keeps_time_and_memory() {
     let mut uno = echo();
     uno.run_ms(1);
     assert!(uno.is_high(Pin::d(9)));

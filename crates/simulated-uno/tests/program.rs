@@ -57,6 +57,13 @@ fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     [elf, hex]
 }
 
+/// Runs a source, as Intel HEX.
+fn run_source(source: &str, arguments: &[&str]) -> Output {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [_, hex] = program(folder.path(), source);
+    run(&hex, arguments)
+}
+
 fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("it is UTF-8")
 }
@@ -69,47 +76,51 @@ fn a_hex_file_and_its_elf_give_the_same_pulses() {
     for (file, memory) in [(elf, true), (hex, false)] {
         let output = run(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");
-        let said = text(&output.stdout);
-        let row: Vec<&str> = said
+        let printed = text(&output.stdout);
+        let row: Vec<&str> = printed
             .lines()
             .find(|line| line.starts_with("D9"))
-            .unwrap_or_else(|| panic!("no D9 in {said}"))
+            .unwrap_or_else(|| panic!("no D9 in {printed}"))
             .split_whitespace()
             .collect();
-        assert_eq!(row[..4], ["D9", "25", "1000.0000", "1000.0000"], "{said}");
-        assert_eq!(said.contains("data 0 bytes, stack "), memory, "{said}");
+        assert_eq!(
+            row[..4],
+            ["D9", "25", "1000.0000", "1000.0000"],
+            "{printed}"
+        );
+        assert_eq!(
+            printed.contains("data 0 bytes, stack "),
+            memory,
+            "{printed}"
+        );
         let period: f64 = row[4].parse().expect("a number");
-        assert!((4000.0..4001.0).contains(&period), "{said}");
+        assert!((4000.0..4001.0).contains(&period), "{printed}");
         assert!(
-            said.contains("awake 100.0 %") && said.contains("It runs on."),
-            "{said}"
+            printed.contains("awake 100.0 %") && printed.contains("It runs on."),
+            "{printed}"
         );
     }
 }
 
 #[test]
 fn every_pulse_is_listed_if_asked_for() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [_, hex] = program(folder.path(), PULSES);
-    let output = run(&hex, &["--ms", "10", "--pulses"]);
-    let said = text(&output.stdout);
-    let rows = said.lines().filter(|line| line.starts_with("D9"));
+    let output = run_source(PULSES, &["--ms", "10", "--pulses"]);
+    let printed = text(&output.stdout);
+    let rows = printed.lines().filter(|line| line.starts_with("D9"));
     let widths: Vec<&str> = rows
         .filter_map(|row| row.split_whitespace().nth(2))
         .collect();
-    assert_eq!(widths, ["1000.0000"; 3], "{said}");
+    assert_eq!(widths, ["1000.0000"; 3], "{printed}");
 }
 
 #[test]
 fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [_, hex] = program(folder.path(), ECHO);
     for more in [&["--stock"][..], &[]] {
         let mut arguments = vec!["--ms", "60", "--say", "40:stop", "--say", "20:walk"];
         arguments.extend(more);
-        let output = run(&hex, &arguments);
-        let said = text(&output.stdout);
-        let lines: Vec<(f64, &str)> = said
+        let output = run_source(ECHO, &arguments);
+        let printed = text(&output.stdout);
+        let lines: Vec<(f64, &str)> = printed
             .lines()
             .filter_map(|line| line.split_once(" ms  "))
             .map(|(ms, text)| (ms.trim().parse().expect("a time"), text))
@@ -118,17 +129,20 @@ fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
         assert_eq!(
             texts,
             ["ready", "> walk", "got w", "> stop", "got s"],
-            "{said}"
+            "{printed}"
         );
         for (line, ms) in lines.iter().zip([0.0, 20.0, 20.0, 40.0, 40.0]) {
-            assert!((ms..ms + 2.0).contains(&line.0), "{said}");
+            assert!((ms..ms + 2.0).contains(&line.0), "{printed}");
         }
-        assert!(said.contains("No pin from D2 to A5 has moved."), "{said}");
+        assert!(
+            printed.contains("No pin from D2 to A5 has moved."),
+            "{printed}"
+        );
     }
 }
 
 #[test]
-fn what_is_wrong_is_said_in_a_sentence() {
+fn each_fault_is_reported_in_a_sentence() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("half.hex");
     fs::write(&file, ":02000000FFCF30\n").expect("it is written");
@@ -148,24 +162,17 @@ fn what_is_wrong_is_said_in_a_sentence() {
 }
 
 #[test]
-fn a_crash_is_told_and_ends_with_1() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [_, hex] = program(
-        folder.path(),
-        "int main(void) { *(volatile char *)0x0fff = 1; }",
-    );
-    let output = run(&hex, &[]);
+fn a_crash_is_reported_and_ends_with_1() {
+    let output = run_source("int main(void) { *(volatile char *)0x0fff = 1; }", &[]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let said = text(&output.stdout);
-    assert!(said.contains("It has crashed at 0x"), "{said}");
+    let printed = text(&output.stdout);
+    assert!(printed.contains("It has crashed at 0x"), "{printed}");
 }
 
 #[test]
-fn what_a_program_says_cannot_command_the_terminal() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+fn the_text_of_a_program_cannot_command_the_terminal() {
     let source = ECHO.replace("ready\\r\\n", "\\033[2Jblank\\n");
-    let [_, hex] = program(folder.path(), &source);
-    let said = text(&run(&hex, &["--ms", "5"]).stdout);
-    assert!(said.contains("\\u{1b}[2Jblank"), "{said}");
-    assert!(!said.contains('\u{1b}'), "{said}");
+    let printed = text(&run_source(&source, &["--ms", "5"]).stdout);
+    assert!(printed.contains("\\u{1b}[2Jblank"), "{printed}");
+    assert!(!printed.contains('\u{1b}'), "{printed}");
 }

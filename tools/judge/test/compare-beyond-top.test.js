@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { compareBeyondTop } from '../src/corrections/compare-beyond-top.js';
-import { mended, run } from './program.js';
+import { fixed, run } from './program.js';
 
 // Timer 1 counts up to 99 and begins again; OCR1B is as given. r20 gets the flags.
 const program = (compare) => `
@@ -24,7 +24,7 @@ const OCF1B = 4;
 test('a compare value beyond the top never matches', () => {
   const flags = (corrections, compare) => run(corrections, program(compare), 1000).cpu.data[20];
   for (const beyond of [100, 1000, 0xffff]) {
-    assert.equal(flags([], beyond), OCF1A | OCF1B, mended('compare-beyond-top.js'));
+    assert.equal(flags([], beyond), OCF1A | OCF1B, fixed('compare-beyond-top.js'));
     assert.equal(flags([compareBeyondTop], beyond), OCF1A);
   }
   for (const within of [0, 1, 50, 98, 99]) {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { dataRegisterEmpty } from '../src/corrections/data-register-empty.js';
-import { mended, run } from './program.js';
+import { fixed, run } from './program.js';
 
 // The handler counts its calls in r16 and sends nothing.
 const program = `
@@ -20,6 +20,6 @@ const program = `
 
 test('the transmit interrupt comes again until a byte is written', () => {
   const calls = (corrections) => run(corrections, program, 200).cpu.data[16];
-  assert.equal(calls([]), 1, mended('data-register-empty.js'));
+  assert.equal(calls([]), 1, fixed('data-register-empty.js'));
   assert.ok(calls([dataRegisterEmpty]) > 10);
 });

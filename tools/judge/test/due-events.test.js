@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { dueEvents } from '../src/corrections/due-events.js';
-import { mended, uno } from './program.js';
+import { fixed, uno } from './program.js';
 
 test('two events at one cycle come at one cycle', () => {
   const cycles = (corrections) => {
@@ -12,7 +12,7 @@ test('two events at one cycle come at one cycle', () => {
     board.run(20);
     return seen;
   };
-  assert.deepEqual(cycles([]), [6, 8], mended('due-events.js'));
+  assert.deepEqual(cycles([]), [6, 8], fixed('due-events.js'));
   assert.deepEqual(cycles([dueEvents]), [6, 6]);
 });
 

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { eepromReady } from '../src/corrections/eeprom-ready.js';
-import { mended, run } from './program.js';
+import { fixed, run } from './program.js';
 
 // The handler counts its calls in r20 and begins to write a byte in each.
 const program = `
@@ -24,6 +24,6 @@ const program = `
 test('the EEPROM interrupt waits until a byte is written', () => {
   // 3.4 ms for each.
   const calls = (corrections) => run(corrections, program, 160_000).cpu.data[20];
-  assert.ok(calls([]) > 3, mended('eeprom-ready.js'));
+  assert.ok(calls([]) > 3, fixed('eeprom-ready.js'));
   assert.equal(calls([eepromReady]), 3);
 });

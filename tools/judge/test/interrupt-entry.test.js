@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { interruptEntry } from '../src/corrections/interrupt-entry.js';
-import { mended, run } from './program.js';
+import { fixed, run } from './program.js';
 
 // The timer is read before an interrupt, in r16, and first thing in its handler, in r17.
 const program = `
@@ -29,6 +29,6 @@ function entry(corrections) {
 }
 
 test('an interrupt is entered in four cycles', () => {
-  assert.equal(entry([]), 2, mended('interrupt-entry.js'));
+  assert.equal(entry([]), 2, fixed('interrupt-entry.js'));
   assert.equal(entry([interruptEntry]), 4);
 });

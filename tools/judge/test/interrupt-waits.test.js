@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { interruptWaits } from '../src/corrections/interrupt-waits.js';
-import { mended, run } from './program.js';
+import { fixed, run } from './program.js';
 
 // Both compare interrupts of timer 0 are due when interrupts are switched on; main counts in r16,
 // and each handler keeps what it sees, in r20 and r21.
@@ -39,7 +39,7 @@ const seen = (corrections, switchOn) => run(corrections, program(switchOn), 100)
 
 for (const switchOn of ['sei', 'out 0x3f, r18']) {
   test(`one instruction runs between \`${switchOn}\` and an interrupt, and one between two interrupts`, () => {
-    assert.deepEqual([...seen([], switchOn)], [0, 0], mended('interrupt-waits.js'));
+    assert.deepEqual([...seen([], switchOn)], [0, 0], fixed('interrupt-waits.js'));
     assert.deepEqual([...seen([interruptWaits], switchOn)], [1, 2]);
   });
 }

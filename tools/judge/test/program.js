@@ -19,6 +19,6 @@ export function run(corrections, source, cycles) {
   return board;
 }
 
-/** What a test says when avr8js no longer shows a fault. */
-export const mended = (file) =>
-  `avr8js has mended this fault: tools/judge/src/corrections/${file} and its test can go, and its line in docs/judges.md`;
+/** The message of a test whose fault avr8js no longer has. */
+export const fixed = (file) =>
+  `avr8js has fixed this fault: tools/judge/src/corrections/${file} and its test can go, and its line in docs/judges.md`;

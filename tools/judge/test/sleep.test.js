@@ -4,7 +4,7 @@ import test from 'node:test';
 import { interruptEntry } from '../src/corrections/interrupt-entry.js';
 import { interruptWaits } from '../src/corrections/interrupt-waits.js';
 import { sleep } from '../src/corrections/sleep.js';
-import { mended, run, uno } from './program.js';
+import { fixed, run, uno } from './program.js';
 
 // Timer 1 matches at 200; until then main sleeps or, in the other program, waits in a loop of NOPs.
 // The handler keeps the count that it sees, in r20, and how often main went on before, in r21.
@@ -35,7 +35,7 @@ const program = (wait, mode) => `
 
 test('SLEEP lasts until an interrupt', () => {
   const loops = (corrections) => run(corrections, program('sleep', 1), 400).cpu.data[21];
-  assert.notEqual(loops([]), 0, mended('sleep.js'));
+  assert.notEqual(loops([]), 0, fixed('sleep.js'));
   assert.equal(loops([sleep]), 0);
 });
 

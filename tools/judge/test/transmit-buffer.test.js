@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { transmitBuffer } from '../src/corrections/transmit-buffer.js';
-import { mended, uno } from './program.js';
+import { fixed, uno } from './program.js';
 
 // 1 Mbaud, 16 cycles a bit. Three bytes, each as soon as UDRE0 is up; r16 is the status right after
 // the first.
@@ -33,7 +33,7 @@ function transmit(corrections) {
 }
 
 test('the transmitter takes a byte while it sends another', () => {
-  assert.equal(transmit([]).empty, 0, mended('transmit-buffer.js'));
+  assert.equal(transmit([]).empty, 0, fixed('transmit-buffer.js'));
   assert.equal(transmit([transmitBuffer]).empty, 1);
 });
 

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { waitingByte } from '../src/corrections/waiting-byte.js';
-import { mended, uno } from './program.js';
+import { fixed, uno } from './program.js';
 
 // A byte comes while the receiver is on; then UCSR0B is written, and r16 and r17 get the status before
 // and after.
@@ -30,7 +30,7 @@ function status(corrections, control) {
 }
 
 test('a byte waits on when UCSR0B is written and the receiver stays on', () => {
-  assert.equal(status([], 0x18), 0, mended('waiting-byte.js'));
+  assert.equal(status([], 0x18), 0, fixed('waiting-byte.js'));
   assert.equal(status([waitingByte], 0x18), 1);
 });
 

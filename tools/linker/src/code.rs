@@ -8,7 +8,7 @@ use crate::instruction::{is_long, is_relative};
 pub struct At {
     /// Bytes from the beginning of the code.
     pub offset: u64,
-    /// Its first word.
+    /// The first word of the instruction.
     pub code: u16,
 }
 

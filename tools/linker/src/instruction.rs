@@ -1,13 +1,13 @@
 //! The properties of an AVR instruction that matter here, from the AVR Instruction Set
 //! Manual.
 
-/// `ret`.
+/// The code of `ret`.
 pub const RET: u16 = 0x9508;
-/// `reti`.
+/// The code of `reti`.
 pub const RETI: u16 = 0x9518;
-/// `call`, whose target is in the next word.
+/// The first word of `call`, whose target is in the next word.
 pub const CALL: u16 = 0x940e;
-/// `jmp`, likewise.
+/// The first word of `jmp`, likewise.
 pub const JMP: u16 = 0x940c;
 /// `in r28, SPL` and `in r29, SPH`.
 pub const POINTER_FROM_STACK: [u16; 2] = [0xb7cd, 0xb7de];

@@ -12,7 +12,6 @@
 mod case;
 mod expected;
 mod figures;
-#[cfg(feature = "engine")]
 pub mod mujoco;
 mod row;
 mod table;

@@ -1,4 +1,5 @@
-//! Tests of the contact model against rapier, at other frictions and on legs mounted outward.
+//! Tests of the contact model against rapier, on springs, at other frictions, on legs mounted
+//! outward.
 //!
 //! The displacements are the answers of rapier 0.36 for a chassis and four dragging balls, which
 //! had inertia and did not use the model. The engine is not compiled any more; its answers stay, so
@@ -6,7 +7,7 @@
 //! in the engine.
 
 use lizard_physics::{Displacement, robot};
-use lizard_robot::{Body, Feet, Ground};
+use lizard_robot::{Body, Drive, Feet, Ground};
 
 /// The gaits of which none follows from another by symmetry.
 const KINDS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];

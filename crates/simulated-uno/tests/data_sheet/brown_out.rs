@@ -1,9 +1,15 @@
 //! Tests of a supply that falls and rises, against the data sheet, chapters 11.4 and 11.5.
 
-use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Pin, PowerCut, ResetCause, State};
+use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Pin, PowerCut, ResetCause, State, Uno};
 
 use super::adc::with;
 use super::{causes, marks};
+
+/// Runs for a millisecond with this supply.
+fn supply(uno: &mut Uno, mv: f64) {
+    uno.set_supply_mv(mv);
+    uno.run_ms(1);
+}
 
 #[test]
 fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
@@ -13,11 +19,9 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     // with 2.7 V and 50 mV.
     let body = "int main(void) { DDRB = 2; PORTB = 2; for (;;) GPIOR0 = MCUSR; }";
     let mut uno = with(body);
-    uno.set_supply_mv(2676.0);
-    uno.run_ms(1);
+    supply(&mut uno, 2676.0);
     assert!(!uno.held_in_reset() && uno.is_high(Pin::d(9)));
-    uno.set_supply_mv(2674.0);
-    uno.run_ms(1);
+    supply(&mut uno, 2674.0);
     assert!(uno.held_in_reset() && !uno.is_high(Pin::d(9)));
     uno.set_supply_mv(2724.0);
     uno.take_marks();
@@ -25,8 +29,7 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     assert!(uno.held_in_reset() && uno.marks().is_empty());
     assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes");
     assert_eq!(uno.asleep_cycles(), 0, "but not asleep");
-    uno.set_supply_mv(2726.0);
-    uno.run_ms(1);
+    supply(&mut uno, 2726.0);
     assert!(!uno.held_in_reset());
     assert_eq!(marks(&uno)[0], 0x05);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::BrownOut]);
@@ -58,16 +61,16 @@ fn the_sram_survives_a_brown_out_and_not_a_loss_of_power() {
     for (lowest, kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
         let mut uno = with(body);
         uno.run_ms(1);
-        uno.set_supply_mv(lowest);
-        uno.run_ms(1);
-        uno.set_supply_mv(5000.0);
-        uno.run_ms(1);
+        supply(&mut uno, lowest);
+        supply(&mut uno, 5000.0);
         assert_eq!(marks(&uno)[2..], [kept, flags]);
-        uno.set_supply_mv(2000.0);
-        uno.run_ms(1);
-        uno.set_supply_mv(5000.0);
-        uno.run_ms(1);
-        assert_eq!(marks(&uno)[4..], [1, flags | 0x04], "and each time anew");
+        supply(&mut uno, 2000.0);
+        supply(&mut uno, 5000.0);
+        assert_eq!(
+            marks(&uno)[4..],
+            [1, flags | 0x04],
+            "and again at each start"
+        );
     }
 }
 
@@ -76,8 +79,7 @@ fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
     let mut uno = with("int main(void) { for (;;) GPIOR0 = MCUSR; }");
     uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
-    uno.set_supply_mv(2000.0);
-    uno.run_ms(1);
+    supply(&mut uno, 2000.0);
     uno.ramp_supply_mv(5000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
@@ -87,17 +89,13 @@ fn a_ramp_goes_on_while_it_holds_the_chip_in_reset() {
 fn without_the_fuse_the_chip_runs_down_to_power_on_reset() {
     let mut uno = with("int main(void) { for (;;) GPIOR0 = 1; }");
     uno.set_brown_out_mv(None);
-    uno.set_supply_mv(1310.0);
-    uno.run_ms(1);
+    supply(&mut uno, 1310.0);
     assert!(!uno.held_in_reset());
-    uno.set_supply_mv(1290.0);
-    uno.run_ms(1);
+    supply(&mut uno, 1290.0);
     assert!(uno.held_in_reset());
-    uno.set_supply_mv(1390.0);
-    uno.run_ms(1);
+    supply(&mut uno, 1390.0);
     assert!(uno.held_in_reset());
-    uno.set_supply_mv(1410.0);
-    uno.run_ms(1);
+    supply(&mut uno, 1410.0);
     assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
     uno.set_brown_out_mv(Some(4300.0));
     uno.run_cycles(10);
@@ -114,8 +112,7 @@ fn an_eeprom_write_survives_a_brown_out_but_not_less_than_1_8_v() {
         let mut uno = with(body);
         uno.set_torn_bits(0x40);
         uno.run_ms(3);
-        uno.set_supply_mv(lowest);
-        uno.run_ms(1);
+        supply(&mut uno, lowest);
         uno.set_supply_mv(5000.0);
         uno.run_ms(2);
         assert_eq!(uno.eeprom()[0], expected);

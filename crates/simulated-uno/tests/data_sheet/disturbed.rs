@@ -4,7 +4,7 @@
 use simulated_uno::Uno;
 use simulated_uno::avr_gcc::{assembler, c};
 
-use super::{BOTH, LED, distances, mark_cycles, marks, uno, widths};
+use super::{BOTH, LED, both_after, distances, mark_cycles, marks, uno, widths};
 
 /// The LED is up for 100 cycles of instructions without interrupts, and down for
 /// 99 or so with them.
@@ -54,7 +54,7 @@ fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
 }
 
 #[test]
-fn a_foreign_interrupt_ends_a_sleep_and_comes_before_the_chips_own() {
+fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
     let image = c("#include <avr/io.h>
         #include <avr/interrupt.h>
         ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1 >> 4; }
@@ -63,9 +63,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_comes_before_the_chips_own() {
             sei();
             for (;;) asm volatile (\"sleep\");
         }");
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_until_cycle(9_000);
+    for mut uno in both_after(9_000, &image) {
         uno.hold(3_000);
         uno.run_until_cycle(35_000);
         let marks = marks(&uno);
@@ -77,7 +75,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_comes_before_the_chips_own() {
 }
 
 #[test]
-fn bytes_that_come_while_nothing_is_executed_are_lost_as_on_the_chip() {
+fn bytes_that_arrive_while_nothing_is_executed_are_lost_as_on_the_chip() {
     let image = c("#include <avr/io.h>
         #include <avr/interrupt.h>
         ISR(USART_RX_vect) { GPIOR0 = UDR0; }

@@ -2,9 +2,9 @@
 //! counting cycles.
 
 use simulated_uno::avr_gcc::{assembler, c};
-use simulated_uno::{CYCLES_PER_MS, Image, Pin, State, Uno, most_pins_high};
+use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, most_pins_high};
 
-use super::{BOTH, LED, after, edges, uno, widths};
+use super::{BOTH, LED, after, both_after, edges, uno, widths};
 
 #[test]
 fn a_pulse_of_counted_instructions_has_its_counted_width() {
@@ -18,9 +18,7 @@ fn a_pulse_of_counted_instructions_has_its_counted_width() {
          out PORTB, r17
     end: rjmp end",
     );
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_cycles(100);
+    for uno in both_after(100, &image) {
         let pulses = uno.pulses(LED);
         assert_eq!(pulses.len(), 1);
         // sbi 2, ldi 1, ldi 1, out 1: up after 5 cycles.
@@ -45,9 +43,7 @@ fn unlike_stores_are_stamped_alike() {
          out PORTB, r17
     end: rjmp end",
     );
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_cycles(100);
+    for uno in both_after(100, &image) {
         assert_eq!(widths(&uno), [4, 2]);
     }
 }
@@ -91,9 +87,7 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
     }
     source += "end: rjmp end";
     let image = assembler(&source);
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_cycles(200);
+    for uno in both_after(200, &image) {
         for (pin, start, width) in &expected {
             let pulses = uno.pulses(*pin);
             let found: Vec<_> = pulses
@@ -171,15 +165,13 @@ fn a_starved_watchdog_resets_and_is_counted() {
             PORTB = 0; DDRB = 0x20; PORTB = 0x20;
             for (;;) {}
         }");
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_ms(70);
+    for uno in both_after(70 * CYCLES_PER_MS, &image) {
         assert_eq!(uno.resets(), 4, "every 16 ms");
     }
 }
 
 #[test]
-fn the_paint_shows_how_deep_the_stack_went() {
+fn the_noise_in_the_sram_shows_the_depth_of_the_stack() {
     // Two pushes beyond the return address of one call.
     let image = assembler(
         "ldi r16, 0x08 $ out SPH, r16
@@ -206,6 +198,12 @@ fn sizes_come_from_the_elf() {
     assert_eq!(image.symbol("given").map(|symbol| symbol.size), Some(20));
 }
 
+/// The calls of the function `work` within so many cycles.
+fn calls_of_work(image: Image, cycles: u64) -> Vec<Call> {
+    let entry = image.symbol("work").expect("it is global").address as u32;
+    uno(image).time_calls(entry, cycles)
+}
+
 #[test]
 fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
     // work: 1000 times (dec 1, nop 1, brne 2) less 1 for the last, ldi..., ret 4.
@@ -222,9 +220,7 @@ fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
          loop: nop $ dec r20 $ brne loop
          ret",
     );
-    let entry = image.symbol("work").expect("it is global").address as u32;
-    let mut uno = uno(image);
-    let calls = uno.time_calls(entry, 10_000);
+    let calls = calls_of_work(image, 10_000);
     assert_eq!(calls.len(), 1);
     // ldi 1; 200 * (nop, dec, brne 2) - 1; ret 4
     assert_eq!(calls[0].cycles(), 1 + 200 * 4 - 1 + 4);
@@ -250,7 +246,7 @@ fn a_function_that_calls_itself_is_timed_to_its_own_return() {
 }
 
 #[test]
-fn interrupts_in_a_timed_call_are_told_apart() {
+fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
     let image = c("#include <avr/io.h>
         #include <avr/interrupt.h>
         #include <util/delay.h>
@@ -263,9 +259,7 @@ fn interrupts_in_a_timed_call_are_told_apart() {
             work();
             for (;;) {}
         }");
-    let entry = image.symbol("work").expect("it is global").address as u32;
-    let mut uno = uno(image);
-    let calls = uno.time_calls(entry, 20 * CYCLES_PER_MS);
+    let calls = calls_of_work(image, 20 * CYCLES_PER_MS);
     assert_eq!(calls.len(), 2);
     assert_eq!(calls[0].interrupted, 0);
     // entry 4, jmp 3, nop, nop, reti 4 = 13 each

@@ -16,8 +16,17 @@ mod watchdog;
 
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
-const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
 const LED: Pin = Pin::d(13);
+const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
+
+/// An UNO of each fidelity with this program, after a number of cycles.
+fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
+    BOTH.map(|fidelity| {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        uno.run_cycles(cycles);
+        uno
+    })
+}
 
 /// The message of a test that fails once simavr itself does what a correction does.
 const FIXED: &str = "stock simavr does it by the data sheet now: drop the correction";

@@ -5,7 +5,7 @@ use simulated_uno::{
     CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, ResetCause, SRAM_END, SRAM_START, State, Uno,
 };
 
-use super::{BOTH, after, after_ms, causes, marks, text, uno};
+use super::{after, after_ms, both_after, causes, marks, text, uno};
 
 /// A program whose main runs these statements once.
 fn once(body: &str) -> Image {
@@ -19,13 +19,18 @@ fn show_cause() -> Image {
     once("GPIOR0 = MCUSR;")
 }
 
+/// Pulls the RESET pin, then runs for a millisecond.
+fn reset(uno: &mut Uno) {
+    uno.reset();
+    uno.run_ms(1);
+}
+
 #[test]
 fn mcusr_gathers_the_causes_until_power_on() {
     // "The bit is reset by a Power-on Reset, or by writing a logic zero to the
     // flag" (11.9.1), of EXTRF, BORF and WDRF.
     let mut uno = after_ms(1, show_cause());
-    uno.reset();
-    uno.run_ms(1);
+    reset(&mut uno);
     uno.set_supply_mv(2500.0);
     uno.run_ms(1);
     uno.set_supply_mv(5000.0);
@@ -51,8 +56,7 @@ fn software_clears_flags_of_mcusr_and_cannot_set_them() {
         MCUSR = 0x0f; GPIOR0 = MCUSR;",
     );
     let mut uno = after_ms(1, image);
-    uno.reset();
-    uno.run_ms(1);
+    reset(&mut uno);
     assert_eq!(marks(&uno), [1, 0, 0, 2, 2, 2]);
 }
 
@@ -60,8 +64,7 @@ fn software_clears_flags_of_mcusr_and_cannot_set_them() {
 fn stock_simavr_forgets_every_cause_but_the_last() {
     let mut uno = Uno::with_image(show_cause(), Fidelity::Stock);
     uno.run_ms(1);
-    uno.reset();
-    uno.run_ms(1);
+    reset(&mut uno);
     uno.power_cycle();
     uno.run_ms(1);
     assert_eq!(marks(&uno), [1, 2, 1]);
@@ -79,9 +82,7 @@ fn sram_and_registers_survive_every_reset_but_power_on() {
          ldi r16, 0x77 $ out GPIOR1, r16 $ sts OCR1AL, r16
     end: rjmp end",
     );
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_ms(1);
+    for mut uno in both_after(CYCLES_PER_MS, &image) {
         assert_eq!(uno.peek(0x4a), 0x77);
         uno.reset();
         assert_eq!(uno.peek(0x4a), 0, "GPIOR1 is an I/O register");
@@ -113,7 +114,7 @@ fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
 }
 
 #[test]
-fn each_power_on_leaves_other_noise_and_the_stack_is_measured_anew() {
+fn each_power_on_leaves_other_noise_and_restarts_the_measurement_of_the_stack() {
     let image = assembler(
         "ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
          push r16 $ push r16 $ push r16
@@ -137,9 +138,7 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
     // "the I/O ports of the AVR are immediately reset to their initial state when a
     // reset source goes active" (11.1).
     let image = once("DDRB = 2; PORTB = 2;");
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_ms(1);
+    for mut uno in both_after(CYCLES_PER_MS, &image) {
         assert!(uno.is_high(Pin::d(9)));
         uno.reset();
         assert!(!uno.is_high(Pin::d(9)));
@@ -168,11 +167,8 @@ fn a_timer_stands_still_after_a_reset() {
         }
         OCR1A = 999; TCCR1B = 9;",
     );
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_ms(1);
-        uno.reset();
-        uno.run_ms(1);
+    for mut uno in both_after(CYCLES_PER_MS, &image) {
+        reset(&mut uno);
         assert_eq!(marks(&uno), [0, 0, 0, 0]);
     }
 }
@@ -185,8 +181,7 @@ fn temp_is_cleared_by_a_reset() {
     end: rjmp end",
     );
     let mut uno = after_ms(1, image);
-    uno.reset();
-    uno.run_ms(1);
+    reset(&mut uno);
     assert_eq!(marks(&uno), [0, 0]);
 }
 
@@ -286,8 +281,7 @@ fn after_a_reset_a_board_as_sold_starts_in_its_boot_loader() {
     let loader = assembler_at(0x7e00, "ldi r16, 7\n out GPIOR0, r16\n loop: rjmp loop");
     let mut uno = Uno::with_boot_loader(loader, Fidelity::DataSheet);
     uno.run_ms(1);
-    uno.reset();
-    uno.run_ms(1);
+    reset(&mut uno);
     assert_eq!(marks(&uno), [7, 7]);
     assert_eq!(uno.flash()[0], 0xff);
     assert_eq!(uno.flash()[0x7e00..0x7e02], [0x07, 0xe0]);

@@ -24,7 +24,7 @@ const CAPITALS: &str = r"
     }";
 
 #[test]
-fn an_answer_is_the_line_that_comes_back_without_its_end() {
+fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
     for fidelity in BOTH {
         let mut uno = Uno::with_image(c(CAPITALS), fidelity);
         uno.run_ms(2);

@@ -3,7 +3,7 @@
 use simulated_uno::avr_gcc::c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
-use super::{BOTH, after, after_ms, distances, marks, text, uno};
+use super::{BOTH, after, after_ms, both_after, distances, marks, text, uno};
 
 /// Cycles of a 10-bit frame at 115 200 baud, as the sender counts them.
 const FRAME: f64 = 10.0 * 16_000_000.0 / 115_200.0;
@@ -39,7 +39,7 @@ fn an_echo_returns_what_was_sent() {
 }
 
 #[test]
-fn an_echo_comes_a_frame_after_its_byte() {
+fn an_echo_arrives_a_frame_after_its_byte() {
     let mut uno = Uno::with_image(program("put(get());"), Fidelity::DataSheet);
     uno.run_ms(1);
     let start = uno.cycle();
@@ -124,9 +124,7 @@ fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
             sei();
             for (;;) {}
         }");
-    for fidelity in BOTH {
-        let mut uno = Uno::with_image(image.clone(), fidelity);
-        uno.run_cycles(1000);
+    for mut uno in both_after(1000, &image) {
         let bytes: Vec<u8> = (0..1000).map(|n| (n * 7) as u8).collect();
         uno.send(&bytes);
         uno.run_ms(100);
