@@ -1,4 +1,4 @@
-//! What the pages say of parts is what is so: values, the list to buy, the order of steps.
+//! Tests that the pages about parts agree with the code: values, the list to buy, the steps.
 
 use lizard_parts::{Assembly, Bill, steps};
 use lizard_robot::{Parts, Robot};
