@@ -125,13 +125,10 @@ impl Bench<'_> {
             Kind::ServoScrew => SERVO_SCREW,
             _ => return None,
         };
-        let by_width = |a: &usize, b: &usize| {
-            let width = |i: usize| body.prisms[i].add[0].width();
-            width(*a).total_cmp(&width(*b))
-        };
-        let head = (0..body.prisms.len()).max_by(by_width)?;
-        let above = head + 1 == body.prisms.len();
-        let prism = &body.prisms[head];
+        let width = |i: usize| body.prisms[i].add[0].width();
+        let last = body.prisms.len().checked_sub(1)?;
+        let head = (0..=last).max_by(|a, b| width(*a).total_cmp(&width(*b)))?;
+        let (above, prism) = (head == last, &body.prisms[head]);
         let place = self.assembly.place(body.mount, self.pose);
         Some(Axis {
             at: place.map(prism.add[0].middle()),
