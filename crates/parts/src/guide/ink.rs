@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
+use crate::layers::outline::bounds;
+
 /// Margin around the robot, pixels.
 const MARGIN: f64 = 12.0;
 /// Room for names on each side of a picture, and the height of a name, pixels.
@@ -41,15 +43,11 @@ impl Frame {
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
         /// Margin of a close view, mm.
         const AROUND: f64 = 12.0;
-        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
-        for (x, y) in points {
-            low = (low.0.min(x), low.1.min(y));
-            high = (high.0.max(x), high.1.max(y));
-        }
+        let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
         let more = if near { AROUND } else { 0.0 };
         Self {
-            low: (low.0 - more, low.1 - more),
-            high: (high.0 + more, high.1 + more),
+            low: (low.x - more, low.y - more),
+            high: (high.x + more, high.y + more),
         }
     }
 
@@ -91,11 +89,11 @@ impl Ink {
         let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
         for (colour, loops, edge) in &self.shapes {
             let style = (colour.as_str(), *edge);
-            let class = styles.iter().position(|of| *of == style);
-            let class = class.unwrap_or_else(|| {
+            let known = styles.iter().position(|of| *of == style);
+            let class = known.unwrap_or(styles.len());
+            if known.is_none() {
                 styles.push(style);
-                styles.len() - 1
-            });
+            }
             let mut data = String::new();
             let mut at = (0, 0);
             for line in loops {

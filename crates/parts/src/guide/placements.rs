@@ -108,12 +108,8 @@ fn print(place: &Placement, body: &Body, part: &Part) -> Print {
     let home = lies.home;
     let origin = place.map(home.at);
     let turn = place.turn * home.turn.x + place.turn.left() * home.turn.y;
-    let over = |at: Vector| match part.turned {
-        true => at.mirrored(),
-        false => at,
-    };
     let drill = part.closed_holes().into_iter().map(|at| {
-        let at = over(at);
+        let at = if part.turned { at.mirrored() } else { at };
         pair(origin + turn * at.x + turn.left() * at.y)
     });
     Print {

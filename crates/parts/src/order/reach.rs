@@ -230,11 +230,9 @@ impl Assembly {
         for (number, step) in (1..).zip(steps) {
             let begin = before.len();
             for stage in &step.stages {
-                let known = |body: &&Body| before.iter().any(|old| old.name == body.name);
-                let bodies = self.bodies().iter();
-                let new: Vec<_> = bodies
-                    .filter(|body| (stage.adds)(body) && !known(body))
-                    .collect();
+                let known = |body: &Body| before.iter().any(|old| old.name == body.name);
+                let adds = |body: &&Body| (stage.adds)(body) && !known(body);
+                let new: Vec<_> = self.bodies().iter().filter(adds).collect();
                 before.extend(&new);
                 for screw in self.bodies() {
                     let same = |body: &&&Body| body.mount.servos() == screw.mount.servos();

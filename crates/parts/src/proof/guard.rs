@@ -11,7 +11,7 @@ use lizard_robot::Robot;
 
 use super::interval::Interval;
 use super::slope::Slope;
-use crate::bodies::joints::{Cranks, Joints};
+use crate::bodies::joints::Cranks;
 
 /// Relaxation of the margins' limits, a sine.
 const SINE: f64 = 0.005;
@@ -65,25 +65,7 @@ impl<const N: usize> Region<N> {
     }
 }
 
-/// Cranks at all angles of a region; those of other servos are meaningless.
-pub fn within<'a, const N: usize>(
-    robot: &'a Robot,
-    servos: &[usize; N],
-    region: &Region<N>,
-) -> Cranks<'a, Slope<N>> {
-    let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
-    turned(robot, servos, angles)
-}
-
-/// Cranks in the middle of a region.
-pub fn middle<'a, const N: usize>(
-    robot: &'a Robot,
-    servos: &[usize; N],
-    region: &Region<N>,
-) -> Cranks<'a, f64> {
-    turned(robot, servos, region.middle)
-}
-
+/// Cranks at some angles; those of other servos are meaningless.
 fn turned<'a, const N: usize, T: Real>(
     robot: &'a Robot,
     servos: &[usize; N],
@@ -94,10 +76,8 @@ fn turned<'a, const N: usize, T: Real>(
     for (i, servo) in servos.iter().enumerate() {
         cranks[*servo] = Vector::new(cosines[i], sines[i]);
     }
-    Cranks {
-        lizard: robot.lizard(),
-        cranks,
-    }
+    let lizard = robot.lizard();
+    Cranks { lizard, cranks }
 }
 
 /// The guard of a robot.
@@ -169,19 +149,19 @@ impl<'a> Guard<'a> {
 
     /// True if the conditions that these servos decide alone refuse every pose of a region.
     pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
-        let bounds = within(self.robot, servos, region);
-        let middle = middle(self.robot, servos, region);
-        self.breaks(servos, region, &bounds, &middle)
+        self.cranks(servos, region).is_none()
     }
 
-    /// The same as [`Guard::refuses`], for cranks that are known already.
-    pub fn breaks<const N: usize>(
+    /// The cranks of some servos within a region and in its middle; `None` if the conditions
+    /// that these servos decide alone refuse every pose of it.
+    pub fn cranks<const N: usize>(
         &self,
         servos: &[usize; N],
         region: &Region<N>,
-        bounds: &Cranks<Slope<N>>,
-        middle: &Cranks<f64>,
-    ) -> bool {
+    ) -> Option<(Cranks<'a, Slope<N>>, Cranks<'a, f64>)> {
+        let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
+        let bounds = turned(self.robot, servos, angles);
+        let middle = turned(self.robot, servos, region.middle);
         let broken = |(what, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.near(middle, &region.half).value;
             let [low, high] = [value.low, value.high].map(|value| self.broken(what, value));
@@ -192,8 +172,8 @@ impl<'a> Guard<'a> {
         let (leg, none) = (&self.robot.lizard().leg, Slope::of(0.0));
         let legs = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
-            let bounds = leg.shape(end, none, bounds.crank(servo)).margin;
-            let middle = leg.shape(end, 0.0, middle.crank(servo)).margin;
+            let bounds = leg.shape(end, none, bounds.cranks[servo]).margin;
+            let middle = leg.shape(end, 0.0, middle.cranks[servo]).margin;
             broken((Check::LEG[servo], bounds, middle))
         });
         let end = |end: End| {
@@ -205,7 +185,8 @@ impl<'a> Guard<'a> {
             let what = Check::STROKE[usize::from(side == Side::Right)];
             all(side.servos()) && broken((what, bounds.side(side).s, middle.side(side).s))
         };
-        legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side)
+        let refused = legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side);
+        (!refused).then_some((bounds, middle))
     }
 
     /// The relaxed limit that a value breaks, if any.

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use lizard_kinematics::{Solution, Vector};
 
-use super::guard::{Guard, Region, middle, ordered, within};
+use super::guard::{Guard, Region, ordered};
 use super::slope::Slope;
 use super::solids::Task;
 use crate::bodies::assembly::Assembly;
@@ -158,12 +158,7 @@ impl<const N: usize> Search<'_, N> {
     /// already, or if the guard accepts no pose.
     fn look(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
-        let robot = self.assembly.robot();
-        let bounds = within(robot, &self.servos, &region);
-        let middle = middle(robot, &self.servos, &region);
-        if self.guard.breaks(&self.servos, &region, &bounds, &middle) {
-            return None;
-        }
+        let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
         // The first and the second mount's place: in the middle, and anywhere.
         let [(a, around_a), (b, around_b)] = self.task.mounts.map(|mount| {
             let place = self.assembly.place_on(mount, &middle);

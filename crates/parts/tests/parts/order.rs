@@ -115,12 +115,9 @@ fn parts_that_move_together_are_not_in_one_place() {
     // A standoff's screw whose head is in the boss of the board's screw.
     let near = assembly("paper", "").altered(|bodies| {
         let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
-        for prism in bodies
-            .iter_mut()
-            .filter(screw)
-            .flat_map(|body| &mut body.prisms)
-        {
-            prism.add[0].points[0].y -= 1.0;
+        for body in bodies.iter_mut().filter(screw) {
+            let heads = body.prisms.iter_mut().map(|prism| &mut prism.add[0]);
+            heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
     let refused = near.measures_fit().expect_err("they overlap").to_string();
