@@ -53,7 +53,7 @@ pub struct PartEntry {
     pub name: String,
     /// The name of its files, without folder and ending.
     pub file: String,
-    /// How many are needed.
+    /// The number of pieces needed.
     pub count: usize,
 }
 

@@ -77,18 +77,18 @@ impl Outline {
             pieces = left;
             !opens
         });
-        let pieces = pieces.into_iter().map(|piece| {
+        let loops = |piece: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
                 let inside = piece.boolean(*cut, BooleanOp::Not).result_info;
                 matches!(inside, BooleanResultInfo::Pline2InsidePline1)
             });
-            let mut loops = vec![Loop::of(&piece, true)];
-            loops.extend(holes.map(|hole| Loop::of(hole, false)));
-            loops
-        });
-        Self {
-            pieces: pieces.collect(),
-        }
+            let holes = holes.map(|hole| Loop::of(hole, false));
+            std::iter::once(Loop::of(&piece, true))
+                .chain(holes)
+                .collect()
+        };
+        let pieces = pieces.into_iter().map(loops).collect();
+        Self { pieces }
     }
 
     /// All loops of all pieces.

@@ -72,6 +72,8 @@ impl<const N: usize> Slope<N> {
 /// Implements operators. `each` and `zip` apply the rule for the slopes.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
+        // The rule for the slopes of a product or a quotient has other operations in it.
+        #[allow(clippy::suspicious_arithmetic_impl)]
         impl<const N: usize> $operator<$type> for Slope<N> {
             type Output = Self;
             fn $method($self, $other: $type) -> Self $result

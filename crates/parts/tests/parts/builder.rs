@@ -135,15 +135,15 @@ fn every_shop_has_the_screws() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
-            let mut asked = 0;
-            for body in assembly.bodies() {
-                if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind {
-                    let sold = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
-                    assert!(sold.contains(&length), "{name}: {} {length}", body.name);
-                    asked += 1;
-                }
+            let screws = assembly.bodies().iter().filter_map(|body| match body.kind {
+                Kind::Screw(length) | Kind::HexScrew(length) => Some((&body.name, length)),
+                _ => None,
+            });
+            assert!(screws.clone().count() > 40);
+            for (screw, length) in screws {
+                let sold = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
+                assert!(sold.contains(&length), "{name}: {screw} {length}");
             }
-            assert!(asked > 40, "{asked}");
         }
     }
 }
@@ -153,14 +153,11 @@ fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let boss = assembly.stack().servo + assembly.robot().parts().servo.boss;
-        let mut asked = 0;
-        for body in assembly.bodies() {
-            if matches!(body.kind, Kind::HornScrew(_)) {
-                assert!(body.z()[0] > boss + 0.5, "{}: {}", body.name, body.z()[0]);
-                asked += 1;
-            }
-        }
-        assert_eq!(asked, 8);
+        let bodies = assembly.bodies().iter();
+        let screws = bodies.filter(|body| matches!(body.kind, Kind::HornScrew(_)));
+        let tips = screws.map(|screw| screw.z()[0]);
+        assert_eq!(tips.clone().count(), 8);
+        assert!(tips.fold(f64::MAX, f64::min) > boss + 0.5, "{name}");
     }
 }
 
@@ -196,11 +193,12 @@ fn thinnest(part: &Part) -> f64 {
         for piece in &Outline::of(prism).pieces {
             let lines: Vec<_> = piece.iter().map(along).collect();
             for (i, a) in lines.iter().enumerate() {
-                for b in &lines[i + 1..] {
-                    for point in a {
-                        let near = b.iter().map(|other| (*other - *point).length());
-                        least = near.fold(least, f64::min);
-                    }
+                for (b, point) in lines[i + 1..]
+                    .iter()
+                    .flat_map(|b| a.iter().map(move |p| (b, p)))
+                {
+                    let near = b.iter().map(|other| (*other - *point).length());
+                    least = near.fold(least, f64::min);
                 }
             }
         }

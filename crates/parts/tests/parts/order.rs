@@ -140,12 +140,11 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
         let mut asked = 0;
         for screw in assembly.bodies() {
             let here = step_of(screw);
-            // Those that come from above, on the robot.
-            let [low, high] = &screw.prisms[..] else {
+            // Only screws that come from above, on the robot.
+            let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };
-            let from_above = high.add[0].width() > low.add[0].width();
-            if !matches!(screw.kind, Kind::Screw(_)) || !from_above || here == Some(6) {
+            if high.add[0].width() <= low.add[0].width() || here == Some(6) {
                 continue;
             }
             if blocked.iter().any(|of| of.screw == screw.name) {
@@ -157,13 +156,10 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
                 let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;
                 for up in 1..60 {
                     let z = high.z[1] + 0.5 * f64::from(up);
-                    for (body, layers) in &outlines {
-                        if step_of(body) > here
-                            || body.name.starts_with("board")
-                            || body.name == screw.name
-                        {
-                            continue;
-                        }
+                    let later = |body: &Body| step_of(body) > here;
+                    let own =
+                        |body: &Body| body.name == screw.name || body.name.starts_with("board");
+                    for (body, layers) in outlines.iter().filter(|(of, _)| !later(of) && !own(of)) {
                         let point = assembly.place(body.mount, &pose).unmap(rim);
                         for (prism, outline) in body.prisms.iter().zip(layers) {
                             let there = prism.z[0] < z && z < prism.z[1];
