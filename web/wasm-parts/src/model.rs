@@ -69,7 +69,7 @@ pub struct StepEntry {
 /// The complete model except the triangles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelEntry {
-    /// Every body.
+    /// Every body of the robot.
     pub bodies: Vec<BodyEntry>,
     /// Every printed part that the robot has.
     pub parts: Vec<PartEntry>,
@@ -161,7 +161,7 @@ impl Model {
         }
     }
 
-    /// Its assembly.
+    /// The assembly of the robot.
     #[must_use]
     pub fn assembly(&self) -> &Assembly {
         &self.assembly

@@ -1,4 +1,4 @@
-//! The files of a part: solid, mesh, and what is cut from a sheet.
+//! The files of a part: solid, mesh, and drawings for cutting it from a sheet.
 //!
 //! A printer wants triangles without a gap, a drawing program exact surfaces, a laser closed
 //! lines. All are made of the same layers, so they cannot contradict each other.
@@ -22,7 +22,7 @@ use solid::Solid;
 pub struct File {
     /// Its path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
-    /// Its content.
+    /// The file's content.
     pub bytes: Vec<u8>,
 }
 

@@ -19,9 +19,9 @@ use crate::layers::outline::{Loop, Outline, SAME, Side};
 pub struct Solid {
     /// Points from above, mm.
     pub points: Vec<Vector>,
-    /// Heights, ascending, mm.
+    /// The heights at which layers meet, ascending, mm.
     pub heights: Vec<f64>,
-    /// Lines and arcs.
+    /// The lines and arcs between points.
     pub edges: Vec<Edge>,
     /// Flat faces and walls.
     pub faces: Vec<Face>,

@@ -16,7 +16,7 @@ use super::ink::{Frame, Ink, Label, Trail};
 /// A body in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
-    /// The body.
+    /// The body to draw.
     pub body: &'a Body,
     /// Lift above its place, mm.
     pub lift: f64,

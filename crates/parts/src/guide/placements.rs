@@ -73,7 +73,7 @@ struct Flat {
 /// The table of placements at a pose.
 ///
 /// # Panics
-/// Never: what is written is plain.
+/// Never: texts and numbers can always be written as JSON.
 #[must_use]
 pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();

@@ -45,7 +45,7 @@ pub struct Side {
     pub bulge: f64,
 }
 
-/// A layer's outline.
+/// The outline of a layer, as separate pieces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// The pieces, each as its outer loop and then the loops of its holes.

@@ -11,7 +11,7 @@ use crate::mjcf::node::Node;
 pub(crate) struct Closed {
     /// Its name, such as `end head`.
     pub name: String,
-    /// The two bodies.
+    /// The two bodies that share the point.
     pub bodies: [Node; 2],
     /// The point in the first body's frame, mm.
     pub at: Vector,

@@ -51,7 +51,7 @@ impl Scene {
 pub struct Pull {
     /// Force while the leg does not lag, N.
     pub force: f64,
-    /// Rate, N/mm.
+    /// Rate of the spring, N/mm.
     pub rate: f64,
 }
 

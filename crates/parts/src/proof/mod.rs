@@ -81,13 +81,13 @@ pub struct Proof {
 /// Two parts that do not keep clear of each other.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Clash {
-    /// Two parts overlap.
+    /// Two parts that overlap.
     #[error("{0}")]
     Overlap(Box<Clearance>),
-    /// Two parts come too near to each other.
+    /// Two parts that come too near to each other.
     #[error("{0}, which is less than {LEAST} mm")]
     Narrow(Box<Clearance>),
-    /// At poses that the guard hardly accepts, two parts may overlap.
+    /// Two parts that may overlap at poses that the guard hardly accepts.
     #[error("{0}")]
     Unsure(Box<Near>),
 }
