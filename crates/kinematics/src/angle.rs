@@ -51,11 +51,11 @@ const ATAN: [f64; 11] = [
 /// tan 22.5 degrees.
 const HALF_EIGHTH: f64 = 0.41421356237309503;
 
-/// Added and taken off again, it rounds to a whole number, whose last bits are
-/// then the last bits of the sum: 1.5 * 2^52.
+/// Adding and subtracting it rounds to a whole number; the last bits of the sum
+/// are those of that number. 1.5 * 2^52.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Beyond this the exact reduction by [`ROUND`] ends.
+/// Angle from which the reduction by [`ROUND`] is no longer exact.
 const FAR: f64 = 1e15;
 
 /// A polynomial by Horner's rule.

@@ -43,9 +43,9 @@ pub struct Derivatives {
     pub theta6: Derivative<f64>,
     /// Tail, right coupler; degrees.
     pub theta7: Derivative<f64>,
-    /// Head point; mm.
+    /// The head point, mm.
     pub head: Derivative<Vector>,
-    /// Tail point; mm.
+    /// The tail point, mm.
     pub tail: Derivative<Vector>,
     /// Direction of the left slider; degrees.
     pub phi_left: Derivative<f64>,

@@ -1,4 +1,4 @@
-//! The whole robot: four servo angles in, every joint out (Algorithm 1).
+//! The complete robot: four servo angles in, every joint out (Algorithm 1).
 
 use crate::angle::sin_cos_all;
 use crate::end::End;
@@ -205,7 +205,7 @@ impl Lizard {
         shafts
     }
 
-    /// The whole robot at a pose.
+    /// Solves the complete robot at a pose.
     ///
     /// # Errors
     /// The first loop that does not close, with the reason: see [`FiveBar::forward`] and

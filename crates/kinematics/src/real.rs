@@ -34,7 +34,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn root(self) -> Self {
-        // Not `max`, which would turn what is no number into 0.
+        // Not `max`, which would turn NaN into 0.
         (if self < 0.0 { 0.0 } else { self }).sqrt()
     }
 

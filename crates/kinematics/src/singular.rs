@@ -27,9 +27,9 @@ pub enum Singularity {
 pub struct SingularPose {
     /// The links that line up.
     pub kind: Singularity,
-    /// Left crank.
+    /// Angle of the left crank.
     pub theta_left: f64,
-    /// Right crank.
+    /// Angle of the right crank.
     pub theta_right: f64,
 }
 

@@ -8,9 +8,9 @@ use crate::real::Real;
 /// A point or a displacement in mm, or a direction of length one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector<T = f64> {
-    /// To the right.
+    /// The component to the right.
     pub x: T,
-    /// Forward.
+    /// The component forward.
     pub y: T,
 }
 
@@ -50,13 +50,13 @@ impl<T: Real> Vector<T> {
         self.square().root()
     }
 
-    /// Length squared.
+    /// The square of its length.
     #[inline(always)]
     pub fn square(self) -> T {
         self.dot(self)
     }
 
-    /// Scalar product.
+    /// The scalar product with another vector.
     #[inline(always)]
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.y * other.y
@@ -86,13 +86,13 @@ impl<T: Real> Vector<T> {
         Self::new(self.x, -self.y)
     }
 
-    /// As many times as long.
+    /// The vector multiplied by a factor.
     #[inline(always)]
     pub fn scaled(self, factor: T) -> Self {
         Self::new(self.x * factor, self.y * factor)
     }
 
-    /// A constant vector.
+    /// The vector that equals a constant one.
     #[inline(always)]
     pub(crate) fn of(vector: Vector) -> Self {
         Self::new(T::of(vector.x), T::of(vector.y))

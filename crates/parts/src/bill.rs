@@ -97,10 +97,8 @@ impl Item {
     fn printed(part: &Part) -> Self {
         let grams = PRINTED * part.volume();
         Self {
-            count: part.count(),
-            what: part.name.clone(),
-            grams,
             hours: Some(HOURS_A_PIECE + HOURS_A_GRAM * grams),
+            ..Self::bought(part.count(), part.name.clone(), grams)
         }
     }
 
@@ -153,19 +151,15 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
         Kind::ServoScrew => (String::new(), SERVO_SCREW),
         Kind::HornScrew(length) => {
             let size = format!("1.7 to 2 mm thick, {length} mm long and no longer");
-            (
-                format!("self-tapping screw, {size}, for the horns"),
-                HORN_SCREW,
-            )
+            let what = format!("self-tapping screw, {size}, for the horns");
+            (what, HORN_SCREW)
         }
         Kind::Lead => (String::new(), 0.0),
         Kind::Fitting(fitting) => (fitting.what(), fitting.grams()),
         Kind::Pad => {
-            let size = "8 mm wide and 1.5 mm thick";
-            (
-                format!("rubber pad, self-adhesive, {size}, all four of one kind"),
-                PAD,
-            )
+            let what =
+                "rubber pad, self-adhesive, 8 mm wide and 1.5 mm thick, all four of one kind";
+            (what.to_owned(), PAD)
         }
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
         Kind::Standoff(length) => {
@@ -173,11 +167,8 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
             (what, STANDOFF_MM * length)
         }
         Kind::Spring => {
-            let Coil {
-                wire,
-                outer,
-                length,
-            } = parts.spring;
+            let (wire, outer, length) =
+                (parts.spring.wire, parts.spring.outer, parts.spring.length);
             let coil = format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull = hold.map_or(String::new(), |hold| {
                 format!(", {:.1} N at {:.1} mm", hold.force, hold.installed)

@@ -3,6 +3,8 @@
 
 use serde::{Serialize, Serializer};
 
+type Written<S> = Result<<S as Serializer>::Ok, <S as Serializer>::Error>;
+
 /// Rounds a number, without leaving a minus before 0.
 fn rounded<const UNIT: u32>(value: f64) -> f64 {
     let unit = f64::from(UNIT);
@@ -10,22 +12,16 @@ fn rounded<const UNIT: u32>(value: f64) -> f64 {
 }
 
 /// Writes a number.
-pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Written<S> {
     rounded::<UNIT>(*value).serialize(out)
 }
 
 /// Writes a number that may be missing.
-pub(crate) fn optional<const UNIT: u32, S: Serializer>(
-    value: &Option<f64>,
-    out: S,
-) -> Result<S::Ok, S::Error> {
-    value.map(rounded::<UNIT>).serialize(out)
+pub(crate) fn optional<const UNIT: u32, S: Serializer>(of: &Option<f64>, out: S) -> Written<S> {
+    of.map(rounded::<UNIT>).serialize(out)
 }
 
 /// Writes a list of numbers.
-pub(crate) fn each<const UNIT: u32, S: Serializer>(
-    values: &[f64],
-    out: S,
-) -> Result<S::Ok, S::Error> {
+pub(crate) fn each<const UNIT: u32, S: Serializer>(values: &[f64], out: S) -> Written<S> {
     out.collect_seq(values.iter().map(|value| rounded::<UNIT>(*value)))
 }

@@ -54,22 +54,21 @@ impl Hold {
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let strut = robot.drive().strut()?;
-        const NONE: [f64; 2] = [f64::INFINITY, 0.0];
-        let (mut lever, mut way, mut end) = (NONE, NONE, NONE);
-        let widen = |range: &mut [f64; 2], value: f64| {
-            *range = [range[0].min(value), range[1].max(value)];
-        };
+        // Lever, lag and torque, each from the least to the greatest.
+        let mut ranges = [[f64::INFINITY, 0.0]; 3];
         for gait in robot.gaits() {
             for (_, phase) in gait.frames() {
                 let sweeps = robot.sweeps(gait.table_angles(phase));
                 for (leg, sweep) in sweeps.into_iter().enumerate() {
                     let (lag, torque) = strut.end(leg, sweep);
-                    widen(&mut lever, strut.lever(leg, sweep));
-                    widen(&mut way, lag);
-                    widen(&mut end, torque);
+                    let values = [strut.lever(leg, sweep), lag, torque];
+                    for (range, value) in ranges.iter_mut().zip(values) {
+                        *range = [range[0].min(value), range[1].max(value)];
+                    }
                 }
             }
         }
+        let [lever, way, end] = ranges;
         let ground = robot.ground();
         Some(Self {
             installed: robot.hung(),

@@ -105,10 +105,8 @@ pub struct Lies {
 
 /// The volume of some layers, mm^3.
 pub(crate) fn volume(prisms: &[Prism]) -> f64 {
-    prisms
-        .iter()
-        .map(|prism| Outline::of(prism).area() * (prism.z[1] - prism.z[0]))
-        .sum()
+    let volume = |prism: &Prism| Outline::of(prism).area() * (prism.z[1] - prism.z[0]);
+    prisms.iter().map(volume).sum()
 }
 
 impl Assembly {
@@ -121,10 +119,10 @@ impl Assembly {
             first.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
         };
         let strut = parts.iter().find(is_strut).map(|part| part.name.clone());
-        parts.extend(kinds(self.instead()).into_iter().map(|part| Part {
-            instead_of: strut.clone(),
-            ..part
-        }));
+        for mut part in kinds(self.instead()) {
+            part.instead_of.clone_from(&strut);
+            parts.push(part);
+        }
         let first = |part: &Part| split(&part.bodies[0]).0.to_owned();
         let nouns: Vec<_> = parts.iter().map(first).collect();
         for (part, noun) in parts.iter_mut().zip(&nouns) {
@@ -152,10 +150,8 @@ fn numbers(names: &[String]) -> String {
         numbers.extend(side.into_iter().flat_map(Side::servos));
     }
     numbers.sort_unstable();
-    numbers
-        .iter()
-        .map(|servo| (servo + 1).to_string())
-        .collect()
+    let digits = numbers.iter().map(|servo| (servo + 1).to_string());
+    digits.collect()
 }
 
 /// The printed parts from which some bodies are made.
@@ -172,11 +168,13 @@ fn kinds(bodies: &[Body]) -> Vec<Part> {
         }
     }
     for part in &mut parts {
-        part.name = match part.prisms.last() {
-            Some(top) if part.bodies[0].contains(SPACER) => {
-                format!("{SPACER} {:.1}", top.z[1])
-            }
-            _ => together(&part.bodies),
+        let ring = part
+            .prisms
+            .last()
+            .filter(|_| part.bodies[0].contains(SPACER));
+        part.name = match ring {
+            Some(top) => format!("{SPACER} {:.1}", top.z[1]),
+            None => together(&part.bodies),
         };
     }
     parts
@@ -217,9 +215,8 @@ fn home(body: &Body) -> Placement {
         return Placement::CHASSIS;
     }
     let shapes = || body.prisms.iter().flat_map(|prism| &prism.add);
-    let at = shapes()
-        .next()
-        .map_or(Vector::default(), |shape| shape.points[0]);
+    let first = shapes().next();
+    let at = first.map_or(Vector::default(), |shape| shape.points[0]);
     let bar = shapes().find_map(|shape| match shape.points[..] {
         [from, to, ..] => Some(to - from),
         _ => None,

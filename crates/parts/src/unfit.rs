@@ -152,25 +152,19 @@ impl Assembly {
 /// The distance of two bodies' layers at the heights that they share, or within their
 /// holes, mm; below 0 they overlap.
 fn air(a: &[Prism], b: &[Prism]) -> f64 {
-    let still = Vector::default();
+    let within = |shape: &Shape, holes: &[Shape], beside: f64| {
+        let depths = holes
+            .iter()
+            .map(|hole| shape.within(hole, Vector::default()));
+        depths.fold(beside, f64::max)
+    };
     let mut least = f64::INFINITY;
-    for p in a {
-        for q in b {
-            if p.z[0] > q.z[1] - 1e-6 || q.z[0] > p.z[1] - 1e-6 {
-                continue;
-            }
-            for first in &p.add {
-                for second in &q.add {
-                    let beside = first.distance(second);
-                    let within = |shape: &Shape, holes: &[Shape]| {
-                        let air = holes.iter().map(|hole| shape.within(hole, still));
-                        air.fold(f64::NEG_INFINITY, f64::max)
-                    };
-                    let air = beside
-                        .max(within(first, &q.cut))
-                        .max(within(second, &p.cut));
-                    least = least.min(air);
-                }
+    let layers = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
+    for (p, q) in layers.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
+        for first in &p.add {
+            for second in &q.add {
+                let air = within(first, &q.cut, first.distance(second));
+                least = least.min(within(second, &p.cut, air));
             }
         }
     }

@@ -1,7 +1,8 @@
-//! The door to JavaScript: a plain C interface, as that of the page's first module.
+//! The interface to JavaScript: a plain C interface, as that of the page's first module.
 //!
-//! The page asks for room (`parts_input`), writes a text there, calls, and reads the answer at
-//! `parts_output`, `parts_output_length` bytes: JSON, or where it says so numbers or files.
+//! The page allocates an input (`parts_input`), writes a text there, calls a function, and reads
+//! the answer at `parts_output`, `parts_output_length` bytes: JSON, or for some functions numbers
+//! or files.
 #![allow(unsafe_code)] // `no_mangle` and the import need it; nothing here is unsafe to call.
 
 use std::cell::RefCell;
@@ -14,14 +15,14 @@ use crate::model::{Model, Refused};
 mod page {
     #[link(wasm_import_module = "page")]
     unsafe extern "C" {
-        /// What is proved of what there is to prove.
+        /// Reports the number of questions answered and their total.
         pub safe fn progress(done: u32, all: u32);
     }
 }
 
 #[cfg(not(target_arch = "wasm32"))]
 mod page {
-    /// On a host nobody looks on.
+    /// Does nothing: on a host no page listens.
     pub fn progress(_: u32, _: u32) {}
 }
 
@@ -36,7 +37,7 @@ thread_local! {
     static DOOR: RefCell<Door> = RefCell::default();
 }
 
-/// Either of two answers, without a word for which it is.
+/// An answer or a refusal, written as JSON without a tag.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Either<A, B> {
@@ -52,14 +53,14 @@ fn json<T: Serialize>(result: Result<T, Refused>) -> Vec<u8> {
     serde_json::to_vec(&either).unwrap_or_else(|_| b"null".to_vec())
 }
 
-/// Calls the model and writes down its answer; nothing where there is none.
+/// Stores a model's answer as the output; without a model the output is empty.
 fn answer(call: impl FnOnce(&Model) -> Vec<u8>) {
     DOOR.with_borrow_mut(|door| {
         door.output = door.model.as_ref().map(call).unwrap_or_default();
     });
 }
 
-/// Room for an input of so many bytes.
+/// Allocates an input of so many bytes and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_input(length: usize) -> *mut u8 {
     DOOR.with_borrow_mut(|door| {
@@ -68,19 +69,20 @@ pub extern "C" fn parts_input(length: usize) -> *mut u8 {
     })
 }
 
-/// Where the last answer is.
+/// The address of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_output() -> *const u8 {
     DOOR.with_borrow(|door| door.output.as_ptr())
 }
 
-/// How many bytes it has.
+/// The length of the last answer, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_output_length() -> usize {
     DOOR.with_borrow(|door| door.output.len())
 }
 
-/// [`Model::read`] of the input, and [`Model::entry`]; the model of before is let go.
+/// Reads the input by [`Model::read`] and answers with [`Model::entry`]. It replaces the
+/// previous model.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_read() {
     DOOR.with_borrow_mut(|door| {
@@ -91,7 +93,7 @@ pub extern "C" fn parts_read() {
     });
 }
 
-/// [`Model::solids`]: its bytes, or the JSON of a refusal; whether it went well.
+/// Answers with the bytes of [`Model::solids`] and returns true, or with a refusal as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_solids() -> bool {
     let mut well = false;
@@ -133,8 +135,8 @@ pub extern "C" fn parts_prove() {
     answer(|model| json(model.prove(|done, all| page::progress(done as u32, all as u32))));
 }
 
-/// [`Model::files`]: for each the length of its path, the path, the length of what it holds, and that.
-/// Whether it went well; else the JSON of a refusal.
+/// Answers with [`Model::files`] and returns true, or with a refusal as JSON. For each file:
+/// the length of its path, the path, the length of its content, and the content.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_files(number: usize) -> bool {
     let mut well = false;

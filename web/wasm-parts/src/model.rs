@@ -1,4 +1,4 @@
-//! What is in the picture: bodies, the parts that they are printed as, and the steps of the guide.
+//! The model that the page shows: bodies, printed parts, and the steps of the guide.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
@@ -8,10 +8,10 @@ use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
 use serde::Serialize;
 
-/// Why there are no parts of a robot.
+/// A refusal: the reason why no parts can be made of a robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// The sentence.
+    /// The reason, as a sentence.
     pub refused: String,
 }
 
@@ -23,26 +23,26 @@ impl Refused {
     }
 }
 
-/// A body.
+/// A body of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodyEntry {
-    /// Its name.
+    /// The unique name.
     pub name: String,
-    /// What it is, in a word or two.
+    /// The kind of thing that it is, in a word or two.
     pub kind: &'static str,
-    /// Which mount it moves with, an index.
+    /// The index of the mount that it moves with.
     pub mount: usize,
-    /// The servo that it belongs to, 0 to 3; none for what belongs to the chassis or to a side.
+    /// The servo that it belongs to, 0 to 3; none for chassis and sides.
     pub servo: Option<usize>,
     /// The step of the guide that adds it, from 1; 0 for none.
     pub step: usize,
-    /// How far the guide's exploded picture lifts it, as a share.
+    /// Lift in the guide's exploded picture, as a share.
     pub lift: f64,
-    /// The part that it is printed as, an index; none for what is bought.
+    /// The index of the printed part; none for bought bodies.
     pub part: Option<usize>,
     /// Its place in its mount's frame: the columns of a 4 x 4 matrix.
     pub place: [f64; 16],
-    /// Which of the solids it is, an index.
+    /// The index of its solid.
     pub solid: usize,
 }
 
@@ -53,33 +53,33 @@ pub struct PartEntry {
     pub name: String,
     /// The name of its files, without folder and ending.
     pub file: String,
-    /// How many are needed.
+    /// The number of pieces needed.
     pub count: usize,
 }
 
 /// A step of the guide.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepEntry {
-    /// Its headline.
+    /// The headline.
     pub title: &'static str,
-    /// What to do, as Markdown.
-    pub words: &'static str,
+    /// The instructions, as Markdown.
+    pub words: String,
 }
 
-/// All of it but the triangles.
+/// The complete model except the triangles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelEntry {
-    /// Every body.
+    /// Every body of the robot.
     pub bodies: Vec<BodyEntry>,
     /// Every printed part that the robot has.
     pub parts: Vec<PartEntry>,
     /// The steps of the guide.
     pub steps: Vec<StepEntry>,
-    /// How many mounts there are.
+    /// The number of mounts.
     pub mounts: usize,
-    /// How far the soles of the feet are below the plate's top, mm.
+    /// Distance from the plate's top down to the soles of the feet, mm.
     pub floor: f64,
-    /// How many calls of [`Model::files`] make all files.
+    /// The number of calls of [`Model::files`] that make all files.
     pub files: usize,
 }
 
@@ -92,10 +92,10 @@ pub struct Model {
 }
 
 impl Model {
-    /// Of a robot.toml.
+    /// Reads the model of a robot.toml.
     ///
     /// # Errors
-    /// What is wrong with the robot, or why no parts can be made of it.
+    /// A wrong robot.toml, or a robot of which no parts can be made.
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
@@ -114,7 +114,7 @@ impl Model {
         })
     }
 
-    /// What there is.
+    /// The model for the page, without triangles.
     #[must_use]
     pub fn entry(&self) -> ModelEntry {
         let mut soles: f64 = 0.0;
@@ -133,7 +133,7 @@ impl Model {
                 name: body.name.clone(),
                 kind: body.kind.word(),
                 mount: self.mount(body.mount),
-                servo: servo(body.mount),
+                servo: body.mount.servo(),
                 step: step.map_or(0, |step| step + 1),
                 lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
                 part,
@@ -142,51 +142,44 @@ impl Model {
             }
         });
         let bodies = bodies.collect();
+        let part = |part: &Part| PartEntry {
+            name: part.name.clone(),
+            file: part.file(),
+            count: part.count(),
+        };
+        let step = |step: &Step| StepEntry {
+            title: step.title,
+            words: step.words.clone(),
+        };
         ModelEntry {
             bodies,
-            parts: self
-                .needed()
-                .map(|part| PartEntry {
-                    name: part.name.clone(),
-                    file: part.file(),
-                    count: part.count(),
-                })
-                .collect(),
-            steps: self
-                .steps
-                .iter()
-                .map(|step| StepEntry {
-                    title: step.title,
-                    words: step.words,
-                })
-                .collect(),
+            parts: self.needed().map(part).collect(),
+            steps: self.steps.iter().map(step).collect(),
             mounts: self.mounts.len(),
             floor: -soles,
             files: self.made().count() + 1,
         }
     }
 
-    /// Its assembly.
+    /// The assembly of the robot.
     #[must_use]
     pub fn assembly(&self) -> &Assembly {
         &self.assembly
     }
 
-    /// The parts that the robot has; those that may be put in instead come last in the list.
+    /// The parts that the robot has, without those that may replace others.
     pub(crate) fn needed(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.instead_of.is_none())
     }
 
     fn mount(&self, mount: Mount) -> usize {
-        let mut known = self.mounts.iter();
-        known
-            .position(|known| *known == mount)
-            .expect("a body's own")
+        let known = self.mounts.iter().position(|known| *known == mount);
+        known.expect("a body's own")
     }
 
-    /// Where every mount is while the servos are at these angles (deg, chassis frame) and each
-    /// leg lags so far behind its servo (deg, foot forward positive): x and y in mm, and the
-    /// direction of its x axis. `None` where a loop does not close.
+    /// The place of every mount at angles of the servos (deg, chassis frame) and lags of the
+    /// legs behind them (deg, foot forward positive): x and y in mm, and the direction of the x
+    /// axis. `None` if a loop does not close.
     #[must_use]
     pub fn pose(&self, angles: [f64; 4], lag: [f64; 4]) -> Option<Vec<[f64; 4]>> {
         let pose = self.assembly.robot().lizard().solve(&angles.into()).ok()?;
@@ -252,7 +245,7 @@ impl Model {
     /// Proves that no two parts meet at any pose that the guard accepts.
     ///
     /// # Errors
-    /// The two that do.
+    /// The two parts that meet.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
         let judged = proof.judge().map_err(lizard_parts::Unfit::from);
@@ -263,39 +256,26 @@ impl Model {
     }
 }
 
-/// What was proved.
+/// The result of a successful proof.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proved {
     /// No two parts that are not made to meet come nearer than this, mm.
     pub least: Option<f64>,
 }
 
-fn servo(mount: Mount) -> Option<usize> {
-    match mount {
-        Mount::Link(servo)
-        | Mount::Crank(servo)
-        | Mount::Follower(servo)
-        | Mount::Foot(servo)
-        | Mount::Strut(servo)
-        | Mount::Coupler(servo) => Some(servo),
-        Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => None,
-    }
-}
-
 /// A place in a mount's frame as the columns of a matrix.
 fn matrix(lies: Option<Lies>) -> [f64; 16] {
-    let Some(Lies {
+    let as_it_lies = Lies {
+        flipped: false,
+        lift: 0.0,
+        home: Placement::CHASSIS,
+    };
+    let Lies {
         flipped,
         lift,
-        home: Placement { at, turn },
-    }) = lies
-    else {
-        return matrix(Some(Lies {
-            flipped: false,
-            lift: 0.0,
-            home: Placement::CHASSIS,
-        }));
-    };
+        home,
+    } = lies.unwrap_or(as_it_lies);
+    let Placement { at, turn } = home;
     let over = if flipped { -1.0 } else { 1.0 };
     let across = turn.left() * over;
     [

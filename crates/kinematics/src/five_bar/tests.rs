@@ -126,7 +126,7 @@ fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
         }
     }
     assert!(worst < 1e-9, "worst {worst} mm");
-    // Half a disc of 80 mm has 10 000 of them, less what is too near.
+    // Half a disc of 80 mm has 10 000 such points, less those too near to a shaft.
     assert!(reached > 5_000, "{reached} points");
 }
 

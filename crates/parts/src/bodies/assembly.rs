@@ -4,7 +4,7 @@ use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::joints::Joints;
+use crate::bodies::joints::Cranks;
 use crate::bodies::layout::Layout;
 use crate::bodies::{chassis, ends, legs, links, sliders, struts};
 use crate::layers::body::{Body, Mount, at_end};
@@ -93,15 +93,15 @@ impl Assembly {
     /// The place of a mount's frame at a pose, with legs that do not lag.
     #[must_use]
     pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
-        self.place_on(mount, pose)
+        self.place_on(mount, &Cranks::of(self.robot.lizard(), pose))
     }
 
     /// The place of a mount's frame, for joints in any kind of number.
-    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Placement<T> {
+    pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &Cranks<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
         let turned = |servo: usize, at: Vector| Placement {
             at: vector(at),
-            turn: joints.crank(servo),
+            turn: joints.cranks[servo],
         };
         let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;

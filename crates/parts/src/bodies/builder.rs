@@ -210,15 +210,6 @@ impl<'a> Builder<'a> {
         self.meeting(bolt.meets);
     }
 
-    /// Adds the screw of a joint through layers `z`: head below, nut above.
-    pub fn joint(&mut self, name: &str, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
-        self.bolt(&Bolt {
-            nut: z[1] + PLAY,
-            meets,
-            ..Bolt::new(name, mount, at, z[0], Points::Up)
-        });
-    }
-
     /// Adds the screw of a joint on a servo's link. The link's underside holds its head,
     /// which no key can reach once the link is on its servo.
     pub fn held_joint(&mut self, name: &str, mount: Mount, at: Vector, top: f64, meets: &[&str]) {

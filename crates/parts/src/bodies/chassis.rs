@@ -185,12 +185,13 @@ fn case(builder: &mut Builder, servo: usize) {
         Shape::bar(shaft, shaft + inward(servo) * body.shaft, 3.0),
     ];
     let over = body.flange_height + body.flange_thickness;
-    let prisms = vec![
+    let spline = vec![Shape::disc(shaft, SPLINE)];
+    let prisms = [
         layer(vec![case.clone()], 0.0, body.flange_height),
         layer(vec![flange], body.flange_height, over),
         layer(vec![case], over, body.height),
         layer(gears, body.height, body.boss),
-        layer(vec![Shape::disc(shaft, SPLINE)], body.boss, body.boss + 3.0),
+        layer(spline, body.boss, body.boss + 3.0),
     ];
     builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.meeting(&[format!("horn {name}")]);

@@ -2,7 +2,7 @@
 
 use lizard_kinematics::{End, Vector};
 
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::{Bolt, Builder, Points};
 use crate::bodies::looks;
 use crate::bodies::names::{coupler, names};
 use crate::layers::body::{Mount, Prism, coupler_length};
@@ -32,8 +32,12 @@ pub fn add(builder: &mut Builder) {
         let mut meets: Vec<&str> = looks.on_right.iter().map(String::as_str).collect();
         let right = coupler(right);
         meets.push(&right);
-        let z = [lower[0] - looks.below, upper[1] + looks.above];
-        builder.joint(end.name(), Mount::Coupler(left), apex, z, &meets);
+        let (head, mount) = (lower[0] - looks.below, Mount::Coupler(left));
+        builder.bolt(&Bolt {
+            nut: upper[1] + looks.above + PLAY,
+            meets: &meets,
+            ..Bolt::new(end.name(), mount, apex, head, Points::Up)
+        });
     }
 }
 

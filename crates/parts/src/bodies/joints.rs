@@ -2,30 +2,6 @@
 
 use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
 
-/// The joints of the mechanism, computed on demand.
-pub trait Joints<T> {
-    /// Direction of a servo's crank, length one, chassis frame.
-    fn crank(&self, servo: usize) -> Vector<T>;
-    /// The five-bar of an end, in the end's own frame.
-    fn end(&self, end: End) -> FiveBarPose<T>;
-    /// The slider of a side.
-    fn side(&self, side: Side) -> SliderPose<T>;
-}
-
-impl Joints<f64> for Solution {
-    fn crank(&self, servo: usize) -> Vector {
-        self.legs[servo].direction
-    }
-
-    fn end(&self, end: End) -> FiveBarPose {
-        *Self::end(self, end)
-    }
-
-    fn side(&self, side: Side) -> SliderPose {
-        *Self::side(self, side)
-    }
-}
-
 /// Joints computed from the directions of some cranks. Those that depend on an unknown
 /// crank are meaningless.
 pub struct Cranks<'a, T> {
@@ -35,16 +11,22 @@ pub struct Cranks<'a, T> {
     pub cranks: [Vector<T>; 4],
 }
 
-impl<T: Real> Joints<T> for Cranks<'_, T> {
-    fn crank(&self, servo: usize) -> Vector<T> {
-        self.cranks[servo]
+impl<'a> Cranks<'a, f64> {
+    /// The cranks of a pose.
+    pub fn of(lizard: &'a Lizard, pose: &Solution) -> Self {
+        let cranks = pose.legs.map(|leg| leg.direction);
+        Self { lizard, cranks }
     }
+}
 
-    fn end(&self, end: End) -> FiveBarPose<T> {
+impl<T: Real> Cranks<'_, T> {
+    /// The five-bar of an end, in the end's own frame.
+    pub fn end(&self, end: End) -> FiveBarPose<T> {
         self.lizard.shape_end(end, self.cranks)
     }
 
-    fn side(&self, side: Side) -> SliderPose<T> {
+    /// The slider of a side.
+    pub fn side(&self, side: Side) -> SliderPose<T> {
         self.lizard.shape_side(side, self.cranks)
     }
 }

@@ -120,16 +120,17 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     let at = |ahead: f64, left: f64| point + way * ahead + way.left() * left;
     let second = point - Vector::new(BACK, 0.0);
     let wide = 0.24 * length;
-    let face = Shape::hull(
-        &[
-            at(length - ROUND, 0.0),
-            at(0.34 * length, wide),
-            at(0.34 * length, -wide),
-            at(-0.1 * length, 0.4 * wide),
-            at(-0.1 * length, -0.4 * wide),
-        ],
-        ROUND,
-    );
+    let [cheek, neck] = [0.34 * length, -0.1 * length];
+    let snout = (length - ROUND, 0.0);
+    let sides = [
+        (cheek, wide),
+        (cheek, -wide),
+        (neck, 0.4 * wide),
+        (neck, -0.4 * wide),
+    ];
+    let corners = sides.into_iter().chain([snout]);
+    let corners: Vec<_> = corners.map(|(ahead, left)| at(ahead, left)).collect();
+    let face = Shape::hull(&corners, ROUND);
     let eyes = [wide, -wide].map(|left| Shape::disc(at(0.42 * length, left), EYE));
     let mut cut = vec![builder.hole(point)];
     cut.extend(eyes);

@@ -31,7 +31,7 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The struts of the other kind, which could replace the robot's own.
+/// The struts of the other kind, which can replace the robot's own.
 pub fn instead(builder: &Builder) -> Vec<Body> {
     (0..4)
         .map(|servo| body(builder, servo, !builder.slotted()))

@@ -13,39 +13,30 @@ use crate::layers::outline::Loop;
 pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
     let [low, high] = extent(sheet);
+    let (name, thick, half) = (&sheet.name, sheet.thickness, kerf / 2.0);
     file.add(999, format!(
-        "{}: mm, 1:1, {:.2} mm thick; lines are the part's edge, cut {:.2} mm outside (kerf {kerf} mm)",
-        sheet.name,
-        sheet.thickness,
-        kerf / 2.0
+        "{name}: mm, 1:1, {thick:.2} mm thick; lines are the part's edge, cut {half:.2} mm outside (kerf {kerf} mm)"
     ));
-    for (code, text) in [
+    file.all(&[
         (0, "SECTION"),
         (2, "HEADER"),
         (9, "$ACADVER"),
         (1, "AC1009"),
-        (9, "$INSUNITS"),
-        (70, "4"),
-        (9, "$MEASUREMENT"),
-        (70, "1"),
-        (9, "$EXTMIN"),
-    ] {
-        file.add(code, text);
-    }
+    ]);
+    file.all(&[(9, "$INSUNITS"), (70, "4"), (9, "$MEASUREMENT"), (70, "1")]);
+    file.add(9, "$EXTMIN");
     file.point(10, low.x, low.y);
     file.add(9, "$EXTMAX");
     file.point(10, high.x, high.y);
     file.add(0, "ENDSEC");
     file.layers(sheet);
-    file.add(0, "SECTION");
-    file.add(2, "ENTITIES");
+    file.all(&[(0, "SECTION"), (2, "ENTITIES")]);
     for layer in &sheet.layers {
         for line in &layer.loops {
             file.line(line, &layer.name);
         }
     }
-    file.add(0, "ENDSEC");
-    file.add(0, "EOF");
+    file.all(&[(0, "ENDSEC"), (0, "EOF")]);
     file.0
 }
 
@@ -56,6 +47,12 @@ struct Groups(String);
 impl Groups {
     fn add(&mut self, code: u32, value: impl std::fmt::Display) {
         let _ = write!(self.0, "{code:>3}\r\n{value}\r\n");
+    }
+
+    fn all(&mut self, pairs: &[(u32, &str)]) {
+        for (code, value) in pairs {
+            self.add(*code, value);
+        }
     }
 
     fn real(&mut self, code: u32, value: f64) {
@@ -71,43 +68,32 @@ impl Groups {
     }
 
     fn layers(&mut self, sheet: &Sheet) {
-        self.add(0, "SECTION");
-        self.add(2, "TABLES");
-        self.add(0, "TABLE");
-        self.add(2, "LAYER");
+        self.all(&[(0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER")]);
         self.add(70, sheet.layers.len());
         for (number, layer) in sheet.layers.iter().enumerate() {
-            self.add(0, "LAYER");
-            self.add(2, &layer.name);
-            self.add(70, 0);
+            self.all(&[(0, "LAYER"), (2, &layer.name), (70, "0")]);
             // Red is cut through; pockets are blue, magenta and so on.
             self.add(62, if number == 0 { 1 } else { 4 + number });
             self.add(6, "CONTINUOUS");
         }
-        self.add(0, "ENDTAB");
-        self.add(0, "ENDSEC");
+        self.all(&[(0, "ENDTAB"), (0, "ENDSEC")]);
     }
 
     fn line(&mut self, line: &Loop, layer: &str) {
         if let Some((centre, radius)) = line.circle() {
-            self.add(0, "CIRCLE");
-            self.add(8, layer);
+            self.all(&[(0, "CIRCLE"), (8, layer)]);
             self.point(10, centre.x, centre.y);
             self.real(40, radius);
             return;
         }
-        self.add(0, "POLYLINE");
-        self.add(8, layer);
-        self.add(66, 1);
+        self.all(&[(0, "POLYLINE"), (8, layer), (66, "1")]);
         self.point(10, 0.0, 0.0);
         self.add(70, 1);
         for side in &line.sides {
-            self.add(0, "VERTEX");
-            self.add(8, layer);
+            self.all(&[(0, "VERTEX"), (8, layer)]);
             self.point(10, side.from.x, side.from.y);
             self.real(42, side.bulge);
         }
-        self.add(0, "SEQEND");
-        self.add(8, layer);
+        self.all(&[(0, "SEQEND"), (8, layer)]);
     }
 }

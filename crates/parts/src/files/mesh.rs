@@ -54,16 +54,11 @@ impl Mesh {
     /// Its volume, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {
-        let corner = |i: usize| self.corners[i];
-        let six: f64 = self
-            .triangles
-            .iter()
-            .map(|&[a, b, c]| {
-                let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (corner(a), corner(b), corner(c));
-                ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-            })
-            .sum();
-        six / 6.0
+        let volumes = self.triangles.iter().map(|&triangle| {
+            let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = triangle.map(|i| self.corners[i]);
+            ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        });
+        volumes.sum::<f64>() / 6.0
     }
 
     /// True if every side of a triangle has exactly one neighbour.
@@ -75,9 +70,8 @@ impl Mesh {
                 *sides.entry(side).or_insert(0) += 1;
             }
         }
-        sides
-            .iter()
-            .all(|(&(a, b), count)| *count == 1 && sides.get(&(b, a)) == Some(&1))
+        let mut all = sides.iter();
+        all.all(|(&(a, b), count)| *count == 1 && sides.get(&(b, a)) == Some(&1))
     }
 }
 
@@ -125,12 +119,11 @@ impl Maker<'_> {
     fn trail(&self, edges: &[(usize, bool)]) -> Vec<usize> {
         let mut trail = Vec::new();
         for &(edge, forward) in edges {
-            let mut line = self.lines[edge].clone();
-            if !forward {
-                line.reverse();
+            let line = &self.lines[edge];
+            match forward {
+                true => trail.extend(&line[..line.len() - 1]),
+                false => trail.extend(line[1..].iter().rev()),
             }
-            line.pop();
-            trail.extend(line);
         }
         trail
     }
@@ -145,31 +138,21 @@ impl Maker<'_> {
             }
             corners.extend(trail);
         }
-        let flat: Vec<f64> = corners
-            .iter()
-            .flat_map(|&corner| {
-                let [x, y, _] = self.mesh.corners[corner];
-                [if below { -x } else { x }, y]
-            })
-            .collect();
+        let place = |&corner: &usize| {
+            let [x, y, _] = self.mesh.corners[corner];
+            (corner, Vector::new(if below { -x } else { x }, y))
+        };
+        let known: Vec<_> = corners.iter().map(place).collect();
+        let flat: Vec<f64> = known.iter().flat_map(|(_, at)| [at.x, at.y]).collect();
         let found = earcutr::earcut(&flat, &starts, 2).expect("a loop has points");
-        let mut triangles: Vec<[usize; 3]> = found
-            .chunks_exact(3)
-            .map(|three| {
-                let at = |i: usize| Vector::new(flat[2 * three[i]], flat[2 * three[i] + 1]);
-                let [a, b, c] = [0, 1, 2].map(|i| corners[three[i]]);
-                if (at(1) - at(0)).cross(at(2) - at(0)) < 0.0 {
-                    [a, c, b]
-                } else {
-                    [a, b, c]
-                }
-            })
-            .collect();
-        let known: Vec<_> = corners
-            .iter()
-            .enumerate()
-            .map(|(i, &corner)| (corner, Vector::new(flat[2 * i], flat[2 * i + 1])))
-            .collect();
+        let triangle = |three: &[usize]| {
+            let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| known[three[i]]);
+            match (q - p).cross(r - p) < 0.0 {
+                true => [a, c, b],
+                false => [a, b, c],
+            }
+        };
+        let mut triangles: Vec<_> = found.chunks_exact(3).map(triangle).collect();
         fill(&mut triangles, &known);
         self.mesh.triangles.extend(triangles);
     }
@@ -256,16 +239,16 @@ fn between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
         return Vec::new();
     };
     let (long, line) = ((to - from).length(), to - from);
-    let mut found: Vec<(f64, usize)> = corners
+    let along = |&(corner, at): &(usize, Vector)| {
+        let along = (at - from).dot(line) / long;
+        let beside = line.cross(at - from) / long;
+        let within = beside.abs() < 1e-7 && along > 0.0 && along < long;
+        within.then_some((along, corner))
+    };
+    let others = corners
         .iter()
-        .filter(|(corner, _)| *corner != a && *corner != b)
-        .filter_map(|&(corner, at)| {
-            let along = (at - from).dot(line) / long;
-            let beside = line.cross(at - from) / long;
-            let within = beside.abs() < 1e-7 && along > 0.0 && along < long;
-            within.then_some((along, corner))
-        })
-        .collect();
+        .filter(|(corner, _)| *corner != a && *corner != b);
+    let mut found: Vec<(f64, usize)> = others.filter_map(along).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.into_iter().map(|(_, corner)| corner).collect()
 }

@@ -1,4 +1,4 @@
-//! The files of a part: solid, mesh, and what is cut from a sheet.
+//! The files of a part: solid, mesh, and drawings for cutting it from a sheet.
 //!
 //! A printer wants triangles without a gap, a drawing program exact surfaces, a laser closed
 //! lines. All are made of the same layers, so they cannot contradict each other.
@@ -12,22 +12,17 @@ pub(crate) mod step;
 pub(crate) mod stl;
 pub(crate) mod svg;
 
-use crate::files::dxf::dxf;
-use crate::files::mesh::Mesh;
-use crate::files::sheet::sheets;
-use crate::files::solid::Solid;
-use crate::files::step::step;
-use crate::files::stl::stl;
-use crate::files::svg::sheet_svg;
 use crate::part::Part;
 use crate::unfit::Unfit;
+use mesh::Mesh;
+use solid::Solid;
 
 /// A file to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct File {
     /// Its path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
-    /// Its content.
+    /// The file's content.
     pub bytes: Vec<u8>,
 }
 
@@ -47,35 +42,29 @@ impl File {
 /// # Errors
 /// [`Unfit::Surface`] for a part whose layers do not make a body.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, Unfit> {
-    let broken = || Unfit::Surface(part.name.clone());
     let solid = Solid::of(&part.prisms);
-    if !solid.is_closed() {
-        return Err(broken());
-    }
-    let (printed, _) = part.printed();
-    let printed = Solid::of(&printed);
-    if !printed.is_closed() {
-        return Err(broken());
-    }
-    let mesh = Mesh::of(&printed);
-    if !mesh.is_closed() {
-        return Err(broken());
+    let printed = Solid::of(&part.printed().0);
+    let mesh = match printed.is_closed() {
+        true => Mesh::of(&printed),
+        false => return Err(Unfit::Surface(part.name.clone())),
+    };
+    if !solid.is_closed() || !mesh.is_closed() {
+        return Err(Unfit::Surface(part.name.clone()));
     }
     let name = part.file();
+    let step = step::step(&part.name, &solid);
     let mut files = vec![
-        File::text(format!("step/{name}.step"), step(&part.name, &solid)),
+        File::text(format!("step/{name}.step"), step),
         File {
             path: format!("stl/{name}.stl"),
-            bytes: stl(&part.name, &mesh),
+            bytes: stl::stl(&part.name, &mesh),
         },
     ];
-    for sheet in sheets(part) {
-        let name = sheet.name.replace(' ', "-");
-        files.push(File::text(format!("cut/{name}.dxf"), dxf(&sheet, kerf)));
-        files.push(File::text(
-            format!("cut/{name}.svg"),
-            sheet_svg(&sheet, kerf),
-        ));
+    for sheet in sheet::sheets(part) {
+        let path = format!("cut/{}", sheet.name.replace(' ', "-"));
+        let (dxf, svg) = (dxf::dxf(&sheet, kerf), svg::sheet_svg(&sheet, kerf));
+        files.push(File::text(format!("{path}.dxf"), dxf));
+        files.push(File::text(format!("{path}.svg"), svg));
     }
     Ok(files)
 }

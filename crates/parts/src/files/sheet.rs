@@ -44,10 +44,8 @@ pub fn sheets(part: &Part) -> Vec<Sheet> {
         let pieces = outline.pieces.iter();
         pieces.filter_map(|piece| piece.first().cloned()).collect()
     };
-    let [low, high] = [
-        part.prisms.first().map_or(0.0, |prism| prism.z[0]),
-        part.prisms.last().map_or(0.0, |prism| prism.z[1]),
-    ];
+    let low = part.prisms.first().map_or(0.0, |prism| prism.z[0]);
+    let high = part.prisms.last().map_or(0.0, |prism| prism.z[1]);
     let first = outer(&outlines[0]);
     if outlines.iter().all(|outline| outer(outline) == first) {
         return vec![Sheet {
@@ -59,14 +57,13 @@ pub fn sheets(part: &Part) -> Vec<Sheet> {
     if part.name != "plate" && part.name != "deck" {
         return Vec::new();
     }
-    let sheets = part.prisms.iter().zip(&outlines).enumerate();
-    sheets
-        .map(|(number, (prism, outline))| Sheet {
-            name: format!("{} sheet {}", part.name, number + 1),
-            thickness: prism.z[1] - prism.z[0],
-            layers: vec![Layer::cut(outline.loops().cloned().collect())],
-        })
-        .collect()
+    let layers = (1..).zip(part.prisms.iter().zip(&outlines));
+    let sheets = layers.map(|(number, (prism, outline))| Sheet {
+        name: format!("{} sheet {number}", part.name),
+        thickness: prism.z[1] - prism.z[0],
+        layers: vec![Layer::cut(outline.loops().cloned().collect())],
+    });
+    sheets.collect()
 }
 
 /// The lines of a part whose layers have one outer outline.
@@ -104,12 +101,9 @@ fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec
 
 /// True if a layer has no material within a hole.
 fn is_open(outline: &Outline, hole: &Loop) -> bool {
-    let n = hole.sides.len() as f64;
-    let sum = hole
-        .sides
-        .iter()
-        .fold(Vector::default(), |sum, side| sum + side.from);
-    let middle = sum * (1.0 / n);
+    let sides = hole.sides.iter();
+    let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
+    let middle = sum * (1.0 / hole.sides.len() as f64);
     // A little within the line, so that a hole of the same size counts as open.
     let within = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.ends();

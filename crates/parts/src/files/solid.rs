@@ -19,9 +19,9 @@ use crate::layers::outline::{Loop, Outline, SAME, Side};
 pub struct Solid {
     /// Points from above, mm.
     pub points: Vec<Vector>,
-    /// Heights, ascending, mm.
+    /// The heights at which layers meet, ascending, mm.
     pub heights: Vec<f64>,
-    /// Lines and arcs.
+    /// The lines and arcs between points.
     pub edges: Vec<Edge>,
     /// Flat faces and walls.
     pub faces: Vec<Face>,
@@ -74,11 +74,9 @@ impl Solid {
     pub fn of(prisms: &[Prism]) -> Self {
         let outlines: Vec<Outline> = prisms.iter().map(Outline::of).collect();
         let mut maker = Maker::default();
-        maker.solid.heights = prisms.iter().map(|prism| prism.z[0]).collect();
-        maker
-            .solid
-            .heights
-            .extend(prisms.last().map(|last| last.z[1]));
+        let top = prisms.last().map(|last| last.z[1]);
+        let heights = prisms.iter().map(|prism| prism.z[0]).chain(top);
+        maker.solid.heights = heights.collect();
         let nothing = Outline::default();
         let mut below: Vec<Vec<Piece>> = Vec::new();
         for level in 0..=outlines.len() {
@@ -86,20 +84,13 @@ impl Solid {
             let upper = outlines.get(level).unwrap_or(&nothing);
             let lower_pieces = maker.pieces(level, lower, upper);
             let upper_pieces = maker.pieces(level, upper, lower);
-            let ends = Meeting {
-                level,
-                lower: (lower, &lower_pieces),
-                upper: (upper, &upper_pieces),
-            };
-            maker.flats(&ends);
+            maker.flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
             maker.walls(level, lower, &below, &lower_pieces);
             below = upper_pieces;
         }
-        maker.solid.volume = prisms
-            .iter()
-            .zip(&outlines)
-            .map(|(prism, outline)| outline.area() * (prism.z[1] - prism.z[0]))
-            .sum();
+        let layers = prisms.iter().zip(&outlines);
+        let volumes = layers.map(|(prism, outline)| outline.area() * (prism.z[1] - prism.z[0]));
+        maker.solid.volume = volumes.sum();
         maker.solid
     }
 
@@ -114,12 +105,8 @@ impl Solid {
     }
 }
 
-/// Two layers at the height where they meet.
-struct Meeting<'a> {
-    level: usize,
-    lower: (&'a Outline, &'a [Vec<Piece>]),
-    upper: (&'a Outline, &'a [Vec<Piece>]),
-}
+/// The outline of a layer and its pieces at a height.
+type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
 #[derive(Default)]
 struct Maker {
@@ -150,27 +137,23 @@ impl Maker {
                 for (across, end) in &others {
                     meetings(side, to, *across, *end, &mut cuts);
                 }
-                let mut along: Vec<(f64, usize)> = cuts
-                    .into_iter()
-                    .map(|cut| (progress(side, to, cut), place(&mut self.solid.points, cut)))
-                    .collect();
+                let points = &mut self.solid.points;
+                let way = |cut| (progress(side, to, cut), place(points, cut));
+                let mut along: Vec<(f64, usize)> = cuts.into_iter().map(way).collect();
                 along[0].0 = 0.0;
                 along[1].0 = progress(side, to, to).max(SAME);
                 along.sort_by(|a, b| a.0.total_cmp(&b.0));
                 along.dedup_by_key(|(_, point)| *point);
                 let whole = along.len() == 2;
-                along
-                    .windows(2)
-                    .map(|pair| {
-                        let [(_, from), (_, to)] = [pair[0], pair[1]];
-                        let bulge = if whole {
-                            side.bulge
-                        } else {
-                            (pair[1].0 - pair[0].0).tan_of_quarter(side.bulge)
-                        };
-                        self.piece(level, from, to, bulge)
-                    })
-                    .collect()
+                let piece = |pair: &[(f64, usize)]| {
+                    let [(begin, from), (end, to)] = [pair[0], pair[1]];
+                    let bulge = match whole {
+                        true => side.bulge,
+                        false => bulge_of(end - begin, side.bulge),
+                    };
+                    self.piece(level, from, to, bulge)
+                };
+                along.windows(2).map(piece).collect()
             })
             .collect()
     }
@@ -201,16 +184,15 @@ impl Maker {
     }
 
     /// Adds the flat faces at a height, which one layer covers and the other does not.
-    fn flats(&mut self, meeting: &Meeting) {
-        let (lower, upper) = (meeting.lower, meeting.upper);
+    fn flats(&mut self, level: usize, lower: Cut, upper: Cut) {
         let tops = self.difference(lower, upper);
-        self.faces(tops, Surface::Top(meeting.level), false);
+        self.faces(tops, Surface::Top(level), false);
         let bottoms = self.difference(upper, lower);
-        self.faces(bottoms, Surface::Bottom(meeting.level), true);
+        self.faces(bottoms, Surface::Bottom(level), true);
     }
 
     /// The outline of `a` less `b`, as pieces with the material on their left.
-    fn difference(&self, a: (&Outline, &[Vec<Piece>]), b: (&Outline, &[Vec<Piece>])) -> Vec<Piece> {
+    fn difference(&self, a: Cut, b: Cut) -> Vec<Piece> {
         let find = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
         let mut outline = Vec::new();
         for piece in a.1.iter().flatten() {
@@ -253,10 +235,8 @@ impl Maker {
             let around = self.around(&trail);
             let area = around.area();
             if area > 0.0 {
-                let outline = Outline {
-                    pieces: vec![vec![around]],
-                };
-                outer.push((area, outline, vec![trail]));
+                let pieces = vec![vec![around]];
+                outer.push((area, Outline { pieces }, vec![trail]));
             } else {
                 holes.push(trail);
             }
@@ -269,32 +249,30 @@ impl Maker {
             }
         }
         for (_, _, loops) in outer {
-            let loops = loops.into_iter().map(|trail| {
-                let mut edges: Vec<_> = trail
-                    .into_iter()
-                    .map(|piece| (piece.edge, piece.forward != below))
-                    .collect();
+            let edges = |mut trail: Vec<Piece>| {
                 if below {
-                    edges.reverse();
+                    trail.reverse();
                 }
+                let edges = trail.into_iter();
                 edges
-            });
-            let loops = loops.collect();
+                    .map(|piece| (piece.edge, piece.forward != below))
+                    .collect()
+            };
+            let loops = loops.into_iter().map(edges).collect();
             self.solid.faces.push(Face { surface, loops });
         }
     }
 
     fn around(&self, trail: &[Piece]) -> Loop {
-        let sides = trail.iter().map(|piece| {
+        let side = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
             Side {
                 from: self.solid.points[piece.from],
                 bulge: if piece.forward { bulge } else { -bulge },
             }
-        });
-        Loop {
-            sides: sides.collect(),
-        }
+        };
+        let sides = trail.iter().map(side).collect();
+        Loop { sides }
     }
 
     /// Adds the walls of the layer below a height.
@@ -305,10 +283,8 @@ impl Maker {
                 continue;
             };
             let (from, to) = (first.from, last.to);
-            let mut edges: Vec<_> = low
-                .iter()
-                .map(|piece| (piece.edge, piece.forward))
-                .collect();
+            let up = low.iter().map(|piece| (piece.edge, piece.forward));
+            let mut edges: Vec<_> = up.collect();
             edges.push((self.upright(to, level), true));
             edges.extend(high.iter().rev().map(|piece| (piece.edge, !piece.forward)));
             edges.push((self.upright(from, level), false));
@@ -347,38 +323,28 @@ pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
     }
 }
 
-trait Quarter {
-    fn tan_of_quarter(self, bulge: f64) -> f64;
-}
-
-impl Quarter for f64 {
-    /// The bulge of an arc of this many rad that turns as another does; of a line 0.
-    fn tan_of_quarter(self, bulge: f64) -> f64 {
-        if bulge == 0.0 {
-            0.0
-        } else {
-            libm::tan(self / 4.0) * bulge.signum()
-        }
+/// The bulge of an arc of an angle, rad, that turns the same way as another; 0 for a line.
+fn bulge_of(angle: f64, like: f64) -> f64 {
+    match like == 0.0 {
+        true => 0.0,
+        false => libm::tan(angle / 4.0) * like.signum(),
     }
 }
 
 /// Adds the points in which two sides meet.
 fn meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, found: &mut Vec<Vector>) {
     let end = |at: Vector| PlineVertex::new(at.x, at.y, 0.0);
-    let met = pline_seg_intr(a.vertex(), end(a_end), b.vertex(), end(b_end), SAME);
-    match met {
-        PlineSegIntr::NoIntersect => {}
+    let points = match pline_seg_intr(a.vertex(), end(a_end), b.vertex(), end(b_end), SAME) {
+        PlineSegIntr::NoIntersect => [None, None],
         PlineSegIntr::TangentIntersect { point } | PlineSegIntr::OneIntersect { point } => {
-            found.push(Vector::new(point.x, point.y));
+            [Some(point), None]
         }
         PlineSegIntr::TwoIntersects { point1, point2 }
         | PlineSegIntr::OverlappingLines { point1, point2 }
-        | PlineSegIntr::OverlappingArcs { point1, point2 } => {
-            for point in [point1, point2] {
-                found.push(Vector::new(point.x, point.y));
-            }
-        }
-    }
+        | PlineSegIntr::OverlappingArcs { point1, point2 } => [Some(point1), Some(point2)],
+    };
+    let points = points.into_iter().flatten();
+    found.extend(points.map(|point| Vector::new(point.x, point.y)));
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
-use crate::files::solid::{Solid, Surface};
+use crate::files::solid::{Face, Solid, Surface};
 use crate::layers::outline::Side;
 
 /// The text of a STEP file.
@@ -24,6 +24,8 @@ pub fn step(name: &str, solid: &Solid) -> String {
          END-ISO-10303-21;\n"
     )
 }
+
+const PRODUCT: &str = include_str!("product.step");
 
 #[derive(Default)]
 struct File {
@@ -80,41 +82,34 @@ impl File {
             let curve = self.curve(places, edge.bulge);
             edges.push(self.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)")));
         }
-        let faces: Vec<_> = solid
+        let faces = solid
             .faces
             .iter()
-            .map(|face| {
-                let bounds: Vec<_> = face
-                    .loops
-                    .iter()
-                    .enumerate()
-                    .map(|(number, trail)| {
-                        let trail: Vec<_> = trail
-                            .iter()
-                            .map(|&(edge, forward)| {
-                                let way = if forward { "T" } else { "F" };
-                                self.add(&format!("ORIENTED_EDGE('',*,*,#{},.{way}.)", edges[edge]))
-                            })
-                            .collect();
-                        let trail = self.add(&format!("EDGE_LOOP('',{})", list(&trail)));
-                        let kind = if number == 0 {
-                            "FACE_OUTER_BOUND"
-                        } else {
-                            "FACE_BOUND"
-                        };
-                        self.add(&format!("{kind}('',#{trail},.T.)"))
-                    })
-                    .collect();
-                let (surface, sense) = self.surface(solid, face.surface);
-                let sense = if sense { "T" } else { "F" };
-                self.add(&format!(
-                    "ADVANCED_FACE('',{},#{surface},.{sense}.)",
-                    list(&bounds)
-                ))
-            })
-            .collect();
+            .map(|face| self.face(solid, face, &edges));
+        let faces: Vec<_> = faces.collect();
         let shell = self.add(&format!("CLOSED_SHELL('',{})", list(&faces)));
         self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell})"))
+    }
+
+    fn face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
+        let logical = |value: bool| if value { "T" } else { "F" };
+        let mut bounds = Vec::new();
+        for trail in &face.loops {
+            let mut oriented = Vec::new();
+            for &(edge, forward) in trail {
+                let (edge, way) = (edges[edge], logical(forward));
+                oriented.push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},.{way}.)")));
+            }
+            let trail = self.add(&format!("EDGE_LOOP('',{})", list(&oriented)));
+            let kind = match bounds.is_empty() {
+                true => "FACE_OUTER_BOUND",
+                false => "FACE_BOUND",
+            };
+            bounds.push(self.add(&format!("{kind}('',#{trail},.T.)")));
+        }
+        let (surface, sense) = self.surface(solid, face.surface);
+        let (bounds, sense) = (list(&bounds), logical(sense));
+        self.add(&format!("ADVANCED_FACE('',{bounds},#{surface},.{sense}.)"))
     }
 
     fn curve(&mut self, [from, to]: [[f64; 3]; 2], bulge: f64) -> usize {
@@ -123,11 +118,8 @@ impl File {
             bulge,
         };
         if let Some((centre, radius)) = side.arc(Vector::new(to[0], to[1])) {
-            let frame = self.frame(
-                [centre.x, centre.y, from[2]],
-                [0.0, 0.0, bulge.signum()],
-                [1.0, 0.0, 0.0],
-            );
+            let (at, up) = ([centre.x, centre.y, from[2]], [0.0, 0.0, bulge.signum()]);
+            let frame = self.frame(at, up, [1.0, 0.0, 0.0]);
             return self.add(&format!("CIRCLE('',#{frame},{})", real(radius)));
         }
         let way = [0, 1, 2].map(|i| to[i] - from[i]);
@@ -142,29 +134,26 @@ impl File {
     fn surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
-                let up = matches!(surface, Surface::Top(_));
-                let frame = self.frame(
-                    [0.0, 0.0, solid.heights[level]],
-                    [0.0, 0.0, if up { 1.0 } else { -1.0 }],
-                    [1.0, 0.0, 0.0],
-                );
+                let up = match surface {
+                    Surface::Top(_) => 1.0,
+                    _ => -1.0,
+                };
+                let at = [0.0, 0.0, solid.heights[level]];
+                let frame = self.frame(at, [0.0, 0.0, up], [1.0, 0.0, 0.0]);
                 (self.add(&format!("PLANE('',#{frame})")), true)
             }
             Surface::Wall(side, end) => match side.arc(end) {
                 Some((centre, radius)) => {
-                    let frame =
-                        self.frame([centre.x, centre.y, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+                    let at = [centre.x, centre.y, 0.0];
+                    let frame = self.frame(at, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
                     let round = format!("CYLINDRICAL_SURFACE('',#{frame},{})", real(radius));
                     (self.add(&round), side.bulge > 0.0)
                 }
                 None => {
                     let along = (end - side.from) * (1.0 / (end - side.from).length());
-                    let out = along.right();
-                    let frame = self.frame(
-                        [side.from.x, side.from.y, 0.0],
-                        [out.x, out.y, 0.0],
-                        [along.x, along.y, 0.0],
-                    );
+                    let [at, out, along] =
+                        [side.from, along.right(), along].map(|of| [of.x, of.y, 0.0]);
+                    let frame = self.frame(at, out, along);
                     (self.add(&format!("PLANE('',#{frame})")), true)
                 }
             },
@@ -173,33 +162,24 @@ impl File {
 
     /// The product's header, which readers require, and its units.
     fn product(&mut self, name: &str, solid: usize) {
-        let context = self.add("APPLICATION_CONTEXT('automotive design')");
-        self.add(&format!(
-            "APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{context})"
-        ));
-        let of = self.add(&format!("PRODUCT_CONTEXT('',#{context},'mechanical')"));
-        let product = self.add(&format!("PRODUCT('{name}','{name}','',(#{of}))"));
-        let formation = self.add(&format!("PRODUCT_DEFINITION_FORMATION('','',#{product})"));
-        let stage = self.add(&format!(
-            "PRODUCT_DEFINITION_CONTEXT('part definition',#{context},'design')"
-        ));
-        let definition = self.add(&format!(
-            "PRODUCT_DEFINITION('design','',#{formation},#{stage})"
-        ));
-        let shape = self.add(&format!("PRODUCT_DEFINITION_SHAPE('','',#{definition})"));
-        let mm = self.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
-        let rad = self.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
-        let sr = self.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
-        let fine = self.add(&format!(
-            "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-05),#{mm},'distance_accuracy_value','')"
-        ));
-        let space = self.add(&format!(
-            "(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{fine}))\
-             GLOBAL_UNIT_ASSIGNED_CONTEXT((#{mm},#{rad},#{sr}))REPRESENTATION_CONTEXT('',''))"
-        ));
+        let context = self.last + 1;
+        // `#+3` is the third entity of the list, `#NAME` the part's name.
+        for entity in PRODUCT.lines() {
+            let mut entity = entity.replace("#NAME", name);
+            for number in (0..12).rev() {
+                let (local, id) = (
+                    format!("#+{}", number + 1),
+                    format!("#{}", context + number),
+                );
+                entity = entity.replace(&local, &id);
+            }
+            self.add(&entity);
+        }
+        let (shape, space) = (context + 7, self.last);
         let frame = self.frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        let parts = format!("(#{frame},#{solid})");
         let body = self.add(&format!(
-            "ADVANCED_BREP_SHAPE_REPRESENTATION('',(#{frame},#{solid}),#{space})"
+            "ADVANCED_BREP_SHAPE_REPRESENTATION('',{parts},#{space})"
         ));
         self.add(&format!(
             "SHAPE_DEFINITION_REPRESENTATION(#{shape},#{body})"

@@ -11,12 +11,8 @@ pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     bytes.extend(count.to_le_bytes());
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
-        let (u, v) = (difference(b, a), difference(c, a));
-        let normal = [
-            u[1] * v[2] - u[2] * v[1],
-            u[2] * v[0] - u[0] * v[2],
-            u[0] * v[1] - u[1] * v[0],
-        ];
+        let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
+        let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
         let long = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
         let unit = normal.map(|part| if long > 0.0 { part / long } else { 0.0 });
         for corner in [unit, a, b, c] {
@@ -28,8 +24,4 @@ pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
         bytes.extend([0, 0]);
     }
     bytes
-}
-
-fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i] - b[i])
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
-use crate::files::sheet::{Sheet, extent};
+use crate::files::sheet::{Layer, Sheet, extent};
 use crate::layers::outline::Loop;
 
 /// Margin around the part, mm.
@@ -18,23 +18,23 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
     let page = |at: Vector| (at.x - low.x + MARGIN, high.y - at.y + MARGIN);
+    let (name, thick, half) = (&sheet.name, sheet.thickness, kerf / 2.0);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \
          viewBox=\"0 0 {width:.3} {height:.3}\">\n\
-         <desc>{}: 1:1 in mm, {:.2} mm thick. Lines are the edge of the part; a cutter goes {:.2} mm \
-         outside of them (kerf {kerf} mm).</desc>\n",
-        sheet.name,
-        sheet.thickness,
-        kerf / 2.0
+         <desc>{name}: 1:1 in mm, {thick:.2} mm thick. Lines are the edge of the part; a cutter goes {half:.2} mm \
+         outside of them (kerf {kerf} mm).</desc>\n"
     );
-    for (layer, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
-        let _ = writeln!(
-            text,
-            "<g id=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\">",
-            layer.name
-        );
-        for line in &layer.loops {
-            let _ = writeln!(text, "{}", element(line, page));
+    for (Layer { name, loops }, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
+        let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
+        let _ = writeln!(text, "<g id=\"{name}\" {style}>");
+        for line in loops {
+            let _ = match line.circle().map(|(centre, radius)| (page(centre), radius)) {
+                Some(((x, y), r)) => {
+                    writeln!(text, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
+                }
+                None => writeln!(text, "<path d=\"{}\"/>", path(line, page)),
+            };
         }
         text.push_str("</g>\n");
     }
@@ -42,16 +42,8 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     text
 }
 
-fn element(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
-    if let Some((centre, radius)) = line.circle() {
-        let (x, y) = page(centre);
-        return format!("<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{radius:.6}\"/>");
-    }
-    format!("<path d=\"{}\"/>", path(line, page))
-}
-
 /// A loop as the data of a path.
-pub(crate) fn path(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
+fn path(line: &Loop, page: impl Fn(Vector) -> (f64, f64)) -> String {
     let mut data = String::new();
     for (number, (side, to)) in line.ends().enumerate() {
         let (x, y) = page(side.from);

@@ -33,11 +33,8 @@ pub fn html(markdown: &str) -> String {
                 continue;
             }
             let cell = if table { "td" } else { "th" };
-            if !table {
-                page.push_str("<table>\n");
-                table = true;
-            }
-            page.push_str("<tr>");
+            page.push_str(if table { "<tr>" } else { "<table>\n<tr>" });
+            table = true;
             for text in cells.trim_end_matches('|').split('|') {
                 let _ = write!(page, "<{cell}>{}</{cell}>", escape(text.trim()));
             }
@@ -56,11 +53,8 @@ pub fn html(markdown: &str) -> String {
                 .and_then(|rest| rest.strip_suffix(')'))
                 .and_then(|rest| rest.split_once("]("))
             {
-                let _ = writeln!(
-                    page,
-                    "<p><img src=\"{file}\" alt=\"{}\"></p>",
-                    escape(words)
-                );
+                let words = escape(words);
+                let _ = writeln!(page, "<p><img src=\"{file}\" alt=\"{words}\"></p>");
             } else if !line.is_empty() {
                 let _ = writeln!(page, "<p>{}</p>", escape(line));
             }

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
+use crate::layers::outline::bounds;
+
 /// Margin around the robot, pixels.
 const MARGIN: f64 = 12.0;
 /// Room for names on each side of a picture, and the height of a name, pixels.
@@ -13,6 +15,8 @@ const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
 /// Points on the page.
 pub(super) type Trail = Vec<(f64, f64)>;
+/// A label and its place on the page.
+pub(super) type Name<'a> = ((f64, f64), &'a Label);
 
 /// A name in a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,15 +43,11 @@ impl Frame {
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
         /// Margin of a close view, mm.
         const AROUND: f64 = 12.0;
-        let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
-        for (x, y) in points {
-            low = (low.0.min(x), low.1.min(y));
-            high = (high.0.max(x), high.1.max(y));
-        }
+        let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
         let more = if near { AROUND } else { 0.0 };
         Self {
-            low: (low.0 - more, low.1 - more),
-            high: (high.0 + more, high.1 + more),
+            low: (low.x - more, low.y - more),
+            high: (high.x + more, high.y + more),
         }
     }
 
@@ -72,18 +72,11 @@ impl Ink {
     }
 
     /// The picture, this many pixels wide, with names at their places on the page.
-    pub(super) fn finish(
-        self,
-        width: f64,
-        frame: &Frame,
-        names: &[((f64, f64), &Label)],
-    ) -> String {
+    pub(super) fn finish(self, width: f64, frame: &Frame, names: &[Name]) -> String {
         let (low, high) = (frame.low, frame.high);
-        let beside = |(_, label): &&((f64, f64), &Label)| label.beside;
-        let side = if names.iter().any(|name| beside(&name)) {
-            BESIDE
-        } else {
-            0.0
+        let side = match names.iter().any(|(_, label)| label.beside) {
+            true => BESIDE,
+            false => 0.0,
         };
         let room = width - 2.0 * (MARGIN + side);
         let scale = room / (high.0 - low.0);
@@ -96,11 +89,11 @@ impl Ink {
         let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
         for (colour, loops, edge) in &self.shapes {
             let style = (colour.as_str(), *edge);
-            let class = styles.iter().position(|of| *of == style);
-            let class = class.unwrap_or_else(|| {
+            let known = styles.iter().position(|of| *of == style);
+            let class = known.unwrap_or(styles.len());
+            if known.is_none() {
                 styles.push(style);
-                styles.len() - 1
-            });
+            }
             let mut data = String::new();
             let mut at = (0, 0);
             for line in loops {
@@ -131,10 +124,8 @@ impl Ink {
         for (class, (colour, edge)) in styles.into_iter().enumerate() {
             // A wall's own colour as a hair line closes the seams between walls.
             let (stroke, thick) = if edge { ("#333", 5) } else { (colour, 4) };
-            let _ = writeln!(
-                text,
-                ".c{class}{{fill:{colour};stroke:{stroke};stroke-width:{thick}}}"
-            );
+            let style = format!("fill:{colour};stroke:{stroke};stroke-width:{thick}");
+            let _ = writeln!(text, ".c{class}{{{style}}}");
         }
         let _ = write!(
             text,
@@ -144,19 +135,18 @@ impl Ink {
         text.push_str("</g>\n");
         let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
         let shown: Vec<_> = names.iter().filter(|(at, _)| frame.holds(*at)).collect();
-        for (at, label) in shown.iter().filter(|(_, label)| !label.beside) {
+        for (at, Label { text: name, .. }) in shown.iter().filter(|(_, label)| !label.beside) {
             let (x, y) = page(*at);
             let _ = writeln!(
                 text,
                 "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT} font-weight=\"bold\" \
-                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
-                label.text
+                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{name}</text>"
             );
         }
         for left in [true, false] {
             let middle = width / 2.0;
             let here = shown.iter().filter(|(_, label)| label.beside);
-            let places = here.map(|(at, label)| (page(*at), label));
+            let places = here.map(|(at, label)| (page(*at), *label));
             let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
             column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
             write_column(&mut text, &column, left, width, height);
@@ -167,13 +157,7 @@ impl Ink {
 }
 
 /// Names below each other at one side, each with a line to its place.
-fn write_column(
-    text: &mut String,
-    column: &[((f64, f64), &&Label)],
-    left: bool,
-    width: f64,
-    height: f64,
-) {
+fn write_column(text: &mut String, column: &[Name], left: bool, width: f64, height: f64) {
     let count = column.len() as f64;
     let mut least = LINE;
     for (number, ((x, y), label)) in column.iter().enumerate() {

@@ -77,9 +77,9 @@ pub fn names(assembly: &Assembly, parts: &[Part], drawn: &[Drawn], pose: &Soluti
             (entry.0, entry.2) = (away, label);
         }
     }
-    let labels = found.into_values().map(|(_, count, label)| Label {
-        text: format!("{count} x {}", label.text),
-        ..label
+    let labels = found.into_values().map(|(_, count, mut label)| {
+        label.text.insert_str(0, &format!("{count} x "));
+        label
     });
     labels.collect()
 }

@@ -65,11 +65,9 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut before: Vec<&Body> = Vec::new();
     for (number, step) in (1..).zip(&steps) {
-        let new: Vec<&Body> = assembly
-            .bodies()
-            .iter()
-            .filter(|body| step.adds(body) && !before.iter().any(|old| old.name == body.name))
-            .collect();
+        let known = |body: &Body| before.iter().any(|old| old.name == body.name);
+        let adds = |body: &&Body| step.adds(body) && !known(body);
+        let new: Vec<&Body> = assembly.bodies().iter().filter(adds).collect();
         let _ = writeln!(text, "## {number}. {}\n\n{}\n", step.title, step.words);
         if new.is_empty() {
             continue;
@@ -139,9 +137,9 @@ impl Scene<'_> {
             width: WIDE,
             ..View::default()
         };
-        let below = View {
+        let below = |azimuth: f64, view: View| View {
             below: true,
-            azimuth: 300.0,
+            azimuth,
             ..view
         };
         let corner = View {
@@ -150,11 +148,6 @@ impl Scene<'_> {
             elevation: 30.0,
             ..view
         };
-        let corner_below = View {
-            below: true,
-            azimuth: 30.0,
-            ..corner
-        };
         type Which = fn(&Body) -> bool;
         let (all, at_corner): (Which, Which) = (|_| true, at_corner);
         let extra = match self.step.near {
@@ -162,9 +155,9 @@ impl Scene<'_> {
             Near::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
             Near::CornerBelow => {
                 let words = "the front left corner from below";
-                Some(("below", words, corner_below, 0.5, at_corner))
+                Some(("below", words, below(30.0, corner), 0.5, at_corner))
             }
-            Near::Below => Some(("below", "from below", below, 0.0, all)),
+            Near::Below => Some(("below", "from below", below(300.0, view), 0.0, all)),
         };
         let mut pictures = vec![("exploded", "apart", self.picture(&view, LIFT, true, all))];
         pictures.extend(extra.map(|(kind, words, view, lift, which)| {

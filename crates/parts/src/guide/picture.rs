@@ -16,7 +16,7 @@ use super::ink::{Frame, Ink, Label, Trail};
 /// A body in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
-    /// The body.
+    /// The body to draw.
     pub body: &'a Body,
     /// Lift above its place, mm.
     pub lift: f64,
@@ -146,11 +146,8 @@ pub fn picture(
     let mut ink = Ink::default();
     for slice in heights.windows(2) {
         let [low, high] = [slice[0], slice[1]];
-        let present = || {
-            layers
-                .iter()
-                .filter(|layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6)
-        };
+        let spans = |layer: &&Layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6;
+        let present = || layers.iter().filter(spans);
         let mut walls: Vec<Wall> = Vec::new();
         for layer in present() {
             for line in &layer.loops {

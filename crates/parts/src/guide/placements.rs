@@ -73,7 +73,7 @@ struct Flat {
 /// The table of placements at a pose.
 ///
 /// # Panics
-/// Never: what is written is plain.
+/// Never: texts and numbers can always be written as JSON.
 #[must_use]
 pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
@@ -108,12 +108,8 @@ fn print(place: &Placement, body: &Body, part: &Part) -> Print {
     let home = lies.home;
     let origin = place.map(home.at);
     let turn = place.turn * home.turn.x + place.turn.left() * home.turn.y;
-    let over = |at: Vector| match part.turned {
-        true => at.mirrored(),
-        false => at,
-    };
     let drill = part.closed_holes().into_iter().map(|at| {
-        let at = over(at);
+        let at = if part.turned { at.mirrored() } else { at };
         pair(origin + turn * at.x + turn.left() * at.y)
     });
     Print {

@@ -68,12 +68,12 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
         if high - low < 2.0 * DEEP {
             continue;
         }
-        let free = |point: Vector| {
-            outlines[layer].holds(point)
-                && outlines
-                    .get(layer + 1)
-                    .is_none_or(|above| !above.holds(point))
+        let covered = |point| {
+            outlines
+                .get(layer + 1)
+                .is_some_and(|above| above.holds(point))
         };
+        let free = |point: Vector| outlines[layer].holds(point) && !covered(point);
         let Some(at) = place(&outlines[layer], text, free) else {
             continue;
         };
@@ -99,10 +99,9 @@ fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option
     };
     for x in steps(low.x + margin, high.x - margin - wide, STEP) {
         for y in steps(low.y + margin, high.y - margin - tall, 0.5 * STEP) {
-            let clear = steps(x - margin, x + wide + margin, 0.6).all(|px| {
-                steps(y - margin, y + tall + margin, 0.6).all(|py| free(Vector::new(px, py)))
-            });
-            if clear {
+            let mut columns = steps(x - margin, x + wide + margin, 0.6);
+            let rows = || steps(y - margin, y + tall + margin, 0.6);
+            if columns.all(|px| rows().all(|py| free(Vector::new(px, py)))) {
                 return Some(Vector::new(x, y));
             }
         }

@@ -1,9 +1,9 @@
-//! Flat layers: of what every part is made.
+//! Flat layers, of which every part is made.
 //!
-//! A printer, a saw and a proof all need the same of a part: where there is material. The
-//! mechanism is flat, so a part is a stack of layers, each a flat convex shape between two
-//! heights. Here are shapes, their outlines, the heights of the whole robot, and what a
-//! layer needs so that it can be printed.
+//! A printer, a saw and a proof all need to know where a part has material. The mechanism is
+//! flat, so a part is a stack of layers, each a union of flat convex shapes between two
+//! heights. This module has shapes, their outlines, the heights of the robot's layers, and
+//! the changes that a layer needs so that it can be printed.
 
 pub(crate) mod body;
 pub(crate) mod fitting;

@@ -45,7 +45,7 @@ pub struct Side {
     pub bulge: f64,
 }
 
-/// A layer's outline.
+/// The outline of a layer, as separate pieces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// The pieces, each as its outer loop and then the loops of its holes.
@@ -77,18 +77,18 @@ impl Outline {
             pieces = left;
             !opens
         });
-        let pieces = pieces.into_iter().map(|piece| {
+        let loops = |piece: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
                 let inside = piece.boolean(*cut, BooleanOp::Not).result_info;
                 matches!(inside, BooleanResultInfo::Pline2InsidePline1)
             });
-            let mut loops = vec![Loop::of(&piece, true)];
-            loops.extend(holes.map(|hole| Loop::of(hole, false)));
-            loops
-        });
-        Self {
-            pieces: pieces.collect(),
-        }
+            let holes = holes.map(|hole| Loop::of(hole, false));
+            std::iter::once(Loop::of(&piece, true))
+                .chain(holes)
+                .collect()
+        };
+        let pieces = pieces.into_iter().map(loops).collect();
+        Self { pieces }
     }
 
     /// All loops of all pieces.
@@ -143,14 +143,15 @@ impl Loop {
     /// Centre and radius, if it is a circle.
     #[must_use]
     pub fn circle(&self) -> Option<(Vector, f64)> {
-        let arcs: Vec<_> = self
-            .ends()
-            .map(|(side, to)| side.arc(to))
-            .collect::<Option<_>>()?;
-        let (centre, radius) = *arcs.first()?;
-        arcs.iter()
-            .all(|(other, size)| (*other - centre).length() < SAME && (size - radius).abs() < SAME)
-            .then_some((centre, radius))
+        let mut arcs = self.ends().map(|(side, to)| side.arc(to));
+        let (centre, radius) = arcs.next()??;
+        let same = |arc: Option<(Vector, f64)>| {
+            let near = |(at, size): (Vector, f64)| {
+                (at - centre).length() < SAME && (size - radius).abs() < SAME
+            };
+            arc.is_some_and(near)
+        };
+        arcs.all(same).then_some((centre, radius))
     }
 
     /// The area within, mm^2; negative around a hole.
@@ -235,34 +236,28 @@ impl Side {
     }
 }
 
+type Lines = Vec<Polyline<f64>>;
+
 /// The union of some outlines: the outer lines, and the gaps that they enclose.
-fn unite(
-    outlines: impl Iterator<Item = Polyline<f64>>,
-) -> (Vec<Polyline<f64>>, Vec<Polyline<f64>>) {
-    let mut pieces: Vec<Polyline<f64>> = Vec::new();
-    let mut gaps: Vec<Polyline<f64>> = Vec::new();
+fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Lines, Lines) {
+    let (mut pieces, mut gaps) = (Lines::new(), Lines::new());
     for outline in outlines {
         let mut joined = outline.clone();
         let mut apart = Vec::new();
         let mut enclosed = Vec::new();
         for piece in pieces {
             let mut union = piece.boolean(&joined, BooleanOp::Or);
-            let apart_from = matches!(union.result_info, BooleanResultInfo::Disjoint);
-            if apart_from || union.pos_plines.len() != 1 {
+            let disjoint = matches!(union.result_info, BooleanResultInfo::Disjoint);
+            if disjoint || union.pos_plines.len() != 1 {
                 apart.push(piece);
             } else {
                 joined = union.pos_plines.remove(0).pline;
                 enclosed.extend(union.neg_plines.into_iter().map(|gap| gap.pline));
             }
         }
-        gaps = gaps
-            .iter()
-            .flat_map(|gap| {
-                let rest = gap.boolean(&outline, BooleanOp::Not);
-                rest.pos_plines.into_iter().map(|part| part.pline)
-            })
-            .collect();
-        gaps.extend(enclosed);
+        let rest = |gap: Polyline<f64>| gap.boolean(&outline, BooleanOp::Not).pos_plines;
+        let left = gaps.into_iter().flat_map(rest).map(|part| part.pline);
+        gaps = left.chain(enclosed).collect();
         apart.push(joined);
         pieces = apart;
     }

@@ -33,10 +33,7 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
                 continue;
             }
             count += 1;
-            layers = layers
-                .into_iter()
-                .flat_map(|layer| split(layer, high))
-                .collect();
+            layers = layers.iter().flat_map(|layer| split(layer, high)).collect();
             for layer in &mut layers {
                 if layer.z[0] > low - SAME && layer.z[1] < high + SAME {
                     layer.cut.retain(|other| other != hole);
@@ -55,20 +52,12 @@ fn skin(low: f64) -> f64 {
 }
 
 /// A layer cut in two at a height, if that height is within it.
-fn split(layer: Prism, at: f64) -> Vec<Prism> {
+fn split(layer: &Prism, at: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
-    if at < low + SAME || at > high - SAME {
-        return vec![layer];
+    match at < low + SAME || at > high - SAME {
+        true => vec![layer.clone()],
+        false => vec![layer.at([low, at]), layer.at([at, high])],
     }
-    let upper = Prism {
-        z: [at, high],
-        ..layer.clone()
-    };
-    let lower = Prism {
-        z: [low, at],
-        ..layer
-    };
-    vec![lower, upper]
 }
 
 /// Centres of the holes that begin in the air.
@@ -92,11 +81,8 @@ fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
     };
     let alone = Outline::of(&Prism::solid([edge], prism.z));
     let mut points = alone.loops().flat_map(Loop::ends);
-    points.all(|(side, to)| {
-        [side.from, side.middle(to)]
-            .into_iter()
-            .all(|point| own.holds(point) && !below.holds(point))
-    })
+    let in_air = |point: Vector| own.holds(point) && !below.holds(point);
+    points.all(|(side, to)| in_air(side.from) && in_air(side.middle(to)))
 }
 
 #[cfg(test)]

@@ -45,21 +45,17 @@ impl Shape {
     #[must_use]
     pub fn rectangle(middle: Vector, size: Vector, radius: f64) -> Self {
         let (x, y) = (size.x / 2.0 - radius, size.y / 2.0 - radius);
-        Self::hull(
-            &[(-x, -y), (x, -y), (x, y), (-x, y)].map(|(x, y)| middle + Vector::new(x, y)),
-            radius,
-        )
+        let corners = [(-x, -y), (x, -y), (x, y), (-x, y)];
+        Self::hull(&corners.map(|(x, y)| middle + Vector::new(x, y)), radius)
     }
 
     /// A nut's hexagon by its width over flats; a corner points along x.
     #[must_use]
     pub fn hexagon(centre: Vector, flats: f64) -> Self {
         let reach = flats / f64::sqrt(3.0);
-        let corners = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
-        Self::hull(
-            &corners.map(|angle| centre + Vector::direction(angle) * reach),
-            0.0,
-        )
+        let angles = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
+        let corners = angles.map(|angle| centre + Vector::direction(angle) * reach);
+        Self::hull(&corners, 0.0)
     }
 
     /// The convex hull of any points.
@@ -137,24 +133,21 @@ impl Shape {
     /// it by more than that length.
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
-        let between = if self.holds(other.points[0]) || other.holds(self.points[0]) {
-            0.0
+        let mut between = f64::INFINITY;
+        if self.holds(other.points[0]) || other.holds(self.points[0]) {
+            between = 0.0;
         } else {
-            let mut least = f64::INFINITY;
             for (a, b) in self.edges() {
                 for (c, d) in other.edges() {
-                    least = least.min(segments(a, b, c, d));
+                    between = between.min(segments(a, b, c, d));
                 }
             }
-            least
-        };
-        let between = if between == 0.0 {
+        }
+        if between == 0.0 {
             let deep = self.beyond(other).max(other.beyond(self));
             // Two discs have no sides.
-            if deep.is_finite() { deep.min(0.0) } else { 0.0 }
-        } else {
-            between
-        };
+            between = if deep.is_finite() { deep.min(0.0) } else { 0.0 };
+        }
         between - self.radius - other.radius
     }
 
@@ -229,20 +222,17 @@ fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
     if crosses {
         return 0.0;
     }
-    to_line(a, c, d)
-        .min(to_line(b, c, d))
-        .min(to_line(c, a, b))
-        .min(to_line(d, a, b))
+    let first = to_line(a, c, d).min(to_line(b, c, d));
+    first.min(to_line(c, a, b)).min(to_line(d, a, b))
 }
 
 /// The distance of a point from a line segment, mm.
 fn to_line(point: Vector, from: Vector, to: Vector) -> f64 {
     let along = to - from;
     let square = along.square();
-    let share = if square > 0.0 {
-        ((point - from).dot(along) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
+    let share = match square > 0.0 {
+        true => ((point - from).dot(along) / square).clamp(0.0, 1.0),
+        false => 0.0,
     };
     (point - from - along * share).length()
 }
@@ -276,10 +266,8 @@ mod tests {
         assert_eq!(plate.distance(&aside), -1.0);
         let upright = Shape::bar(at(3.0, -9.0), at(3.0, 2.0), 1.0);
         assert_eq!(across.distance(&upright), -4.0);
-        assert_eq!(
-            Shape::disc(at(1.0, 0.0), 2.0).distance(&Shape::disc(at(1.0, 0.0), 3.0)),
-            -5.0
-        );
+        let disc = |radius: f64| Shape::disc(at(1.0, 0.0), radius);
+        assert_eq!(disc(2.0).distance(&disc(3.0)), -5.0);
         assert_eq!(plate.distance(&Shape::disc(at(8.0, 0.0), 1.0)), 2.0);
         assert_eq!(plate.distance(&Shape::disc(at(8.0, 8.0), 1.0)), 4.0);
     }
@@ -304,21 +292,11 @@ mod tests {
 
     #[test]
     fn a_hull_drops_what_lies_within_and_turns_counter_clockwise() {
-        let hull = Shape::hull(
-            &[
-                at(0.0, 0.0),
-                at(1.0, 1.0),
-                at(2.0, 0.0),
-                at(1.0, 0.2),
-                at(1.0, 0.0),
-            ],
-            0.0,
-        );
+        let corners = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (1.0, 0.2), (1.0, 0.0)];
+        let hull = Shape::hull(&corners.map(|(x, y)| at(x, y)), 0.0);
         assert_eq!(hull.points, [at(0.0, 0.0), at(2.0, 0.0), at(1.0, 1.0)]);
-        assert_eq!(
-            Shape::hull(&[at(1.0, 2.0); 3], 1.0),
-            Shape::disc(at(1.0, 2.0), 1.0)
-        );
+        let point = Shape::hull(&[at(1.0, 2.0); 3], 1.0);
+        assert_eq!(point, Shape::disc(at(1.0, 2.0), 1.0));
         let bar = Shape::hull(&[at(0.0, 0.0), at(4.0, 0.0), at(2.0, 0.0)], 1.0);
         assert_eq!(bar, Shape::bar(at(0.0, 0.0), at(4.0, 0.0), 1.0));
     }

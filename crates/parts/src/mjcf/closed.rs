@@ -11,7 +11,7 @@ use crate::mjcf::node::Node;
 pub(crate) struct Closed {
     /// Its name, such as `end head`.
     pub name: String,
-    /// The two bodies.
+    /// The two bodies that share the point.
     pub bodies: [Node; 2],
     /// The point in the first body's frame, mm.
     pub at: Vector,
@@ -19,43 +19,35 @@ pub(crate) struct Closed {
 
 /// All such joints: of head and tail, sliders, the legs' parallelograms, struts.
 pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<Closed> {
-    let (robot, layout) = (assembly.robot(), assembly.layout());
+    let (lizard, layout) = (assembly.robot().lizard(), assembly.layout());
     let mut all = Vec::new();
-    let mut close = |name: String, bodies: [Node; 2], at: Vector| {
+    // Each point is on the x axis of the first body.
+    let mut close = |name: String, bodies: [Node; 2], x: f64| {
+        let at = Vector::new(x, 0.0);
         all.push(Closed { name, bodies, at });
     };
     for end in End::ALL {
-        let [left, right] = end.servos();
-        close(
-            format!("end {}", end.name()),
-            [left, right].map(|servo| Node::Of(Mount::Coupler(servo))),
-            Vector::new(robot.lizard().end(end).coupler_left, 0.0),
-        );
+        let couplers = end.servos().map(|servo| Node::Of(Mount::Coupler(servo)));
+        close(format!("end {end}"), couplers, lizard.end(end).coupler_left);
     }
     for side in Side::ALL {
         let [front, _] = side.servos();
-        close(
-            format!("slider {}", side.name()),
-            [Mount::Rod(side), Mount::Link(front)].map(Node::Of),
-            Vector::default(),
-        );
+        let bodies = [Mount::Rod(side), Mount::Link(front)].map(Node::Of);
+        close(format!("slider {side}"), bodies, 0.0);
     }
     for servo in 0..4 {
         let leg = lizard_robot::servo::LEGS[servo];
-        close(
-            format!("follower joint {leg}"),
-            [Mount::Foot(servo), Mount::Follower(servo)].map(Node::Of),
-            Vector::new(robot.lizard().leg.coupler, 0.0),
-        );
+        let bodies = [Mount::Foot(servo), Mount::Follower(servo)].map(Node::Of);
+        close(format!("follower joint {leg}"), bodies, lizard.leg.coupler);
         let strut = match slotted {
             true => Node::Slot(servo),
             false => Node::Of(Mount::Strut(servo)),
         };
-        close(
-            format!("leg anchor {leg}"),
+        let (bodies, length) = (
             [strut, Node::Of(Mount::Crank(servo))],
-            Vector::new(layout.legs[servo].strut_length, 0.0),
+            layout.legs[servo].strut_length,
         );
+        close(format!("leg anchor {leg}"), bodies, length);
     }
     all
 }

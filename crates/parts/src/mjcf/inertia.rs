@@ -78,14 +78,8 @@ impl Inertia {
         let at = self.centre();
         let about = |i: usize, j: usize| self.second[i][j] - self.mass * at[i] * at[j];
         let [x, y, z] = [0, 1, 2].map(|i| about(i, i));
-        [
-            y + z,
-            x + z,
-            x + y,
-            -about(0, 1),
-            -about(0, 2),
-            -about(1, 2),
-        ]
+        let [xy, xz, yz] = [about(0, 1), about(0, 2), about(1, 2)];
+        [y + z, x + z, x + y, -xy, -xz, -yz]
     }
 }
 
@@ -120,15 +114,12 @@ mod tests {
 
     #[test]
     fn two_halves_have_the_inertia_of_the_whole() {
-        let half = |x: f64| {
-            let size = Vector::new(10.0, 8.0);
-            prism(Shape::rectangle(Vector::new(x, 1.0), size, 0.0), [0.0, 3.0])
+        let block = |x: f64, long: f64| {
+            let (middle, size) = (Vector::new(x, 1.0), Vector::new(long, 8.0));
+            prism(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
         };
-        let whole = prism(
-            Shape::rectangle(Vector::new(5.0, 1.0), Vector::new(20.0, 8.0), 0.0),
-            [0.0, 3.0],
-        );
-        let both = half(0.0).and(&half(10.0)).scaled(0.5);
+        let whole = block(5.0, 20.0);
+        let both = block(0.0, 10.0).and(&block(10.0, 10.0)).scaled(0.5);
         assert!((both.mass - whole.mass / 2.0).abs() < 1e-9);
         for (part, wanted) in both.tensor().into_iter().zip(whole.tensor()) {
             assert!((part - wanted / 2.0).abs() < 1e-6, "{part} {wanted}");

@@ -1,4 +1,4 @@
-//! The robot as a model for MuJoCo, so that an engine by other people can let it walk.
+//! The robot as a model for MuJoCo, so that an independent physics engine can let it walk.
 //!
 //! Every part of the assembly becomes part of a rigid body, with the mass and the inertia
 //! of its own volume, at its place in the assembly. Hinges and slides join the bodies as

@@ -42,17 +42,15 @@ impl Node {
             if play {
                 all.push(Self::Horn(servo));
             }
-            all.extend(
-                [
-                    Mount::Link(servo),
-                    Mount::Coupler(servo),
-                    Mount::Crank(servo),
-                    Mount::Follower(servo),
-                    Mount::Foot(servo),
-                    Mount::Strut(servo),
-                ]
-                .map(Self::Of),
-            );
+            let mounts = [
+                Mount::Link,
+                Mount::Coupler,
+                Mount::Crank,
+                Mount::Follower,
+                Mount::Foot,
+                Mount::Strut,
+            ];
+            all.extend(mounts.map(|mount| Self::Of(mount(servo))));
             all.push(Self::Pad(servo));
             if slotted {
                 all.push(Self::Slot(servo));

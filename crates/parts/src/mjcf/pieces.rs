@@ -91,13 +91,11 @@ fn shares(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Pri
     match body.mount {
         Mount::Foot(servo) => {
             let foot = assembly.layout().legs[servo].foot;
-            let post = |prism: &&Prism| (middle(prism) - foot).length() < POST;
-            let (post, rest): (Vec<&Prism>, Vec<&Prism>) = body.prisms.iter().partition(post);
-            [(Node::Pad(servo), post), (Node::Of(body.mount), rest)]
-                .into_iter()
-                .filter(|(_, prisms)| !prisms.is_empty())
-                .map(|(node, prisms)| (node, prisms.into_iter().cloned().collect()))
-                .collect()
+            let post = |prism: &Prism| (middle(prism) - foot).length() < POST;
+            let (post, rest): (Vec<_>, Vec<_>) = body.prisms.iter().cloned().partition(post);
+            let all = [(Node::Pad(servo), post), (Node::Of(body.mount), rest)].into_iter();
+            let some = all.filter(|(_, prisms)| !prisms.is_empty());
+            some.collect()
         }
         Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => of(Node::Horn(servo)),
         Mount::Strut(servo) if body.kind == Kind::Spring => of(Node::Slot(servo)),

@@ -51,7 +51,7 @@ impl Scene {
 pub struct Pull {
     /// Force while the leg does not lag, N.
     pub force: f64,
-    /// Rate, N/mm.
+    /// Rate of the spring, N/mm.
     pub rate: f64,
 }
 
@@ -99,16 +99,17 @@ impl Course {
         let begin = APPROACH + REST;
         let period = gait.period();
         let seconds = begin + f64::from(cycles) * period;
-        let frames = (0..=(seconds * FRAMES_PER_SECOND).ceil() as usize).map(|frame| {
+        let targets = |frame: usize| {
             let now = frame as f64 / FRAMES_PER_SECOND;
             match now < begin {
                 true => start.map(|sweep| sweep * (now / APPROACH).min(1.0)),
                 false => sweeps(angles(now - begin)),
             }
-        });
+        };
+        let last = (seconds * FRAMES_PER_SECOND).ceil() as usize;
         Self {
             gait: gait.name().to_owned(),
-            frames: frames.collect(),
+            frames: (0..=last).map(targets).collect(),
             begin: begin + f64::from(cycles - 1) * period,
             period,
         }

@@ -125,13 +125,10 @@ impl Bench<'_> {
             Kind::ServoScrew => SERVO_SCREW,
             _ => return None,
         };
-        let by_width = |a: &usize, b: &usize| {
-            let width = |i: usize| body.prisms[i].add[0].width();
-            width(*a).total_cmp(&width(*b))
-        };
-        let head = (0..body.prisms.len()).max_by(by_width)?;
-        let above = head + 1 == body.prisms.len();
-        let prism = &body.prisms[head];
+        let width = |i: usize| body.prisms[i].add[0].width();
+        let last = body.prisms.len().checked_sub(1)?;
+        let head = (0..=last).max_by(|a, b| width(*a).total_cmp(&width(*b)))?;
+        let (above, prism) = (head == last, &body.prisms[head]);
         let place = self.assembly.place(body.mount, self.pose);
         Some(Axis {
             at: place.map(prism.add[0].middle()),
@@ -233,11 +230,9 @@ impl Assembly {
         for (number, step) in (1..).zip(steps) {
             let begin = before.len();
             for stage in &step.stages {
-                let known = |body: &&Body| before.iter().any(|old| old.name == body.name);
-                let bodies = self.bodies().iter();
-                let new: Vec<_> = bodies
-                    .filter(|body| (stage.adds)(body) && !known(body))
-                    .collect();
+                let known = |body: &Body| before.iter().any(|old| old.name == body.name);
+                let adds = |body: &&Body| (stage.adds)(body) && !known(body);
+                let new: Vec<_> = self.bodies().iter().filter(adds).collect();
                 before.extend(&new);
                 for screw in self.bodies() {
                     let same = |body: &&&Body| body.mount.servos() == screw.mount.servos();

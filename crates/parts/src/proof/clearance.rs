@@ -4,12 +4,14 @@
 //! by height, and at each pose their shapes are measured from above. Holes are ignored, so
 //! the true distance is never smaller than the one found here.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use lizard_kinematics::Solution;
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::assembly::Assembly;
+use crate::layers::body::Prism;
 use crate::layers::shape::Shape;
 
 /// The least distance found between two bodies.
@@ -40,12 +42,6 @@ impl fmt::Display for Clearance {
     }
 }
 
-/// The shapes of two layers.
-struct Pair<'a> {
-    bodies: [usize; 2],
-    shapes: [&'a [Shape]; 2],
-}
-
 impl Assembly {
     /// Pairs of bodies that come nearer than `within` mm at some poses, the nearest first,
     /// each pair once.
@@ -55,62 +51,46 @@ impl Assembly {
         poses: impl IntoIterator<Item = Solution>,
         within: f64,
     ) -> Vec<Clearance> {
+        // Each pair of shapes, with its bodies and a disc around each shape.
+        let disc = |shape: &Shape| (shape.middle(), shape.farthest(shape.middle()));
         let bodies = self.bodies();
         let mut pairs = Vec::new();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
-                if self.meet(a, b) {
-                    continue;
-                }
-                for p in &a.prisms {
-                    for q in &b.prisms {
-                        if p.z[0] < q.z[1] && q.z[0] < p.z[1] {
-                            pairs.push(Pair {
-                                bodies: [i, j],
-                                shapes: [&p.add, &q.add],
-                            });
-                        }
-                    }
+                let layers = a
+                    .prisms
+                    .iter()
+                    .flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
+                let level = |(p, q): &(&Prism, &Prism)| p.z[0] < q.z[1] && q.z[0] < p.z[1];
+                for (p, q) in layers.filter(|layers| !self.meet(a, b) && level(layers)) {
+                    let shapes = p.add.iter().flat_map(|a| q.add.iter().map(move |b| (a, b)));
+                    pairs.extend(shapes.map(|(a, b)| ([i, j], [(a, disc(a)), (b, disc(b))])));
                 }
             }
         }
-        let mut least: std::collections::BTreeMap<[usize; 2], ([f64; 4], f64)> = Default::default();
+        let mut least: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
         for pose in poses {
-            let places: Vec<_> = bodies
-                .iter()
-                .map(|body| self.place(body.mount, &pose))
-                .collect();
-            for pair in &pairs {
-                let [i, j] = pair.bodies;
-                for a in pair.shapes[0] {
-                    let middle = a.middle();
-                    let reach = a.farthest(middle);
-                    let middle = places[i].map(middle);
-                    for b in pair.shapes[1] {
-                        let other = b.middle();
-                        let more = b.farthest(other);
-                        let apart = (places[j].map(other) - middle).length() - reach - more;
-                        let known = least.get(&pair.bodies).map_or(within, |known| known.1);
-                        if apart >= known {
-                            continue;
-                        }
-                        let mm = a.placed(&places[i]).distance(&b.placed(&places[j]));
-                        if mm < known {
-                            least.insert(pair.bodies, (pose.pose.into(), mm));
-                        }
+            let places = bodies.iter().map(|body| self.place(body.mount, &pose));
+            let places: Vec<_> = places.collect();
+            for (of, [(a, (middle, reach)), (b, (other, more))]) in &pairs {
+                let [first, second] = of.map(|body| &places[body]);
+                let apart = (second.map(*other) - first.map(*middle)).length() - reach - more;
+                let known = least.get(of).map_or(within, |known| known.1);
+                if apart < known {
+                    let mm = a.placed(first).distance(&b.placed(second));
+                    if mm < known {
+                        least.insert(*of, (pose.pose.into(), mm));
                     }
                 }
             }
         }
-        let mut found: Vec<_> = least
-            .into_iter()
-            .map(|([i, j], (pose, mm))| Clearance {
-                first: bodies[i].name.clone(),
-                second: bodies[j].name.clone(),
-                pose,
-                mm,
-            })
-            .collect();
+        let clearance = |([i, j], (pose, mm)): ([usize; 2], _)| Clearance {
+            first: bodies[i].name.clone(),
+            second: bodies[j].name.clone(),
+            pose,
+            mm,
+        };
+        let mut found: Vec<_> = least.into_iter().map(clearance).collect();
         found.sort_by(|a, b| a.mm.total_cmp(&b.mm));
         found
     }

@@ -4,15 +4,14 @@
 //! integers, and may differ within a band ([`SINE`], [`LENGTH`]). The limits are relaxed
 //! by that band, so the proof also covers every pose that the firmware accepts.
 
-use std::cmp::Reverse;
-use std::collections::{BinaryHeap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 
 use lizard_kinematics::{Check, End, Limits, Real, Side, Solution, Vector};
 use lizard_robot::Robot;
 
 use super::interval::Interval;
 use super::slope::Slope;
-use crate::bodies::joints::{Cranks, Joints};
+use crate::bodies::joints::Cranks;
 
 /// Relaxation of the margins' limits, a sine.
 const SINE: f64 = 0.005;
@@ -27,6 +26,12 @@ const FINE: f64 = 0.01;
 const COARSE: f64 = 0.2;
 /// Number of regions searched for a pose with some angles given.
 const ATTEMPTS: u32 = 300;
+
+/// A key that orders numbers as [`f64::total_cmp`] does.
+pub fn ordered(value: f64) -> i64 {
+    let bits = value.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
 
 /// A box of angles of `N` servos: middles and half widths, deg.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,25 +65,7 @@ impl<const N: usize> Region<N> {
     }
 }
 
-/// Cranks at all angles of a region; those of other servos are meaningless.
-pub fn within<'a, const N: usize>(
-    robot: &'a Robot,
-    servos: &[usize; N],
-    region: &Region<N>,
-) -> Cranks<'a, Slope<N>> {
-    let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
-    turned(robot, servos, angles)
-}
-
-/// Cranks in the middle of a region.
-pub fn middle<'a, const N: usize>(
-    robot: &'a Robot,
-    servos: &[usize; N],
-    region: &Region<N>,
-) -> Cranks<'a, f64> {
-    turned(robot, servos, region.middle)
-}
-
+/// Cranks at some angles; those of other servos are meaningless.
 fn turned<'a, const N: usize, T: Real>(
     robot: &'a Robot,
     servos: &[usize; N],
@@ -89,10 +76,8 @@ fn turned<'a, const N: usize, T: Real>(
     for (i, servo) in servos.iter().enumerate() {
         cranks[*servo] = Vector::new(cosines[i], sines[i]);
     }
-    Cranks {
-        lizard: robot.lizard(),
-        cranks,
-    }
+    let lizard = robot.lizard();
+    Cranks { lizard, cranks }
 }
 
 /// The guard of a robot.
@@ -117,8 +102,7 @@ impl<'a> Guard<'a> {
                 stroke_min: limits.stroke_min - LENGTH,
                 stroke_max: limits.stroke_max + LENGTH,
             },
-            ranges: std::array::from_fn(|servo| {
-                let servo = &robot.servos()[servo];
+            ranges: robot.servos().each_ref().map(|servo| {
                 let (low, high) = servo.travel();
                 Interval::new(servo.neutral + low, servo.neutral + high)
             }),
@@ -141,31 +125,22 @@ impl<'a> Guard<'a> {
     fn end_of(&self, pair: [usize; 2], which: usize, high: bool) -> f64 {
         let sign = if high { -1.0 } else { 1.0 };
         let end = |region: &Region<2>| region.middle[which] - sign * region.half[which];
-        // Orders floats that are numbers.
-        let key = |region: &Region<2>| {
-            let bits = (sign * end(region)).to_bits() as i64;
-            Reverse(bits ^ (((bits >> 63) as u64) >> 1) as i64)
-        };
         let whole = Region::of(pair.map(|servo| self.ranges[servo]));
-        let mut regions = vec![whole];
-        let mut heap = BinaryHeap::from([(key(&whole), 0)]);
-        while let Some((_, index)) = heap.pop() {
-            let region: Region<2> = regions[index];
+        // The least end comes first, and of equal ones the first that was found.
+        let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole)]), 0);
+        while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
                 continue;
             }
-            let least = if which == 0 {
-                [FINE, COARSE]
-            } else {
-                [COARSE, FINE]
-            };
+            let mut least = [COARSE; 2];
+            least[which] = FINE;
             let [a, b] = [0, 1].map(|i| region.half[i] / least[i]);
             if a.max(b) < 1.0 {
                 return end(&region);
             }
             for half in region.halves(usize::from(b > a)) {
-                heap.push((key(&half), regions.len()));
-                regions.push(half);
+                count += 1;
+                regions.insert((ordered(sign * end(&half)), count), half);
             }
         }
         // Nothing is accepted at all; a robot whose neutral pose is safe has something.
@@ -174,31 +149,31 @@ impl<'a> Guard<'a> {
 
     /// True if the conditions that these servos decide alone refuse every pose of a region.
     pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
-        let bounds = within(self.robot, servos, region);
-        let middle = middle(self.robot, servos, region);
-        self.breaks(servos, region, &bounds, &middle)
+        self.cranks(servos, region).is_none()
     }
 
-    /// The same as [`Guard::refuses`], for cranks that are known already.
-    pub fn breaks<const N: usize>(
+    /// The cranks of some servos within a region and in its middle; `None` if the conditions
+    /// that these servos decide alone refuse every pose of it.
+    pub fn cranks<const N: usize>(
         &self,
         servos: &[usize; N],
         region: &Region<N>,
-        bounds: &Cranks<Slope<N>>,
-        middle: &Cranks<f64>,
-    ) -> bool {
+    ) -> Option<(Cranks<'a, Slope<N>>, Cranks<'a, f64>)> {
+        let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
+        let bounds = turned(self.robot, servos, angles);
+        let middle = turned(self.robot, servos, region.middle);
         let broken = |(what, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.near(middle, &region.half).value;
             let [low, high] = [value.low, value.high].map(|value| self.broken(what, value));
             low.is_some() && low == high
         };
         let all = |of: [usize; 2]| of.iter().all(|servo| servos.contains(servo));
+        // A leg's margin depends on the crank's direction alone, not on the angle.
+        let (leg, none) = (&self.robot.lizard().leg, Slope::of(0.0));
         let legs = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
-            let shape = &self.robot.lizard().leg;
-            // A leg's margin depends on the direction alone.
-            let bounds = shape.shape(end, Slope::of(0.0), bounds.crank(servo)).margin;
-            let middle = shape.shape(end, 0.0, middle.crank(servo)).margin;
+            let bounds = leg.shape(end, none, bounds.cranks[servo]).margin;
+            let middle = leg.shape(end, 0.0, middle.cranks[servo]).margin;
             broken((Check::LEG[servo], bounds, middle))
         });
         let end = |end: End| {
@@ -210,7 +185,8 @@ impl<'a> Guard<'a> {
             let what = Check::STROKE[usize::from(side == Side::Right)];
             all(side.servos()) && broken((what, bounds.side(side).s, middle.side(side).s))
         };
-        legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side)
+        let refused = legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side);
+        (!refused).then_some((bounds, middle))
     }
 
     /// The relaxed limit that a value breaks, if any.

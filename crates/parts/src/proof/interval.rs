@@ -58,32 +58,49 @@ impl Interval {
         };
         let (sin_a, cos_a) = sin_cos(self.low);
         let (sin_b, cos_b) = sin_cos(self.high);
-        let between = |a: f64, b: f64, top: f64, bottom: f64| Self {
-            low: if passes(bottom) {
-                -1.0
-            } else {
-                a.min(b) - SINE
-            },
-            high: if passes(top) { 1.0 } else { a.max(b) + SINE },
+        let between = |a: f64, b: f64, top: f64, bottom: f64| {
+            let (low, high) = (a.min(b) - SINE, a.max(b) + SINE);
+            let low = if passes(bottom) { -1.0 } else { low };
+            Self::new(low, if passes(top) { 1.0 } else { high })
         };
-        (
-            between(sin_a, sin_b, 90.0, -90.0),
-            between(cos_a, cos_b, 0.0, 180.0),
-        )
+        let sine = between(sin_a, sin_b, 90.0, -90.0);
+        (sine, between(cos_a, cos_b, 0.0, 180.0))
     }
 }
 
-impl Add for Interval {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self::outward(self.low + other.low, self.high + other.high)
-    }
+/// Implements operators, each as `operator method(self, other: type) result;`.
+macro_rules! operators {
+    ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
+        impl $operator<$type> for Interval {
+            type Output = Self;
+            fn $method($self, $other: $type) -> Self $result
+        }
+    )*};
 }
 
-impl Sub for Interval {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + -other
+operators! {
+    Add add(self, other: Self) { Self::outward(self.low + other.low, self.high + other.high) }
+    Sub sub(self, other: Self) { self + -other }
+    Mul mul(self, other: Self) {
+        let low = [self.low * other.low, self.low * other.high];
+        let high = [self.high * other.low, self.high * other.high];
+        let ([a, b], [c, d]) = (low, high);
+        // 0 times infinity is no number, and must not get lost in min and max.
+        if (a + b + c + d).is_nan() {
+            return Self::ALL;
+        }
+        Self::outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
+    }
+    Mul mul(self, factor: f64) {
+        let (a, b) = (self.low * factor, self.high * factor);
+        Self::outward(a.min(b), a.max(b))
+    }
+    // A quotient is a product with a reciprocal, whose own rounding is outward, too.
+    Div div(self, other: Self) {
+        if other.low <= 0.0 && other.high >= 0.0 {
+            return Self::ALL;
+        }
+        self * Self::outward(1.0 / other.high, 1.0 / other.low)
     }
 }
 
@@ -91,43 +108,6 @@ impl Neg for Interval {
     type Output = Self;
     fn neg(self) -> Self {
         Self::new(-self.high, -self.low)
-    }
-}
-
-impl Mul for Interval {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let [a, b, c, d] = [
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        ];
-        // 0 times infinity is no number, and must not get lost in min and max.
-        if (a + b + c + d).is_nan() {
-            return Self::ALL;
-        }
-        Self::outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
-    }
-}
-
-impl Mul<f64> for Interval {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        let (a, b) = (self.low * factor, self.high * factor);
-        Self::outward(a.min(b), a.max(b))
-    }
-}
-
-impl Div for Interval {
-    type Output = Self;
-    // A quotient is a product with a reciprocal; its own rounding is outward, too.
-    #[allow(clippy::suspicious_arithmetic_impl)]
-    fn div(self, other: Self) -> Self {
-        if other.low <= 0.0 && other.high >= 0.0 {
-            return Self::ALL;
-        }
-        self * Self::outward(1.0 / other.high, 1.0 / other.low)
     }
 }
 
@@ -170,10 +150,8 @@ mod tests {
             let x = Interval::new(a.min(b), a.max(b));
             let y = Interval::new(c.min(d), c.max(d));
             for share in [0.0, 0.3, 1.0] {
-                let (p, q) = (
-                    (x.low + share * (x.high - x.low)).clamp(x.low, x.high),
-                    (y.low + share * (y.high - y.low)).clamp(y.low, y.high),
-                );
+                let at = |of: Interval| of.low + share * (of.high - of.low);
+                let [p, q] = [x, y].map(|of| at(of).clamp(of.low, of.high));
                 assert!(holds(x + y, p + q) && holds(x - y, p - q) && holds(-x, -p));
                 assert!(holds(x * y, p * q) && holds(x * c, p * c));
                 assert!(q == 0.0 || holds(x / y, p / q), "{x:?} / {y:?}");

@@ -81,13 +81,13 @@ pub struct Proof {
 /// Two parts that do not keep clear of each other.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Clash {
-    /// Two parts overlap.
+    /// Two parts that overlap.
     #[error("{0}")]
     Overlap(Box<Clearance>),
-    /// Two parts come too near to each other.
+    /// Two parts that come too near to each other.
     #[error("{0}, which is less than {LEAST} mm")]
     Narrow(Box<Clearance>),
-    /// At poses that the guard hardly accepts, two parts may overlap.
+    /// Two parts that may overlap at poses that the guard hardly accepts.
     #[error("{0}")]
     Unsure(Box<Near>),
 }
@@ -137,13 +137,14 @@ impl Proof {
     /// The two parts that overlap most, with the pose and the overlap; else two that come
     /// nearer than [`LEAST`].
     pub fn judge(&self) -> Result<(), Clash> {
-        let apart = self.apart.iter().map(|near| (near, LEAST));
-        let meeting = self.meeting.iter().map(|near| (near, -TOUCH));
-        let worst = apart
-            .chain(meeting)
-            .filter_map(|(near, least)| near.clash(least).map(|clash| (near.mm(), clash)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        worst.map_or(Ok(()), |(_, clash)| Err(clash))
+        let apart = self.apart.iter().map(|near| (near.clash(LEAST), near.mm()));
+        let meeting = self
+            .meeting
+            .iter()
+            .map(|near| (near.clash(-TOUCH), near.mm()));
+        let clashes = apart.chain(meeting).filter(|(clash, _)| clash.is_some());
+        let (worst, _) = clashes.min_by(|a, b| a.1.total_cmp(&b.1)).unzip();
+        worst.flatten().map_or(Ok(()), Err)
     }
 }
 

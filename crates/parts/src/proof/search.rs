@@ -5,12 +5,11 @@
 //! less than every distance in the part; the distance at any pose is no less than the
 //! least one. Where both meet, the least distance is known.
 
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 
 use lizard_kinematics::{Solution, Vector};
 
-use super::guard::{Guard, Region, middle, within};
+use super::guard::{Guard, Region, ordered};
 use super::slope::Slope;
 use super::solids::Task;
 use crate::bodies::assembly::Assembly;
@@ -58,31 +57,6 @@ struct Part<const N: usize> {
     /// The servo across whose angle it is to be halved.
     across: usize,
     alive: Vec<u32>,
-}
-
-impl<const N: usize> PartialEq for Part<N> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<const N: usize> Eq for Part<N> {}
-
-impl<const N: usize> PartialOrd for Part<N> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const N: usize> Ord for Part<N> {
-    /// Orders the least distance as the greatest, since the heap returns the greatest
-    /// first; regions break ties, so that the order is always the same.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let pairs = self.region.middle.iter().zip(&other.region.middle);
-        pairs.fold(other.low.total_cmp(&self.low), |order, (a, b)| {
-            order.then(a.total_cmp(b))
-        })
-    }
 }
 
 /// The least distance of a task's solids over all poses that the guard accepts, from
@@ -137,9 +111,11 @@ impl<const N: usize> Search<'_, N> {
         let whole = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all: Vec<u32> = (0..self.task.solids.len() as u32).collect();
         let share = if self.task.meet { SHARE_MEETING } else { SHARE };
-        let mut heap = BinaryHeap::new();
-        heap.extend(self.look(whole, &all));
-        while let Some(part) = heap.pop() {
+        // The least bound comes first; regions break ties, so the order is always the same.
+        let key = |part: &Part<N>| (ordered(part.low), part.region.middle.map(ordered));
+        let first = self.look(whole, &all).into_iter();
+        let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
+        while let Some((_, part)) = parts.pop_first() {
             let high = self.high();
             if part.low >= high - NEAR - share * high.abs() {
                 return self.found(part.low.min(high), None);
@@ -149,7 +125,8 @@ impl<const N: usize> Search<'_, N> {
                 return self.found(part.low, Some(&part));
             }
             for half in part.region.halves(part.across) {
-                heap.extend(self.look(half, &part.alive));
+                let half = self.look(half, &part.alive);
+                parts.extend(half.map(|part| (key(&part), part)));
             }
         }
         let high = self.high();
@@ -157,10 +134,8 @@ impl<const N: usize> Search<'_, N> {
     }
 
     fn found(self, proved: f64, doubt: Option<&Part<N>>) -> Found {
-        let by = match (&self.seen, doubt) {
-            (None, Some(part)) => part.by,
-            _ => self.by,
-        };
+        let unseen = doubt.filter(|_| self.seen.is_none());
+        let by = unseen.map_or(self.by, |part| part.by);
         Found {
             proved: proved - ROUNDING,
             bodies: self.task.solids[by as usize].bodies,
@@ -183,12 +158,7 @@ impl<const N: usize> Search<'_, N> {
     /// already, or if the guard accepts no pose.
     fn look(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
-        let robot = self.assembly.robot();
-        let bounds = within(robot, &self.servos, &region);
-        let middle = middle(robot, &self.servos, &region);
-        if self.guard.breaks(&self.servos, &region, &bounds, &middle) {
-            return None;
-        }
+        let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
         // The first and the second mount's place: in the middle, and anywhere.
         let [(a, around_a), (b, around_b)] = self.task.mounts.map(|mount| {
             let place = self.assembly.place_on(mount, &middle);

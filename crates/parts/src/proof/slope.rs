@@ -22,12 +22,9 @@ pub struct Slope<const N: usize> {
 impl<const N: usize> Slope<N> {
     /// The angle of one of the servos, deg.
     pub fn angle(servo: usize, bounds: Interval) -> Self {
-        let mut slope = [Interval::of(0.0); N];
-        slope[servo] = Interval::of(1.0);
-        Self {
-            value: bounds,
-            slope,
-        }
+        let mut angle = Self::of(0.0);
+        (angle.value, angle.slope[servo]) = (bounds, Interval::of(1.0));
+        angle
     }
 
     /// Largest distance from its value at the middle angles, if each servo may be `half`
@@ -67,25 +64,34 @@ impl<const N: usize> Slope<N> {
         value: Interval,
         of: impl Fn(Interval, Interval) -> Interval,
     ) -> Self {
-        let mut slope = self.slope;
-        for (a, b) in slope.iter_mut().zip(other.slope) {
-            *a = of(*a, b);
-        }
+        let slope = std::array::from_fn(|i| of(self.slope[i], other.slope[i]));
         Self { value, slope }
     }
 }
 
-impl<const N: usize> Add for Slope<N> {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        self.zip(other, self.value + other.value, |a, b| a + b)
-    }
+/// Implements operators. `each` and `zip` apply the rule for the slopes.
+macro_rules! operators {
+    ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
+        // The rule for the slopes of a product or a quotient has other operations in it.
+        #[allow(clippy::suspicious_arithmetic_impl)]
+        impl<const N: usize> $operator<$type> for Slope<N> {
+            type Output = Self;
+            fn $method($self, $other: $type) -> Self $result
+        }
+    )*};
 }
 
-impl<const N: usize> Sub for Slope<N> {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, self.value - other.value, |a, b| a - b)
+operators! {
+    Add add(self, other: Self) { self.zip(other, self.value + other.value, |a, b| a + b) }
+    Sub sub(self, other: Self) { self.zip(other, self.value - other.value, |a, b| a - b) }
+    Mul mul(self, other: Self) {
+        let (value, of) = (self.value * other.value, self.value);
+        self.zip(other, value, |a, b| a * other.value + b * of)
+    }
+    Mul mul(self, factor: f64) { self.each(self.value * factor, |slope| slope * factor) }
+    Div div(self, other: Self) {
+        let quotient = self.value / other.value;
+        self.zip(other, quotient, |a, b| (a - quotient * b) / other.value)
     }
 }
 
@@ -93,34 +99,6 @@ impl<const N: usize> Neg for Slope<N> {
     type Output = Self;
     fn neg(self) -> Self {
         self.each(-self.value, |slope| -slope)
-    }
-}
-
-impl<const N: usize> Mul for Slope<N> {
-    type Output = Self;
-    // The rule for the slopes has other operations in it.
-    #[allow(clippy::suspicious_arithmetic_impl)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, self.value * other.value, |a, b| {
-            a * other.value + b * self.value
-        })
-    }
-}
-
-impl<const N: usize> Mul<f64> for Slope<N> {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        self.each(self.value * factor, |slope| slope * factor)
-    }
-}
-
-impl<const N: usize> Div for Slope<N> {
-    type Output = Self;
-    // The rule for the slopes has other operations in it.
-    #[allow(clippy::suspicious_arithmetic_impl)]
-    fn div(self, other: Self) -> Self {
-        let quotient = self.value / other.value;
-        self.zip(other, quotient, |a, b| (a - quotient * b) / other.value)
     }
 }
 
@@ -157,22 +135,13 @@ mod tests {
 
     use super::*;
 
-    const HEAD: FiveBar = FiveBar {
-        base: 20.0,
-        crank_left: 30.0,
-        coupler_left: 50.0,
-        coupler_right: 45.0,
-        crank_right: 28.0,
-    };
+    const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 45.0, 28.0]);
 
     /// The end point and a margin.
     fn numbers<T: Real>([left, right]: [T; 2]) -> [T; 3] {
         let (sin, cos) = T::sin_cos_each([left, right]);
-        let pose = HEAD.shape(
-            AssemblyMode::Ahead,
-            Vector::new(cos[0], sin[0]),
-            Vector::new(cos[1], sin[1]),
-        );
+        let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));
+        let pose = HEAD.shape(AssemblyMode::Ahead, left, right);
         [pose.end_point.x, pose.end_point.y, pose.type2]
     }
 
@@ -181,10 +150,8 @@ mod tests {
         for (left, right) in [(120.0, 60.0), (95.0, 40.0), (140.0, 80.0)] {
             for half in [0.01, 0.1, 1.0] {
                 let bounds = |middle: f64| Interval::new(middle - half, middle + half);
-                let held = numbers::<Slope<2>>([
-                    Slope::angle(0, bounds(left)),
-                    Slope::angle(1, bounds(right)),
-                ]);
+                let angles = [(0, left), (1, right)];
+                let held = numbers(angles.map(|(i, of)| Slope::<2>::angle(i, bounds(of))));
                 let middle = numbers([left, right]);
                 for (x, y) in [(-1.0, 1.0), (0.5, 0.5), (1.0, -1.0), (-0.2, -1.0)] {
                     let at = [left + x * half, right + y * half];

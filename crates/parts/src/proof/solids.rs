@@ -85,10 +85,8 @@ impl Task {
                     continue;
                 }
                 let mounts = [a.mount, b.mount];
-                let known = tasks
-                    .iter_mut()
-                    .find(|task| task.mounts == mounts && task.meet == meet);
-                match known {
+                let same = |task: &&mut Self| task.mounts == mounts && task.meet == meet;
+                match tasks.iter_mut().find(same) {
                     Some(task) => task.solids.extend(solids),
                     None => tasks.push(Self {
                         mounts,
@@ -216,17 +214,16 @@ impl Solid {
         bounds: &Placement<Slope<N>>,
         region: &Region<N>,
     ) -> f64 {
+        const ANYWHERE: Vector = Vector::new(f64::INFINITY, f64::INFINITY);
         self.at_least(place, |shape| {
-            let mut most: Vector = Vector::default();
-            for &point in &shape.points {
+            let strays = shape.points.iter().map(|&point| {
                 let at = bounds.map(point);
-                let strays = Vector::new(at.x.strays(&region.half), at.y.strays(&region.half));
-                if !strays.is_finite() {
-                    return Vector::new(f64::INFINITY, f64::INFINITY);
-                }
-                most = Vector::new(most.x.max(strays.x), most.y.max(strays.y));
-            }
-            most
+                Vector::new(at.x.strays(&region.half), at.y.strays(&region.half))
+            });
+            strays.fold(Vector::default(), |most, of| match of.is_finite() {
+                true => Vector::new(most.x.max(of.x), most.y.max(of.y)),
+                false => ANYWHERE,
+            })
         })
     }
 

@@ -5,7 +5,7 @@
 
 use lizard_kinematics::Vector;
 
-use super::guard::{Guard, Region, middle, within};
+use super::guard::{Guard, Region};
 use super::interval::Interval;
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount};
@@ -61,12 +61,9 @@ impl Sweep<'_> {
         let ranges = servos.map(|servo| self.guard.ranges[servo]);
         let mut regions = vec![Region::of(ranges)];
         while let Some(region) = regions.pop() {
-            let robot = self.assembly.robot();
-            let bounds = within(robot, &servos, &region);
-            let middle = middle(robot, &servos, &region);
-            if self.guard.breaks(&servos, &region, &bounds, &middle) {
+            let Some((bounds, _)) = self.guard.cranks(&servos, &region) else {
                 continue;
-            }
+            };
             let widest = (0..N).max_by(|a, b| region.half[*a].total_cmp(&region.half[*b]));
             match widest {
                 Some(widest) if region.half[widest] > FINE => {

@@ -2,17 +2,15 @@
 
 use lizard_parts::{Assembly, Bill, Hold, Item, Kind};
 
-use crate::STRUT;
+use crate::{STRUT, neutral};
 
 fn bill(name: &str) -> (Assembly, Bill) {
     bill_with(name, "")
 }
 
 fn bill_with(name: &str, more: &str) -> (Assembly, Bill) {
-    let robot = crate::with(name, more);
-    let assembly = Assembly::new(&robot);
-    let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
-    let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+    let assembly = crate::assembly(name, more);
+    let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
     (assembly, bill)
 }
 
@@ -87,20 +85,13 @@ fn a_mass_centre_is_told_in_words_and_as_robot_toml_has_it() {
     bill.centre = [4.26, 0.04, 9.7];
     assert_eq!(bill.beside(), "4.3 mm ahead and 0.0 mm to the left of");
     let body = bill.body();
-    assert_eq!(
-        bill.body_toml(),
-        "[body]\nmass = 308.0\ncentre = [4.3, 0.0]\n"
-    );
+    let toml = "[body]\nmass = 308.0\ncentre = [4.3, 0.0]\n";
+    assert_eq!(bill.body_toml(), toml);
     assert!(!bill.differs(&body));
-    for (mass, centre) in [
-        (280.0, [4.0, 0.0]),
-        (308.0, [0.0, 0.0]),
-        (330.0, [4.0, 0.0]),
-    ] {
-        assert!(
-            bill.differs(&lizard_robot::Body { mass, centre }),
-            "{mass} {centre:?}"
-        );
+    for (mass, ahead) in [(280.0, 4.0), (308.0, 0.0), (330.0, 4.0)] {
+        let centre = [ahead, 0.0];
+        let differs = bill.differs(&lizard_robot::Body { mass, centre });
+        assert!(differs, "{mass} {ahead}");
     }
 }
 
@@ -137,10 +128,7 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     let force = hold.force + 5.0 * hold.rate;
     assert!((torque / (force * by) - 1.0).abs() < 1e-4, "{torque}");
     // A spring as weak as walking allows does spare one.
-    let (_, weak) = bill_with(
-        "paper",
-        "[leg.drive]\nkind = \"strut\"\nforce = 2.0\nrate = 0.2",
-    );
+    let (_, weak) = bill_with("paper", &format!("{STRUT}\nforce = 2.0\nrate = 0.2"));
     assert!(weak.hold.expect("springs").spares());
 }
 
@@ -185,22 +173,16 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
     assert_eq!(rigid.hold, None);
     assert!(!assembly.robot().drive().lags());
     let said = rigid.to_string();
-    assert!(
-        said.contains("A foot that is caught can stall its servo"),
-        "{said}"
-    );
-    assert!(said.contains("[leg.drive]\nkind = \"rigid\"\n"), "{said}");
+    for words in [
+        "A foot that is caught can stall its servo",
+        "[leg.drive]\nkind = \"rigid\"\n",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
     let said = sprung.to_string();
-    let table = said
-        .split("```")
-        .nth(1)
-        .and_then(|text| text.strip_prefix("toml\n"));
-    let drive = table
-        .expect("a table")
-        .split("\n\n")
-        .next()
-        .expect("the drive");
-    // What it says to write there makes the same robot.
+    let (_, table) = said.split_once("```toml\n").expect("a table");
+    let (drive, _) = table.split_once("\n\n").expect("the drive");
+    // The table that it quotes makes the same robot.
     let (again, _) = bill_with("paper", drive);
     let [was, is] = [sprung.hold, Hold::of(&again)].map(|hold| hold.expect("springs"));
     assert!((was.force - is.force).abs() < 0.01 && (was.rate - is.rate).abs() < 0.001);

@@ -1,20 +1,12 @@
-//! What a builder meets: leads, hung springs, screws from the shop, walls, marks, roofs.
+//! Tests of what matters to a builder: leads, springs, screws on sale, walls, marks, roofs.
 //!
-//! The outlines of the layers are asked point by point, not by the shapes that the proof
+//! The outlines of the layers are tested point by point, not by the shapes that the proof
 //! of fit takes.
 
 use lizard_kinematics::{End, Vector};
-use lizard_parts::{Assembly, Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
+use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
 
-use crate::{ROBOTS, STRUT};
-
-fn with(name: &str, more: &str) -> Assembly {
-    Assembly::new(&crate::with(name, more))
-}
-
-fn sprung(name: &str) -> Assembly {
-    with(name, STRUT)
-}
+use crate::{ROBOTS, assembly, body, slotted};
 
 fn at(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
@@ -31,18 +23,16 @@ fn points(middle: Vector, size: Vector) -> Vec<Vector> {
 }
 
 fn layers(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
-    prisms
-        .iter()
-        .map(|prism| (prism.z, Outline::of(prism)))
-        .collect()
+    let layer = |prism: &Prism| (prism.z, Outline::of(prism));
+    prisms.iter().map(layer).collect()
 }
 
 #[test]
 fn a_servo_goes_into_the_plate_with_its_lead() {
     for name in ROBOTS {
-        let assembly = with(name, "");
+        let assembly = assembly(name, "");
         let servo = assembly.robot().parts().servo;
-        let plate = layers(&assembly.body("plate").expect("a plate").prisms);
+        let plate = layers(&body(&assembly, "plate").prisms);
         for end in End::ALL {
             for i in end.servos() {
                 let middle = assembly.layout().plate.cases[i];
@@ -65,7 +55,7 @@ fn a_servo_goes_into_the_plate_with_its_lead() {
 
 #[test]
 fn the_coupon_has_the_openings_of_the_plate() {
-    let assembly = with("paper", "");
+    let assembly = assembly("paper", "");
     let parts = assembly.robot().parts();
     let [coupon, _] = coupon(parts);
     let floor = Outline::of(&coupon.prisms[0]);
@@ -86,19 +76,14 @@ fn the_coupon_has_the_openings_of_the_plate() {
     }
 }
 
-/// The coil of a leg's spring and its strut.
-fn coil<'a>(assembly: &'a Assembly, leg: &str) -> (&'a Body, &'a Body) {
-    let body = |name: String| assembly.body(&name).expect("a body");
-    (body(format!("spring {leg}")), body(format!("strut {leg}")))
-}
-
 #[test]
 fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
     for name in ROBOTS {
-        let assembly = sprung(name);
+        let assembly = slotted(name, "");
         let parts = assembly.robot().parts();
         for (i, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
-            let (spring, strut) = coil(&assembly, leg);
+            let [spring, strut] =
+                ["spring", "strut"].map(|of| body(&assembly, &format!("{of} {leg}")));
             let shape = &spring.prisms[0].add[0];
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
@@ -126,7 +111,7 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
                     }
                 }
             }
-            let link = assembly.body(&format!("link A{}", i + 1)).expect("a link");
+            let link = body(&assembly, &format!("link A{}", i + 1));
             assert!(link.z()[0] - top > 0.2, "{name}: {top}");
         }
     }
@@ -134,15 +119,13 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
 
 #[test]
 fn a_coil_that_rides_on_its_strut_is_found() {
-    let riding = sprung("paper").altered(|bodies| {
+    let riding = slotted("paper", "").altered(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
             body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
         }
     });
-    let proof = riding.prove_some(
-        |a, b| [a, b].iter().any(|of| of.name == "spring LF"),
-        |_, _| (),
-    );
+    let spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
+    let proof = riding.prove_some(spring, |_, _| ());
     let clash = proof.judge().expect_err("it is too near to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
@@ -151,16 +134,16 @@ fn a_coil_that_rides_on_its_strut_is_found() {
 fn every_shop_has_the_screws() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
-            let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
-            let mut asked = 0;
-            for body in assembly.bodies() {
-                if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind {
-                    let sold = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
-                    assert!(sold.contains(&length), "{name}: {} {length}", body.name);
-                    asked += 1;
-                }
+            let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
+            let screws = assembly.bodies().iter().filter_map(|body| match body.kind {
+                Kind::Screw(length) | Kind::HexScrew(length) => Some((&body.name, length)),
+                _ => None,
+            });
+            assert!(screws.clone().count() > 40);
+            for (screw, length) in screws {
+                let sold = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
+                assert!(sold.contains(&length), "{name}: {screw} {length}");
             }
-            assert!(asked > 40, "{asked}");
         }
     }
 }
@@ -168,16 +151,13 @@ fn every_shop_has_the_screws() {
 #[test]
 fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
     for name in ROBOTS {
-        let assembly = with(name, "");
+        let assembly = assembly(name, "");
         let boss = assembly.stack().servo + assembly.robot().parts().servo.boss;
-        let mut asked = 0;
-        for body in assembly.bodies() {
-            if matches!(body.kind, Kind::HornScrew(_)) {
-                assert!(body.z()[0] > boss + 0.5, "{}: {}", body.name, body.z()[0]);
-                asked += 1;
-            }
-        }
-        assert_eq!(asked, 8);
+        let bodies = assembly.bodies().iter();
+        let screws = bodies.filter(|body| matches!(body.kind, Kind::HornScrew(_)));
+        let tips = screws.map(|screw| screw.z()[0]);
+        assert_eq!(tips.clone().count(), 8);
+        assert!(tips.fold(f64::MAX, f64::min) > boss + 0.5, "{name}");
     }
 }
 
@@ -213,11 +193,12 @@ fn thinnest(part: &Part) -> f64 {
         for piece in &Outline::of(prism).pieces {
             let lines: Vec<_> = piece.iter().map(along).collect();
             for (i, a) in lines.iter().enumerate() {
-                for b in &lines[i + 1..] {
-                    for point in a {
-                        let near = b.iter().map(|other| (*other - *point).length());
-                        least = near.fold(least, f64::min);
-                    }
+                for (b, point) in lines[i + 1..]
+                    .iter()
+                    .flat_map(|b| a.iter().map(move |p| (b, p)))
+                {
+                    let near = b.iter().map(|other| (*other - *point).length());
+                    least = near.fold(least, f64::min);
                 }
             }
         }
@@ -228,17 +209,15 @@ fn thinnest(part: &Part) -> f64 {
 #[test]
 fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
     for name in ["paper", "unequal"] {
-        let assembly = with(name, "");
+        let assembly = assembly(name, "");
         let wall = assembly.robot().parts().wall;
         let mut asked = 0;
         for part in assembly.parts() {
             // In the plate the servos' own screws are beside their openings, and the
             // engraved lines of a number beside each other; in a link the horn's screws
             // are beside its hub; a ring is as thin as the coil beside it demands.
-            if ["plate", "link", "strut ring"]
-                .iter()
-                .any(|known| part.name.starts_with(known))
-            {
+            let thinner = ["plate", "link", "strut ring"];
+            if thinner.iter().any(|known| part.name.starts_with(known)) {
                 continue;
             }
             let thin = thinnest(&part);
@@ -251,8 +230,8 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
 
 #[test]
 fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
-    let assembly = with("paper", "");
-    let link = assembly.body("link A1").expect("a link");
+    let assembly = assembly("paper", "");
+    let link = body(&assembly, "link A1");
     let floor = Outline::of(&link.prisms[0]);
     let outer = along(&floor.pieces[0][0]);
     let mut pockets = 0;
@@ -273,23 +252,19 @@ fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
 #[test]
 fn parts_that_are_alike_but_for_left_and_right_are_marked() {
     for name in ["paper", "large", "unequal"] {
-        let parts = with(name, "").parts();
+        let parts = assembly(name, "").parts();
         let what = |part: &Part| {
-            let (what, _) = part.bodies[0]
-                .rsplit_once(' ')
-                .unwrap_or((&part.bodies[0], ""));
-            what.to_owned()
+            let name = &part.bodies[0];
+            name.rsplit_once(' ')
+                .map_or(&**name, |(what, _)| what)
+                .to_owned()
         };
         let mut marks = Vec::new();
         for part in &parts {
             let others = parts.iter().filter(|other| what(other) == what(part));
             let spacer = part.name.starts_with("spacer");
-            assert_eq!(
-                part.mark.is_empty(),
-                others.count() == 1 || spacer,
-                "{}",
-                part.name
-            );
+            let alone = others.count() == 1 || spacer;
+            assert_eq!(part.mark.is_empty(), alone, "{}", part.name);
             if part.mark.is_empty() {
                 continue;
             }
@@ -298,11 +273,8 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
             let (printed, roofs) = part.printed();
             let solid = Solid::of(&printed);
             let skins = 0.3 * 9.0 * roofs as f64;
-            assert!(
-                solid.volume < part.volume() + skins - 0.5,
-                "{name}: {}",
-                part.name
-            );
+            let rest = part.volume() + skins - 0.5;
+            assert!(solid.volume < rest, "{name}: {}", part.name);
             assert!(Mesh::of(&solid).is_closed(), "{name}: {}", part.name);
         }
         let count = marks.len();
@@ -310,13 +282,11 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
         marks.dedup();
         assert_eq!(marks.len(), count, "{name}: two kinds have one mark");
         let has = |what: &str, mark: &str| marks.contains(&(what.to_owned(), mark.to_owned()));
-        if name == "unequal" {
-            assert!(has("link", "1") && has("crank", "3"));
-        } else {
-            assert!(
-                has("link", "13") && has("link", "24") && has("crank", "24"),
-                "{marks:?}"
-            );
+        for (what, mark) in match name {
+            "unequal" => [("link", "1"), ("link", "2"), ("crank", "3")],
+            _ => [("link", "13"), ("link", "24"), ("crank", "24")],
+        } {
+            assert!(has(what, mark), "{name}: {marks:?}");
         }
     }
 }
@@ -325,22 +295,16 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
 fn no_hole_of_a_printed_part_begins_in_the_air() {
     for name in ["paper", "large", "unequal"] {
         let mut roofs = 0;
-        for part in with(name, "").parts() {
+        for part in assembly(name, "").parts() {
             let (printed, count) = part.printed();
             roofs += count * part.count();
-            let layers = layers(&printed);
-            for pair in layers.windows(2) {
-                assert!(
-                    (pair[0].0[1] - pair[1].0[0]).abs() < 1e-9,
-                    "{name}: {}",
-                    part.name
-                );
-                assert!(pair[1].0[1] > pair[1].0[0] + 0.01, "{name}: {}", part.name);
-            }
-            for pair in layers.windows(2) {
-                let [(_, below), (z, outline)] = pair else {
+            for pair in layers(&printed).windows(2) {
+                let [([_, end], below), (z, outline)] = pair else {
                     continue;
                 };
+                let part = &part.name;
+                assert!((end - z[0]).abs() < 1e-9, "{name}: {part}");
+                assert!(z[1] > z[0] + 0.01, "{name}: {part}");
                 for line in outline.loops().filter(|line| line.area() < 0.0) {
                     // Just beside the hole there is something to stand on, somewhere.
                     let Some((middle, radius)) = line.circle() else {
@@ -350,7 +314,7 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
                         let way = Vector::direction(15.0 * f64::from(i));
                         below.holds(middle + way * (radius + 0.2))
                     });
-                    assert!(on, "{name}: {} at {z:?}", part.name);
+                    assert!(on, "{name}: {part} at {z:?}");
                 }
             }
         }

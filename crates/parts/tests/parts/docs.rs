@@ -1,7 +1,9 @@
-//! What the pages say of parts is what is so: values, the list to buy, the order of steps.
+//! Tests that the pages about parts agree with the code: values, the list to buy, the steps.
 
-use lizard_parts::{Assembly, Bill, steps};
+use lizard_parts::{Bill, steps};
 use lizard_robot::{Parts, Robot};
+
+use crate::{assembly, neutral};
 
 fn read(path: &str) -> String {
     let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
@@ -62,11 +64,8 @@ fn list(page: &str) -> (&str, &str, &str) {
 
 #[test]
 fn the_quickstart_quotes_the_list_of_the_bill() {
-    let text = read("robots/paper.toml");
-    let robot = Robot::parse(&format!("{text}\n[leg.drive]\nkind = \"rigid\"")).expect("paper");
-    let assembly = Assembly::new(&robot);
-    let pose = robot.lizard().solve(&robot.neutral()).expect("neutral");
-    let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+    let assembly = assembly("paper", "[leg.drive]\nkind = \"rigid\"");
+    let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
     let mut expected = "| pieces | what |\n|---|---|\n".to_owned();
     for item in &bill.bought {
         expected += &format!("| {} | {} |\n", item.count, item.what);
@@ -91,14 +90,9 @@ fn the_quickstart_quotes_the_list_of_the_bill() {
 fn the_quickstart_goes_through_the_steps_of_the_guide_in_their_order() {
     let page = read("docs/quickstart.md");
     let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
-    let said: Vec<String> = lines
-        .flat_map(|line| line.trim_end_matches('.').split("; "))
-        .map(str::to_owned)
-        .collect();
-    let steps = steps(false);
-    let expected: Vec<String> = (1..)
-        .zip(&steps)
-        .map(|(number, step)| format!("step {number}, {}", step.title))
-        .collect();
-    assert_eq!(said, expected);
+    let said = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
+    let said: Vec<_> = said.map(str::to_owned).collect();
+    let steps = (1..).zip(steps(false));
+    let expected = steps.map(|(number, step)| format!("step {number}, {}", step.title));
+    assert_eq!(said, expected.collect::<Vec<_>>());
 }

@@ -1,11 +1,12 @@
-//! What is in the files: lengths from hole to hole, and the same bytes every time.
+//! Tests of the files' content: lengths from hole to hole, and the same bytes every time.
 
-use lizard_parts::{Assembly, Body, Loop, Outline, part_files, sheets};
+use lizard_kinematics::Vector;
+use lizard_parts::{Assembly, Body, Loop, Mount, Outline, part_files, sheets};
 
-use crate::{STRUT, with};
+use crate::body;
 
 fn assembly(name: &str) -> Assembly {
-    Assembly::new(&with(name, STRUT))
+    crate::slotted(name, "")
 }
 
 /// The middles of the holes of a body through which an M3 screw turns, from above.
@@ -22,17 +23,13 @@ fn holes(body: &Body) -> Vec<(f64, f64)> {
     found
 }
 
-/// Whether some two holes of a body are this far apart.
+/// Checks that some two holes of a body are this far apart.
 #[track_caller]
-fn spans(assembly: &Assembly, body: &str, mm: f64) {
-    let body = assembly.body(body).expect(body);
-    let holes = holes(body);
-    let near = holes.iter().any(|a| {
-        holes
-            .iter()
-            .any(|b| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs() < 1e-9)
-    });
-    assert!(near, "{}: no two of {holes:?} are {mm} mm apart", body.name);
+fn spans(assembly: &Assembly, name: &str, mm: f64) {
+    let holes = holes(body(assembly, name));
+    let off = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
+    let near = holes.iter().any(|a| holes.iter().any(|b| off(a, b) < 1e-9));
+    assert!(near, "{name}: no two of {holes:?} are {mm} mm apart");
 }
 
 #[test]
@@ -51,9 +48,9 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
             ("A3", l.l9, l.l16),
             ("A4", l.l6, l.l11),
         ] {
-            let body = format!("link {link}");
-            spans(&assembly, &body, crank.hypot(arm));
-            let holes = holes(assembly.body(&body).expect("a link"));
+            let link = format!("link {link}");
+            spans(&assembly, &link, crank.hypot(arm));
+            let holes = holes(assembly.body(&link).expect("a link"));
             for length in [crank, arm] {
                 let from_shaft = |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
                 assert!(holes.iter().any(from_shaft), "{name} {link} {length}");
@@ -76,7 +73,7 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
             let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
             assert_eq!(holes(rigid), expected, "{name}: {}", rigid.name);
             let slotted = rigid.name.trim_start_matches("rigid ");
-            let slotted = assembly.body(slotted).expect(slotted);
+            let slotted = body(&assembly, slotted);
             assert_eq!(slotted.mount, rigid.mount);
             // What keeps clear of the one keeps clear of the other.
             let (inner, outer) = (rigid.z(), slotted.z());
@@ -92,8 +89,7 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
 #[test]
 fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
     let assembly = assembly("unequal");
-    let plate = assembly.body("plate").expect("a plate");
-    let holes = holes(plate);
+    let holes = holes(body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
         for pivot in [leg.driven, leg.idle] {
             let at = |hole: &(f64, f64)| (hole.0 - pivot.x).hypot(hole.1 - pivot.y) < 1e-9;
@@ -110,26 +106,19 @@ fn the_foot_stands_where_the_contact_model_has_it() {
         for pose in assembly.poses(7) {
             let feet = robot.ground().feet.at(robot.sweeps(pose.pose.into()));
             for (servo, [forward, left]) in feet.into_iter().enumerate() {
-                let foot = lizard_kinematics::Vector::new(-left, forward);
-                let mount = lizard_parts::Mount::Foot(servo);
-                let place = assembly.place(mount, &pose);
-                let built = place.map(assembly.layout().legs[servo].foot);
-                assert!((built - foot).length() < 1e-9, "{name} {servo}");
-                // And the drawings show these parts.
-                let angle = pose.legs[servo].direction.angle();
-                let drawn = assembly.layout().legs[servo].at(angle, angle);
-                assert!((drawn.foot - foot).length() < 1e-9, "{name} {servo}");
-                let at = |mount, point| assembly.place(mount, &pose).map(point);
+                let foot = Vector::new(-left, forward);
                 let leg = &assembly.layout().legs[servo];
-                let crank = lizard_parts::Mount::Crank(servo);
-                let follower = lizard_parts::Mount::Follower(servo);
+                // The drawings show these parts.
+                let angle = pose.legs[servo].direction.angle();
+                let drawn = leg.at(angle, angle);
+                let at = |mount, point| assembly.place(mount, &pose).map(point);
+                let crank = Mount::Crank(servo);
                 for (drawn, built) in [
+                    (foot, at(Mount::Foot(servo), leg.foot)),
+                    (drawn.foot, foot),
                     (drawn.joints[0], at(crank, leg.joint)),
-                    (drawn.joints[1], at(follower, leg.joint)),
-                    (
-                        drawn.strut[0],
-                        at(lizard_parts::Mount::Link(servo), leg.anchor),
-                    ),
+                    (drawn.joints[1], at(Mount::Follower(servo), leg.joint)),
+                    (drawn.strut[0], at(Mount::Link(servo), leg.anchor)),
                     (drawn.strut[1], at(crank, leg.anchor)),
                 ] {
                     assert!((drawn - built).length() < 1e-9, "{name} {servo}");
@@ -143,11 +132,10 @@ fn the_foot_stands_where_the_contact_model_has_it() {
 fn every_file_is_the_same_on_every_run() {
     let files = || -> Vec<_> {
         let assembly = assembly("unequal");
-        let parts = assembly.parts();
-        let made = parts
-            .iter()
-            .map(|part| part_files(part, 0.2).expect("files"));
-        made.flatten().collect()
+        let parts = assembly.parts().into_iter();
+        parts
+            .flat_map(|part| part_files(&part, 0.2).expect("files"))
+            .collect()
     };
     let (first, second) = (files(), files());
     assert!(first.len() > 50);
@@ -165,10 +153,9 @@ fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
     let link = parts.iter().find(|part| part.name == "link A1 A3");
     let sheets = sheets(link.expect("a link"));
     assert_eq!(sheets.len(), 1);
-    let layers: Vec<_> = sheets[0]
-        .layers
-        .iter()
-        .map(|layer| (layer.name.as_str(), layer.loops.len()))
+    let layers = sheets[0].layers.iter();
+    let layers: Vec<_> = layers
+        .map(|layer| (&*layer.name, layer.loops.len()))
         .collect();
     // Outline, crank, arm, anchor, hub and two small screws; two hexagonal heads; the horn;
     // the anchor's head.

@@ -1,5 +1,7 @@
-//! The robot as parts: every test takes files of robots/ and asks what is made of them.
+//! Tests of the robot as parts: each makes the parts of some files of robots/.
 
+use lizard_kinematics::Solution;
+use lizard_parts::{Assembly, Body};
 use lizard_robot::Robot;
 
 mod bill;
@@ -15,7 +17,7 @@ mod surface;
 /// The files of robots/.
 const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
-/// Legs on slotted struts.
+/// The lines that put legs on slotted struts.
 const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
 
 /// The robot of a file of robots/, with more lines at the end.
@@ -26,10 +28,24 @@ fn with(name: &str, more: &str) -> Robot {
         .unwrap_or_else(|error| panic!("{name} with {more}: {error}"))
 }
 
-/// What is added where nothing says what drives the legs: slotted struts, which are wider.
-fn driven(more: &str) -> String {
-    match more.contains("[leg.drive]") {
-        true => more.to_owned(),
-        false => format!("{STRUT}\n{more}"),
-    }
+/// The assembly of a file of robots/, with more lines at the end.
+fn assembly(name: &str, more: &str) -> Assembly {
+    Assembly::new(&with(name, more))
+}
+
+/// The assembly of a file of robots/ with slotted struts, which are the wider ones.
+fn slotted(name: &str, more: &str) -> Assembly {
+    assembly(name, &format!("{STRUT}\n{more}"))
+}
+
+/// The robot's joints at neutral.
+fn neutral(assembly: &Assembly) -> Solution {
+    let robot = assembly.robot();
+    robot.lizard().solve(&robot.neutral()).expect("neutral")
+}
+
+/// The body with a name.
+#[track_caller]
+fn body<'a>(assembly: &'a Assembly, name: &str) -> &'a Body {
+    assembly.body(name).expect(name)
 }

@@ -33,9 +33,8 @@ fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
 
 fn numbers(node: Node, attribute: &str) -> Vec<f64> {
     let text = node.attribute(attribute).expect(attribute);
-    text.split(' ')
-        .map(|part| part.parse().expect("a number"))
-        .collect()
+    let parts = text.split(' ');
+    parts.map(|part| part.parse().expect("a number")).collect()
 }
 
 /// A body of the file: where it is in the world, m, and how far it is turned.
@@ -56,13 +55,12 @@ impl Placed {
     }
 }
 
-/// Every body by its name.
-fn bodies<'a>(document: &'a Document) -> BTreeMap<String, (Placed, Node<'a, 'a>)> {
-    fn walk<'a>(
-        parent: Node<'a, 'a>,
-        on: Placed,
-        all: &mut BTreeMap<String, (Placed, Node<'a, 'a>)>,
-    ) {
+/// Bodies by their names.
+type Bodies<'a> = BTreeMap<String, (Placed, Node<'a, 'a>)>;
+
+/// Every body of a file.
+fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
+    fn walk<'a>(parent: Node<'a, 'a>, on: Placed, all: &mut Bodies<'a>) {
         for body in parent.children().filter(|node| node.has_tag_name("body")) {
             let quat = numbers(body, "quat");
             assert_eq!(quat[1..3], [0.0; 2], "it stays upright");
@@ -84,6 +82,12 @@ fn bodies<'a>(document: &'a Document) -> BTreeMap<String, (Placed, Node<'a, 'a>)
 
 fn find<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
     child(document.root_element(), tag)
+}
+
+/// The elements within an element of the root.
+fn elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
+    let children = find(document, tag).children();
+    children.filter(Node::is_element).collect()
 }
 
 fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
@@ -112,19 +116,13 @@ fn its_bodies_weigh_what_the_bill_says_and_where() {
             }
         }
         // A chord cuts off a little of each round end.
-        assert!(
-            (mass / bill.grams - 1.0).abs() < 2e-3,
-            "{name} {mass} {}",
-            bill.grams
-        );
+        let off = mass / bill.grams - 1.0;
+        assert!(off.abs() < 2e-3, "{name} {mass} {}", bill.grams);
         let plate = 1000.0 * all["chassis"].0.at[2];
         let [right, forward, up] = moment.map(|part| part / mass);
-        let off = [
-            forward - bill.centre[0],
-            -right - bill.centre[1],
-            up - plate - bill.centre[2],
-        ];
-        assert!(off.iter().all(|off| off.abs() < 0.05), "{name} {off:?}");
+        for (found, expected) in [forward, -right, up - plate].into_iter().zip(bill.centre) {
+            assert!((found - expected).abs() < 0.05, "{name} {found} {expected}");
+        }
     }
 }
 
@@ -134,9 +132,7 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
         let robot = robot(name);
         let solved = neutral(&robot);
         let angles: [f64; 4] = robot.neutral().into();
-        let legs: Vec<_> = (0..4)
-            .map(|servo| robot.legs()[servo].at(angles[servo], angles[servo]))
-            .collect();
+        let legs = [0, 1, 2, 3].map(|i| robot.legs()[i].at(angles[i], angles[i]));
         let shafts = robot.lizard().shafts();
         let mut joints: BTreeMap<String, Vector> = BTreeMap::new();
         for end in End::ALL {
@@ -151,20 +147,12 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
             joints.insert(format!("follower joint {leg}"), place.joints[1]);
             joints.insert(format!("leg anchor {leg}"), place.strut[1]);
         }
-        for pull in [
-            None,
-            Some(Pull {
-                force: 4.0,
-                rate: 0.4,
-            }),
-        ] {
+        let (force, rate) = (4.0, 0.4);
+        for pull in [None, Some(Pull { force, rate })] {
             let text = written(&robot, |scene| scene.pull = pull);
             let document = Document::parse(&text).expect("well formed");
             let all = bodies(&document);
-            let closed: Vec<_> = find(&document, "equality")
-                .children()
-                .filter(Node::is_element)
-                .collect();
+            let closed = elements(&document, "equality");
             assert_eq!(closed.len(), joints.len());
             for connect in closed {
                 let of = |attribute: &str| connect.attribute(attribute).expect(attribute);
@@ -189,10 +177,9 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
         let feet = robot.ground().feet.at([0.0; 4]);
         for (servo, long) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
             let (placed, foot) = all[&format!("foot {}", LEGS[servo])];
-            let pad = foot
-                .children()
-                .find(|geom| geom.attribute("type") == Some("sphere"))
-                .expect("a pad");
+            let mut geoms = foot.children();
+            let pad = geoms.find(|geom| geom.attribute("type") == Some("sphere"));
+            let pad = pad.expect("a pad");
             let [x, y, z] = placed.point(&numbers(pad, "pos")).map(|part| 1000.0 * part);
             let under = z - 1000.0 * numbers(pad, "size")[0];
             let [forward, left] = feet[servo];
@@ -220,18 +207,11 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
         let joint = child(slot, "joint");
         let range = numbers(joint, "range");
         assert_eq!(range, [0.0, 0.005]);
-        let (stiffness, rest) = (
-            numbers(joint, "stiffness")[0],
-            numbers(joint, "springref")[0],
-        );
-        assert!(
-            (stiffness * -rest - force).abs() < 1e-6,
-            "at the slot's end"
-        );
-        assert!(
-            (stiffness * (0.003 - rest) - (force + 3.0 * rate)).abs() < 1e-6,
-            "3 mm on"
-        );
+        let [stiffness, rest] = ["stiffness", "springref"].map(|of| numbers(joint, of)[0]);
+        for (metres, newtons) in [(0.0, force), (0.003, force + 3.0 * rate)] {
+            let off = stiffness * (metres - rest) - newtons;
+            assert!(off.abs() < 1e-6, "{metres} m from the slot's end: {off}");
+        }
     }
     let rigid = written(&robot("paper"), |scene| scene.pull = None);
     assert!(!rigid.contains("slot"));
@@ -243,19 +223,13 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
         let robot = robot("unequal");
         let text = written(&robot, |scene| scene.play = play);
         let document = Document::parse(&text).expect("well formed");
-        let motors: Vec<_> = find(&document, "actuator")
-            .children()
-            .filter(Node::is_element)
-            .collect();
+        let motors = elements(&document, "actuator");
         for (servo, motor) in motors.iter().enumerate() {
             assert_eq!(motor.attribute("name"), Some(NAMES[servo]));
             let of = motor.attribute("joint").expect("a joint");
-            let mut joints = document
-                .descendants()
-                .filter(|node| node.has_tag_name("joint"));
-            let joint = joints
-                .find(|joint| joint.attribute("name") == Some(of))
-                .expect(of);
+            let mut nodes = document.descendants();
+            let is = |node: &Node| node.has_tag_name("joint") && node.attribute("name") == Some(of);
+            let joint = nodes.find(is).expect(of);
             let [least, most] = numbers(*motor, "forcerange")[..] else {
                 panic!("two torques")
             };
@@ -279,18 +253,14 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let (begin, period) = (course.begin, course.period);
     let text = written(&robot, |scene| scene.course = Some(course));
     let document = Document::parse(&text).expect("well formed");
-    let numeric = document
-        .descendants()
-        .find(|node| node.attribute("name") == Some("cycle"))
-        .expect("the cycle");
+    let mut nodes = document.descendants();
+    let numeric = nodes.find(|node| node.attribute("name") == Some("cycle"));
+    let numeric = numeric.expect("the cycle");
     let [written, long] = numbers(numeric, "data")[..] else {
         panic!("two times")
     };
     assert!((written - begin).abs() < 1e-9 && long == period && period == 0.91);
-    let keys: Vec<_> = find(&document, "keyframe")
-        .children()
-        .filter(Node::is_element)
-        .collect();
+    let keys = elements(&document, "keyframe");
     let last = numbers(*keys.last().expect("frames"), "time")[0];
     assert!(last >= begin + period && last < begin + period + 0.02 + 1e-9);
     for key in keys {

@@ -1,29 +1,20 @@
 //! Every screw can be put in and turned in the order of the guide; in a wrong order
 //! it cannot.
 
-use lizard_kinematics::{Solution, Vector};
+use lizard_kinematics::Vector;
 use lizard_parts::{Act, Assembly, Body, Kind, Outline, Stage, Step, Unfit, Where, steps};
 
-use crate::{ROBOTS, driven, with};
-
-fn assembly(name: &str, more: &str) -> Assembly {
-    Assembly::new(&with(name, &driven(more)))
-}
+use crate::{ROBOTS, assembly as with, neutral, slotted as assembly};
 
 fn order(assembly: &Assembly) -> Vec<Step> {
     steps(assembly.robot().drive().strut().is_some())
-}
-
-fn neutral(assembly: &Assembly) -> Solution {
-    let robot = assembly.robot();
-    robot.lizard().solve(&robot.neutral()).expect("neutral")
 }
 
 #[test]
 fn every_screw_of_every_robot_can_be_reached() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
-            let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
+            let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let asides = assembly.asides(&order(&assembly));
             let asides = asides.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
             // At neutral the follower covers a screw of its foot: the leg, which lies on
@@ -43,8 +34,8 @@ fn every_screw_of_every_robot_can_be_reached() {
     }
 }
 
-/// What is blocked in the paper's robot if its steps are changed: the screw, and what
-/// is in its way.
+/// The blocked screws of the paper's robot with changed steps, each with the body in its
+/// way.
 fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, Act, String)> {
     let assembly = assembly("paper", "");
     let mut steps = order(&assembly);
@@ -90,13 +81,9 @@ fn a_strut_under_a_head_is_found() {
             }
         }
     });
-    let refused = unequal
-        .asides(&order(&unequal))
-        .expect_err("no key gets there");
-    assert_eq!(
-        (refused.screw.as_str(), refused.act),
-        ("screw tip A4", Act::Turn)
-    );
+    let refused = unequal.asides(&order(&unequal));
+    let refused = refused.expect_err("no key gets there");
+    assert_eq!((&*refused.screw, refused.act), ("screw tip A4", Act::Turn));
     assert_eq!(refused.by, "strut LH");
 }
 
@@ -116,10 +103,8 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
     let refused = covered.asides(&order(&covered)).expect_err("a lid");
     assert_eq!(refused.by, "deck lid");
     let sentence = Unfit::from(refused).to_string();
-    assert!(
-        sentence.contains("at step 3 of the guide: deck lid is in the way, at every pose"),
-        "{sentence}"
-    );
+    let blocked = "at step 3 of the guide: deck lid is in the way, at every pose";
+    assert!(sentence.contains(blocked), "{sentence}");
 }
 
 #[test]
@@ -129,21 +114,15 @@ fn parts_that_move_together_are_not_in_one_place() {
     }
     // A standoff's screw whose head is in the boss of the board's screw.
     let near = assembly("paper", "").altered(|bodies| {
-        for body in bodies {
-            if body.name == "screw standoff 1 above" {
-                for prism in &mut body.prisms {
-                    prism.add[0].points[0].y -= 1.0;
-                }
-            }
+        let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
+        for body in bodies.iter_mut().filter(screw) {
+            let heads = body.prisms.iter_mut().map(|prism| &mut prism.add[0]);
+            heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
-    let refused = near.measures_fit().expect_err("they overlap");
-    assert!(
-        refused
-            .to_string()
-            .contains("deck and screw standoff 1 above, which move together, overlap by 0.5"),
-        "{refused}"
-    );
+    let refused = near.measures_fit().expect_err("they overlap").to_string();
+    let both = "deck and screw standoff 1 above, which move together, overlap by 0.5";
+    assert!(refused.contains(both), "{refused}");
 }
 
 /// A second opinion on what is free: the layers' outlines, asked point by point.
@@ -155,20 +134,17 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
         let steps = order(&assembly);
         let blocked = assembly.blocked(&steps, &pose);
         let step_of = |body: &Body| steps.iter().position(|step| step.adds(body));
-        let outlines: Vec<(&Body, Vec<Outline>)> = assembly
-            .bodies()
-            .iter()
-            .map(|body| (body, body.prisms.iter().map(Outline::of).collect()))
-            .collect();
+        let outlines = |body: &Body| body.prisms.iter().map(Outline::of).collect();
+        let bodies = assembly.bodies().iter();
+        let outlines: Vec<(&Body, Vec<_>)> = bodies.map(|body| (body, outlines(body))).collect();
         let mut asked = 0;
         for screw in assembly.bodies() {
             let here = step_of(screw);
-            // Those that come from above, on the robot.
-            let [low, high] = &screw.prisms[..] else {
+            // Only screws that come from above, on the robot.
+            let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };
-            let from_above = high.add[0].width() > low.add[0].width();
-            if !matches!(screw.kind, Kind::Screw(_)) || !from_above || here == Some(6) {
+            if high.add[0].width() <= low.add[0].width() || here == Some(6) {
                 continue;
             }
             if blocked.iter().any(|of| of.screw == screw.name) {
@@ -180,23 +156,17 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
                 let rim = at + Vector::direction(30.0 * f64::from(turn)) * 1.99;
                 for up in 1..60 {
                     let z = high.z[1] + 0.5 * f64::from(up);
-                    for (body, layers) in &outlines {
-                        if step_of(body) > here
-                            || body.name.starts_with("board")
-                            || body.name == screw.name
-                        {
-                            continue;
-                        }
+                    let later = |body: &Body| step_of(body) > here;
+                    let own =
+                        |body: &Body| body.name == screw.name || body.name.starts_with("board");
+                    for (body, layers) in outlines.iter().filter(|(of, _)| !later(of) && !own(of)) {
                         let point = assembly.place(body.mount, &pose).unmap(rim);
                         for (prism, outline) in body.prisms.iter().zip(layers) {
                             let there = prism.z[0] < z && z < prism.z[1];
                             asked += usize::from(there);
-                            assert!(
-                                !there || !outline.holds(point),
-                                "{name}: {} in {}",
-                                screw.name,
-                                body.name
-                            );
+                            let (screw, body) = (&screw.name, &body.name);
+                            let free = !there || !outline.holds(point);
+                            assert!(free, "{name}: {screw} in {body}");
                         }
                     }
                 }

@@ -1,13 +1,13 @@
 //! Every printed part of every robot has a closed surface of the right volume.
 
-use lizard_parts::{Assembly, Kind, Mesh, Solid};
+use lizard_parts::{Kind, Mesh, Solid};
 
-use crate::with;
+use crate::assembly;
 
 #[test]
 fn every_printed_part_is_closed_and_has_its_volume() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = Assembly::new(&with(name, ""));
+        let assembly = assembly(name, "");
         let mut printed = 0;
         for body in assembly.bodies().iter().chain(assembly.instead()) {
             if body.kind != Kind::Printed {
