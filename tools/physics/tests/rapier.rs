@@ -7,7 +7,7 @@
 //! in the engine.
 
 use lizard_physics::{Displacement, robot};
-use lizard_robot::{Body, Drive, Feet, Ground};
+use lizard_robot::{Body, Feet, Ground};
 
 /// The gaits of which none follows from another by symmetry.
 const KINDS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
