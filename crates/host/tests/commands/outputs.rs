@@ -46,7 +46,10 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("charts charts --robot my.toml", "top-view.svg"),
     ] {
         fs::create_dir_all(here.join("x")).expect("a folder");
-        let error = lizard(here, line).refusal();
+        let Outcome {
+            code, err: error, ..
+        } = lizard(here, line);
+        assert_eq!(code, Some(2), "{line}: {error}");
         assert!(
             error.contains(file) && error.contains("; name another file for the output"),
             "{line}: {error}"
