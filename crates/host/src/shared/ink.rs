@@ -68,6 +68,13 @@ pub fn text_end(words: &str, at: (f64, f64), size: f64) -> Text {
     text(words, at, size, DARK, Anchor::End)
 }
 
+/// A picture's title and the line below it.
+pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
+    group
+        .add(text_start(words, (left, 40.0), 24.0).set("font-weight", "bold"))
+        .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
+}
+
 /// The text of a picture on a white page.
 pub fn page(size: (f64, f64), group: Group) -> String {
     Document::new()

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::link::{Link, LinkError};
 
 /// The settings of a robot.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Calibration {
     /// The action after power-on: a gait, or rest.
     pub boot: String,

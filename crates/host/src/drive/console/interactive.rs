@@ -1,5 +1,4 @@
-//! `lizard console`: a person, or a script on standard input,
-//! talks to the robot.
+//! `lizard console`: a dialogue of the user, or of a script on standard input, with the robot.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
@@ -14,7 +13,6 @@ use super::history;
 use super::link::LinkError;
 use super::prompt::{Outcome, Prompt};
 use super::recorder::{self, Event, FORMAT, Recorder};
-use super::refusals::Refusals;
 use super::screen::Screen;
 use super::session::Session;
 use super::terminal;
@@ -63,7 +61,6 @@ fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
         session: Session::new(Instant::now(), true, file.is_some()),
         recorder: None,
         mark: "",
-        refusals: Refusals::default(),
     };
     if let Some(path) = file {
         talk.mark = "REC  ";
@@ -78,36 +75,35 @@ fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
     }
     let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        match talk.with_a_person(finder, board, &first) {
-            // The person has left with the terminal.
+        match talk.with_terminal(finder, board, &first) {
+            // The user has closed the terminal.
             Err(Failure::Io(_)) if !terminal::is_there() => Ok(()),
             ended => ended,
         }
     } else {
-        talk.with_a_script(board, &first)
+        talk.with_script(board, &first)
     }
 }
 
-/// A session with where it is kept.
+/// A session and the file that records it.
 struct Talk {
     session: Session,
     recorder: Option<FileRecorder>,
     mark: &'static str,
-    refusals: Refusals,
 }
 
 impl Talk {
-    /// Passes on what is to be sent, and takes what has come; `show` gets the lines
-    /// for the person.
+    /// Sends the next line and takes the lines that have come; `show` gets those for the
+    /// user.
     fn turn(
         &mut self,
         board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
     ) -> Result<(), TurnError> {
-        if let Some(line) = self.session.due(Instant::now()) {
+        if let Some(line) = self.session.next_line(Instant::now()) {
             board.link.send(&line)?;
         }
-        // Not for ever: the keys wait.
+        // At most 51 lines: the keys wait.
         for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.line(wait)? else {
                 break;
@@ -117,30 +113,26 @@ impl Talk {
             }
         }
         let overdue = self.session.overdue(Instant::now());
-        self.keep()?;
-        if let Some(unanswered) = overdue {
-            self.refusals.count_silence(&unanswered);
-            show(&unanswered.to_string())?;
+        for event in self.session.take_events() {
+            self.record(event)?;
+        }
+        if let Some(message) = overdue {
+            show(&message)?;
         }
         Ok(())
     }
 
-    fn keep(&mut self) -> Result<(), Failure> {
-        let said = self.session.take_said();
-        said.iter().for_each(|said| self.refusals.hear(said));
-        if let Some(recorder) = &mut self.recorder {
-            let now = Instant::now();
-            for said in said {
-                recorder.write(now, said.into())?;
-            }
+    fn record(&mut self, event: Event) -> Result<(), Failure> {
+        match &mut self.recorder {
+            Some(recorder) => recorder.write(Instant::now(), event),
+            None => Ok(()),
         }
-        Ok(())
     }
 
-    fn with_a_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
+    fn with_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
         let mut out = io::stdout();
         writeln!(out, "{first}")?;
-        // The answers are all that is wanted.
+        // A script needs only the answers, unless it is recorded.
         self.session = Session::new(
             Instant::now(),
             self.recorder.is_some(),
@@ -152,7 +144,7 @@ impl Talk {
             while !ended {
                 match lines.try_recv() {
                     Ok(line) if line.trim().is_empty() => {}
-                    Ok(line) => self.session.say(line.trim()),
+                    Ok(line) => self.session.queue(line.trim()),
                     Err(TryRecvError::Empty) => break,
                     Err(TryRecvError::Disconnected) => ended = true,
                 }
@@ -163,10 +155,10 @@ impl Talk {
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
         }
-        self.refusals.verdict()
+        self.session.verdict()
     }
 
-    fn with_a_person(
+    fn with_terminal(
         mut self,
         finder: &Finder,
         board: Connection,
@@ -189,9 +181,7 @@ impl Talk {
                 Err(TurnError::Link(LinkError::Gone)) => {
                     let words = format!("{}: {}", present.name, LinkError::Gone);
                     screen.print(&words)?;
-                    if let Some(recorder) = &mut self.recorder {
-                        recorder.write(Instant::now(), Event::Gone)?;
-                    }
+                    self.record(Event::Gone)?;
                     board = None;
                     continue;
                 }
@@ -222,7 +212,7 @@ impl Talk {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Takes the keys that have been pressed; true if the person leaves.
+    /// Takes the keys that have been pressed; true if the user leaves.
     fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
         if !terminal::is_there() {
             return Ok(true);
@@ -244,7 +234,7 @@ impl Talk {
                     }
                     Outcome::Line(line) => {
                         screen.print(&format!("> {line}"))?;
-                        self.session.say(&line);
+                        self.session.queue(&line);
                     }
                 }
             }

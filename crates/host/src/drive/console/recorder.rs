@@ -7,7 +7,6 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::session::Said;
 use super::status::angles;
 use crate::Failure;
 use crate::shared::plain::plain;
@@ -39,7 +38,7 @@ pub enum Event {
         /// The robot's first line, unless it was not reset.
         banner: Option<String>,
     },
-    /// A person's line.
+    /// A line of the user.
     Sent(String),
     /// The robot's answer to it.
     Answer(String),
@@ -113,6 +112,15 @@ impl<W: Write> Recorder<W> {
 }
 
 impl Event {
+    /// The event of a line that begins with `#`: a pose, or a note.
+    #[must_use]
+    pub fn of_note(line: &str) -> Self {
+        match pose(line) {
+            Some((frame, angles)) => Self::Pose { frame, angles },
+            None => Self::Note(line.to_owned()),
+        }
+    }
+
     /// The event with its texts fit for a terminal: a file may hold anything.
     #[must_use]
     pub fn plain(self) -> Self {
@@ -131,20 +139,6 @@ impl Event {
             Self::Note(line) => Self::Note(plain(&line)),
             Self::Status(line) => Self::Status(plain(&line)),
             Self::Pose { .. } | Self::Gone => self,
-        }
-    }
-}
-
-impl From<Said> for Event {
-    fn from(said: Said) -> Self {
-        match said {
-            Said::Sent(line) => Self::Sent(line),
-            Said::Answer(line) => Self::Answer(line),
-            Said::Status(line) => Self::Status(line),
-            Said::Note(line) => match pose(&line) {
-                Some((frame, angles)) => Self::Pose { frame, angles },
-                None => Self::Note(line),
-            },
         }
     }
 }
@@ -172,9 +166,9 @@ mod tests {
                 port: "p".to_owned(),
                 banner: None,
             },
-            Said::Sent("walk".to_owned()).into(),
-            Said::Note("# t=7 pose=1.00,2.00,3.00,4.50".to_owned()).into(),
-            Said::Note("# fault: x".to_owned()).into(),
+            Event::Sent("walk".to_owned()),
+            Event::of_note("# t=7 pose=1.00,2.00,3.00,4.50"),
+            Event::of_note("# fault: x"),
             Event::Gone,
         ];
         for (n, event) in events.iter().enumerate() {

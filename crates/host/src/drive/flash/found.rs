@@ -166,11 +166,7 @@ mod tests {
 
     #[test]
     fn a_lizard_is_named_with_its_robot() {
-        let robot = |name: &str| {
-            let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-            Robot::load(std::path::Path::new(&path)).expect("it is right")
-        };
-        let [paper, large] = ["paper", "large"].map(robot);
+        let [paper, large] = ["paper", "large"].map(crate::shared::robot_file::named);
         let image = file::image(&paper).expect("it fits");
         let alone = file::robot_alone(&paper).expect("it fits");
         let mut flash = image.bytes().to_vec();

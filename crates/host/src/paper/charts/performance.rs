@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, Scale, VIRIDIS, title};
+use super::plot::{Axis, Plot, Scale, VIRIDIS};
 use crate::paper::design::{Point, Proportions, SUM};
-use crate::shared::ink::{circle, line, page, text_start};
+use crate::shared::ink::{circle, line, page, text_start, title};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL: f64 = 340.0;
@@ -63,14 +63,8 @@ pub fn performance(points: &[Point], step: f64) -> String {
             y: (-step / 2.0, SUM + step / 2.0),
         };
         let axes = (
-            Axis {
-                step: 0.1,
-                name: "r1, crank",
-            },
-            Axis {
-                step: 0.1,
-                name: if i == 0 { "r2, coupler" } else { "" },
-            },
+            Axis::new(0.1, "r1, crank"),
+            Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" }),
         );
         group = plot.grid(group, &axes.0, &axes.1);
         group = wide.map(group, (count + 1, count + 1), |x, y| {

@@ -5,8 +5,8 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, title};
-use crate::shared::ink::{DARK, circle, cross, line, page, rectangle, text_start};
+use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry};
+use crate::shared::ink::{DARK, circle, cross, line, page, rectangle, text_start, title};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);
@@ -36,14 +36,8 @@ pub fn singularity(robot: &Robot) -> String {
     };
     let axes = |step| {
         (
-            Axis {
-                step,
-                name: "theta1 (A1), deg",
-            },
-            Axis {
-                step,
-                name: "theta4 (A2), deg",
-            },
+            Axis::new(step, "theta1 (A1), deg"),
+            Axis::new(step, "theta4 (A2), deg"),
         )
     };
     let left = Plot {

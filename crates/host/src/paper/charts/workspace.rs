@@ -4,19 +4,13 @@ use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry, title};
+use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry};
 use crate::paper::design::{CLAIM, Performance, lci};
-use crate::shared::ink::{DARK, GREY, circle, page, text_start};
+use crate::shared::ink::{DARK, GREY, circle, page, text_start, title};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
-const MM: Axis<'static> = Axis {
-    step: 20.0,
-    name: "x, mm from the middle of l0",
-};
-const MM_UP: Axis<'static> = Axis {
-    step: 20.0,
-    name: "y, mm",
-};
+const MM: Axis<'static> = Axis::new(20.0, "x, mm from the middle of l0");
+const MM_UP: Axis<'static> = Axis::new(20.0, "y, mm");
 const RED: &str = "#d55e00";
 const BLUE: &str = "#0072b2";
 

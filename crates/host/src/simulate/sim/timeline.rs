@@ -9,7 +9,7 @@ use super::spans::Span;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
     Anchor, DARK, GREY, GRID, PANEL, PLACES, SERVO, curve, line, page, rectangle, text,
-    text_middle, text_start,
+    text_middle, text_start, title,
 };
 
 const WIDTH: f64 = 1280.0;
@@ -54,7 +54,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
         seconds: end.max(0.1),
     };
     let reach = chart.reach();
-    let mut group = chart.title(Group::new());
+    let mut group = title(Group::new(), LEFT, caption.title, caption.note);
     group = chart.commands(group);
     for servo in 0..4 {
         group = chart.strip(group, servo, reach);
@@ -75,13 +75,6 @@ struct Chart<'a> {
 impl Chart<'_> {
     fn x(&self, seconds: f64) -> f64 {
         LEFT + (WIDTH - LEFT - RIGHT) * seconds / self.seconds
-    }
-
-    fn title(&self, group: Group) -> Group {
-        let Caption { title, note, .. } = self.caption;
-        group
-            .add(text_start(title, (LEFT, 40.0), 24.0).set("font-weight", "bold"))
-            .add(text(note, (LEFT, 66.0), 15.0, GREY, Anchor::Start))
     }
 
     /// The band that says which command is in effect.

@@ -1,10 +1,8 @@
 //! An upload to a board whose boot loader is played.
 
-use std::path::Path;
 use std::time::Duration;
 
 use lizard_core::mark::AT;
-use lizard_robot::Robot;
 
 use super::super::double::Double;
 use super::super::stk500::Patience;
@@ -12,6 +10,7 @@ use super::super::target::Model;
 use super::*;
 use crate::drive::flash::file;
 use crate::shared::firmware::robot_in;
+use crate::shared::robot_file::named as robot;
 
 mod alone;
 mod nano;
@@ -95,16 +94,9 @@ impl Run {
     }
 }
 
-/// A file of robots/.
-fn robot(name: &str) -> Robot {
-    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
-    Robot::load(robots.join(name).with_extension("toml")).expect("it is right")
-}
-
 /// A board with the firmware and this robot.
 fn with_robot(name: &str) -> Double {
-    let image = file::image(&robot(name)).expect("it fits");
-    Double::with(image.bytes())
+    Double::with(whole(name).bytes())
 }
 
 fn alone(name: &str) -> Image {
