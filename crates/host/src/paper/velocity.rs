@@ -133,7 +133,7 @@ fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
     ]
 }
 
-/// Rate and acceleration in the same order.
+/// Rates and accelerations in the same order.
 fn rates(m: &Derivatives) -> [(f64, f64); 12] {
     let pair = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
     [

@@ -115,7 +115,7 @@ pub struct PoseArgs {
 }
 
 impl PoseArgs {
-    /// The pose, if one was given; clap takes care that it is whole.
+    /// The pose, if one was given; clap checks that it is complete.
     pub fn get(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,

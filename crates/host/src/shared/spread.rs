@@ -146,7 +146,7 @@ pub(crate) struct Share {
 }
 
 impl Spread {
-    /// Takes what parts have found.
+    /// Sets the results of all parts, for a merge.
     pub(crate) fn take(&mut self, merged: BTreeMap<usize, Value>) {
         self.merged = Some(merged);
     }
@@ -242,8 +242,11 @@ mod tests {
             "a/b",
             "1/1000001",
         ] {
-            let said = wrong.parse::<Part>().expect_err(wrong);
-            assert!(said.starts_with("it must be as 2/8"), "{wrong}: {said}");
+            let message = wrong.parse::<Part>().expect_err(wrong);
+            assert!(
+                message.starts_with("it must be as 2/8"),
+                "{wrong}: {message}"
+            );
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
-/// A foot may be off by so much, mm; more, and its screw or its leaf ends.
+/// The largest length error of a foot, mm; beyond it, its screw or its leaf ends.
 const MOST: f64 = 5.0;
 
 /// Write the robot for MuJoCo, a physics engine: bodies, masses, joints, feet, servos

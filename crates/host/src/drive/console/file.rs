@@ -22,7 +22,7 @@ pub fn text(set: &Calibration) -> String {
     format!("{HEAD}format = \"{FORMAT}\"\n{keys}")
 }
 
-/// Reads such a text.
+/// Reads the text of a calibration file.
 ///
 /// # Errors
 /// A sentence that names the key or the line.
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_file_is_said_with_its_key() {
+    fn a_mistake_in_a_file_is_reported_with_its_key() {
         let good = text(&set());
         let complaint = |from: &str, to: &str| {
             assert!(good.contains(from), "{from}");

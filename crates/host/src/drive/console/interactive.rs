@@ -19,7 +19,7 @@ use super::terminal;
 use super::turn_error::TurnError;
 use crate::Failure;
 
-/// Talk to the robot
+/// Dialogue to the robot
 ///
 /// Finds the board, waits for it to start, and passes lines to it; `help` lists its
 /// commands. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit` end the
@@ -52,18 +52,18 @@ pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
     }
-    talk(&args.connect.finder("console")?, args.record)
+    dialogue(&args.connect.finder("console")?, args.record)
 }
 
-fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
-    let (board, banner) = finder.meet()?;
-    let mut talk = Talk {
+fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
+    let (board, banner) = finder.open_and_greet()?;
+    let mut dialogue = Dialogue {
         session: Session::new(Instant::now(), true, file.is_some()),
         recorder: None,
         mark: "",
     };
     if let Some(path) = file {
-        talk.mark = "REC  ";
+        dialogue.mark = "REC  ";
         let mut recorder = recorder::create(&path)?;
         let event = Event::Begin {
             format: FORMAT.to_owned(),
@@ -71,28 +71,28 @@ fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
             banner: banner.clone(),
         };
         recorder.write(Instant::now(), event)?;
-        talk.recorder = Some(recorder);
+        dialogue.recorder = Some(recorder);
     }
     let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        match talk.with_terminal(finder, board, &first) {
+        match dialogue.with_terminal(finder, board, &first) {
             // The user has closed the terminal.
             Err(Failure::Io(_)) if !terminal::is_there() => Ok(()),
             ended => ended,
         }
     } else {
-        talk.with_script(board, &first)
+        dialogue.with_script(board, &first)
     }
 }
 
 /// A session and the file that records it.
-struct Talk {
+struct Dialogue {
     session: Session,
     recorder: Option<FileRecorder>,
     mark: &'static str,
 }
 
-impl Talk {
+impl Dialogue {
     /// Sends the next line and takes the lines that have come; `show` gets those for the
     /// user.
     fn turn(
@@ -170,10 +170,10 @@ impl Talk {
         screen.print("(help lists the commands; Ctrl-D leaves)")?;
         let mut board = Some(board);
         let mut failed = None;
-        while !self.keys(&mut screen, &mut prompt)? {
+        while !self.handle_keys(&mut screen, &mut prompt)? {
             let Some(present) = &mut board else {
                 screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
-                board = self.look_again(finder, &mut screen)?;
+                board = self.reopen(finder, &mut screen)?;
                 continue;
             };
             match self.turn(present, |line| screen.print(line)) {
@@ -213,7 +213,7 @@ impl Talk {
     }
 
     /// Takes the keys that have been pressed; true if the user leaves.
-    fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
+    fn handle_keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
         if !terminal::is_there() {
             return Ok(true);
         }
@@ -243,7 +243,7 @@ impl Talk {
     }
 
     /// The board, if it is there again.
-    fn look_again(
+    fn reopen(
         &mut self,
         finder: &Finder,
         screen: &mut Screen,

@@ -44,7 +44,7 @@ pub enum Event {
     Answer(String),
     /// A line that begins with `#`.
     Note(String),
-    /// An answer to `status`, which the program asked for.
+    /// An answer to the program's own `status`.
     Status(String),
     /// A report of `watch`.
     Pose {
@@ -98,7 +98,7 @@ impl<W: Write> Recorder<W> {
         if is_pose { Ok(()) } else { self.flush() }
     }
 
-    /// Puts all that was written into the file.
+    /// Flushes all lines into the file.
     ///
     /// # Errors
     /// As [`Recorder::write`].
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disk_that_is_full_is_said_with_the_name_of_the_file() {
+    fn a_full_disk_is_reported_with_the_name_of_the_file() {
         let full: &mut [u8] = &mut [0; 10];
         let mut recorder = Recorder::new("a.jsonl".to_owned(), full, Instant::now());
         let event = Event::Sent("walk".to_owned());

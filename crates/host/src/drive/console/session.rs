@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_answer_is_said_once_and_the_next_line_is_sent() {
+    fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
         let now = Instant::now();
         let mut session = Session::new(now, false, false);
         session.queue("walk");

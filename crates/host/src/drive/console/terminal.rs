@@ -1,4 +1,4 @@
-//! The terminal itself: whether it is still there, and leaving it for a while.
+//! The terminal: detecting that it was closed, and suspending the program.
 
 use std::io::{self, IsTerminal};
 use std::sync::Once;
@@ -43,7 +43,7 @@ pub fn stop() -> io::Result<()> {
     signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)
 }
 
-/// Nothing: this system has no such thing.
+/// Does nothing: only Unix can suspend a program.
 ///
 /// # Errors
 /// None.

@@ -27,7 +27,7 @@ pub struct Target {
     pub may_be_nano: bool,
 }
 
-/// An image reaches into what may be the boot section of a Nano.
+/// An image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT} before its boot section{}. \
          Nothing was written", .end, if *.in_doubt {
@@ -43,7 +43,7 @@ pub struct TooLong {
 }
 
 impl Target {
-    /// Boot loaders that it may have, in the order in which they are called.
+    /// The boot loaders that the board may have, in the order in which they are called.
     #[must_use]
     pub fn loaders(self) -> &'static [Kind] {
         match self.model {

@@ -5,9 +5,7 @@ use std::fmt::Write as _;
 
 use svg::node::element::{Group, Path, Polyline};
 
-use crate::shared::ink::{
-    DARK, GRID, curve, line, rectangle, text_end, text_middle, text_start,
-};
+use crate::shared::ink::{DARK, GRID, curve, line, rectangle, text_end, text_middle, text_start};
 
 /// Viridis in ten bands: even steps in lightness, so that it reads in grey and
 /// for every kind of colour vision.

@@ -191,7 +191,7 @@ fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     }
 }
 
-/// True if every point of either path is close to the other.
+/// True if the two paths are close to each other everywhere.
 fn same(one: &[(f64, f64)], two: &[(f64, f64)]) -> bool {
     let near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()

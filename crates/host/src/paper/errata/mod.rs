@@ -44,7 +44,7 @@ pub struct Args {
 /// Samples of docs/errata.md.
 pub const SAMPLES: u32 = 20_000;
 
-/// One equation with what was measured.
+/// An equation with its measured errors.
 #[derive(Serialize)]
 pub struct Entry {
     place: &'static str,
@@ -133,7 +133,7 @@ impl Entry {
         }
     }
 
-    /// The worst miss in words; rounding is not told apart from rounding.
+    /// The largest error in words; all rounding errors count as equal.
     fn miss(&self) -> String {
         let mut words = self.plain_miss();
         if let Some((worst, place)) = self.aside {

@@ -20,7 +20,7 @@ pub enum Phase {
     Still,
 }
 
-/// A time, in seconds, during which a foot does the same.
+/// A time span in which a foot keeps its movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// The movement of the foot.

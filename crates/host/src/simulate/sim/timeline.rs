@@ -1,4 +1,4 @@
-//! Servo angles over time, and below them which foot pushes and which returns.
+//! The picture of a run: servo angles over time, and which foot pushes or returns.
 
 use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
@@ -77,7 +77,7 @@ impl Chart<'_> {
         LEFT + (WIDTH - LEFT - RIGHT) * seconds / self.seconds
     }
 
-    /// The band that says which command is in effect.
+    /// The band with the command in effect.
     fn commands(&self, mut group: Group) -> Group {
         for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
             let (x, end) = (self.x(*from), self.x(*to));
@@ -98,7 +98,7 @@ impl Chart<'_> {
         ))
     }
 
-    /// A line down the whole picture where a command is given.
+    /// A line across the complete picture at each command.
     fn marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);

@@ -15,7 +15,7 @@ pub enum Effect {
     /// To the next instruction or over it.
     Skip,
     Return,
-    /// `ijmp`, `icall` and their extended kin.
+    /// An indirect jump or call: `ijmp`, `icall` and their extended forms.
     Indirect,
     /// Enables interrupts: `sei`.
     EnableInterrupts,
@@ -25,7 +25,7 @@ pub enum Effect {
     StackFromPointer,
     /// The stack pointer gets something else.
     StackFromOther,
-    /// r29:r28 changes by so much.
+    /// Adds a constant to r29:r28.
     AddToPointer(i16),
     /// The low half of a 16-bit subtraction from it: `subi r28`.
     SubtractLow(u8),
