@@ -1,7 +1,8 @@
 //! Colours and strokes that every drawing shares.
 
-use svg::Document;
+use svg::node::Value;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
+use svg::{Document, Node};
 
 /// Servos A1 to A4, and their legs: three of Okabe and Ito's colours and a purple
 /// of Tol's, which the colour-blind can tell apart too.
@@ -123,6 +124,13 @@ pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
         .set("cy", fixed(centre.1))
         .set("r", radius)
         .set("fill", fill)
+}
+
+/// The shape with an edge of this colour and width.
+pub fn edged<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
+    shape.assign("stroke", colour);
+    shape.assign("stroke-width", width);
+    shape
 }
 
 /// An open curve through points.

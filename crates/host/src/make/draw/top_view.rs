@@ -5,7 +5,7 @@ use lizard_robot::{LegPlace, Robot};
 use svg::node::element::{Group, Path};
 
 use super::body::Sheet;
-use crate::shared::ink::{DARK, SERVO, circle, page};
+use crate::shared::ink::{DARK, SERVO, circle, edged, page};
 
 pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
 /// Pixels of a mm, unless the robot is too large for the page.
@@ -215,11 +215,11 @@ impl<'a> View<'a> {
                 .add(circle(self.page(shaft), 3.4 * self.scale, DARK))
                 .add(circle(self.page(shaft), 1.2 * self.scale, "white"));
         }
-        group.add(
-            circle(self.page(point), 3.4 * self.scale, "#f0e442")
-                .set("stroke", DARK)
-                .set("stroke-width", 2.5),
-        )
+        group.add(edged(
+            circle(self.page(point), 3.4 * self.scale, "#f0e442"),
+            DARK,
+            2.5,
+        ))
     }
 
     pub(super) fn foot(&self, servo: usize) -> Joint {

@@ -6,7 +6,7 @@ use svg::node::element::Group;
 
 use super::plot::{Axis, Plot, Scale, VIRIDIS};
 use crate::paper::design::{Point, Proportions, SUM};
-use crate::shared::ink::{circle, line, page, text_start, title};
+use crate::shared::ink::{circle, edged, line, page, text_start, title};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL: f64 = 340.0;
@@ -78,16 +78,8 @@ pub fn performance(points: &[Point], step: f64) -> String {
         }
         let (x, y) = plot.at(Proportions::PAPER.r1, Proportions::PAPER.r2);
         group = group
-            .add(
-                circle((x, y), 7.0, "none")
-                    .set("stroke", "white")
-                    .set("stroke-width", 5.0),
-            )
-            .add(
-                circle((x, y), 7.0, "none")
-                    .set("stroke", "#d55e00")
-                    .set("stroke-width", 2.5),
-            );
+            .add(edged(circle((x, y), 7.0, "none"), "white", 5.0))
+            .add(edged(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
         group = plot.axes(group, &axes.0, &axes.1);
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
         group = scale.key(

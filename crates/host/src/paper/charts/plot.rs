@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 
 use svg::node::element::{Group, Path, Polyline};
 
-use crate::shared::ink::{DARK, GRID, curve, line, rectangle, text_end, text_middle, text_start};
+use crate::shared::ink::{
+    DARK, GRID, curve, edged, line, rectangle, text_end, text_middle, text_start,
+};
 
 /// Viridis in ten bands: even steps in lightness, so that it reads in grey and
 /// for every kind of colour vision.
@@ -85,11 +87,7 @@ impl Plot {
     /// Frame, ticks, numbers and names.
     pub fn axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         let (right, bottom) = self.end();
-        group = group.add(
-            rectangle(self.corner, self.size, "none")
-                .set("stroke", DARK)
-                .set("stroke-width", 1.0),
-        );
+        group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
         for value in ticks(self.x, x.step) {
             let at = self.at(value, 0.0).0;
             group = group

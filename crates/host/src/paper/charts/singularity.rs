@@ -6,7 +6,7 @@ use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry};
-use crate::shared::ink::{DARK, circle, cross, line, page, rectangle, text_start, title};
+use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text_start, title};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);
@@ -63,11 +63,11 @@ pub fn singularity(robot: &Robot) -> String {
     // Where the right panel lies in the left one.
     let corner = left.at(near.x.0, near.y.1);
     let end = left.at(near.x.1, near.y.0);
-    group = group.add(
-        rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none")
-            .set("stroke", DARK)
-            .set("stroke-width", 2.0),
-    );
+    group = group.add(edged(
+        rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none"),
+        DARK,
+        2.0,
+    ));
     for (i, (_, path)) in paths.iter().enumerate() {
         let (colour, dashes) = STYLES[i % STYLES.len()];
         if path.len() > 1 {
