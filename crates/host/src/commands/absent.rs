@@ -36,7 +36,7 @@ fn built(feature: &str) -> bool {
         feature = "console",
         feature = "parts"
     ),
-    allow(dead_code, reason = "a whole build lacks nothing")
+    allow(dead_code, reason = "a complete build lacks nothing")
 )]
 pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
     in_a_build(typed, known, built)

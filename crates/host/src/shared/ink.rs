@@ -30,11 +30,11 @@ const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 /// The part of a text that is at its point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
-    /// At its beginning.
+    /// The text begins there.
     Start,
-    /// In its middle.
+    /// Its middle is there.
     Middle,
-    /// At its end.
+    /// The text ends there.
     End,
 }
 

@@ -70,11 +70,11 @@ impl Quantity {
 /// The reason why a typed number is refused; the text continues a sentence about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberFault {
-    /// It is no number.
+    /// The text is no number.
     NotANumber,
-    /// It is infinite, not a number by name, or too large for a double.
+    /// The number is infinite, NaN, or too large for a double.
     NotFinite,
-    /// It is larger than its quantity may be.
+    /// The number is larger than its quantity may be.
     OutOfRange(Quantity),
 }
 

@@ -29,7 +29,7 @@ const MOST: u32 = 1_000_000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Part {
-    /// From 1 on.
+    /// The number of this part, from 1.
     pub(crate) number: u32,
     /// The number of parts.
     pub(crate) of: u32,
@@ -124,7 +124,7 @@ pub trait Spreads: Serialize + DeserializeOwned {
     /// The command's name.
     const COMMAND: &'static str;
 
-    /// Its robot and its part.
+    /// The command's robot and its part.
     fn places(&mut self) -> (&mut RobotFile, &mut Spread);
 }
 

@@ -129,7 +129,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// By how much each foot is too long, mm, servo order.
+/// The length error of each foot, mm, servo order.
 fn lengths(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
     let mut long = [None; 4];
     for LongFoot { leg, mm } in given {

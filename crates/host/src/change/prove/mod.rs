@@ -89,12 +89,12 @@ pub struct Finding {
     pub part: String,
     /// The servos that decide it.
     pub servos: Vec<&'static str>,
-    /// Of its conditions.
+    /// The sums over its pairs.
     #[serde(flatten)]
     pub tally: Tally,
 }
 
-/// The comparison for a whole robot.
+/// The comparison of guard and geometry for one robot.
 #[derive(Clone, Debug, Serialize)]
 pub struct Proof {
     /// Ends, sides and legs.

@@ -29,7 +29,7 @@ pub struct Walk<'a> {
     guard: &'a CoreRobot,
     share: Share,
     maps: CellMaps,
-    /// Of each servo, as soon as a piece needs them.
+    /// The positions of each servo, computed when a piece needs them.
     positions: [OnceLock<Positions>; 4],
 }
 
@@ -205,7 +205,7 @@ struct EndWalk<'a> {
     /// Type-2 and type-1, as robot.toml and as the firmware has them.
     limits: [f64; 2],
     fixed_limits: [i16; 2],
-    /// Of the legs, as the firmware has it.
+    /// The least margin of a leg, as the firmware has it.
     fixed_leg: i16,
     end: End,
     cells: Cells<'a>,
@@ -351,13 +351,13 @@ struct EndTruth {
     closes: bool,
     type2: f64,
     type1: [f64; 2],
-    /// From the left crank tip to the right one, mm, across the end.
+    /// The distance from the left crank tip to the right one across the end, mm.
     across: f64,
 }
 
 impl EndTruth {
-    /// By how much the least margin is above its limit, a sine; and by how much the
-    /// crank tips are uncrossed, mm.
+    /// The clearances: of the least margin above its limit, a sine; and of the crank tips from
+    /// crossing, mm.
     #[inline(always)]
     fn clear_by(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
         if !self.closes {

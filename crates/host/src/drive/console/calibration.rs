@@ -59,7 +59,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// As the console writes it.
+    /// The sign as the console writes it.
     #[must_use]
     pub const fn sign(self) -> char {
         match self {

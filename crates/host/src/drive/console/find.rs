@@ -36,7 +36,7 @@ pub enum FindError {
     Several {
         /// The subcommand, with what comes before the port.
         command: &'static str,
-        /// Those that might be meant.
+        /// The candidates.
         ports: Vec<UsbPort>,
     },
 }

@@ -19,10 +19,10 @@ const LONGEST: usize = 512;
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
 pub struct Patience {
-    /// For the banner after the port has been opened. A UNO's boot loader takes
-    /// more than a second of it.
+    /// Time for the banner after the port has been opened. A UNO's boot loader takes more than
+    /// a second of it.
     pub banner: Duration,
-    /// For an answer. `save` takes the longest, a third of a second.
+    /// Time for an answer. `save` takes the longest, a third of a second.
     pub answer: Duration,
 }
 

@@ -23,7 +23,7 @@ pub enum PortError {
     Missing {
         /// The port that was asked for.
         name: String,
-        /// Those that are there.
+        /// The USB serial ports that exist.
         ports: String,
     },
     /// Another program has it.
@@ -40,7 +40,7 @@ pub enum PortError {
          usermod -aG dialout <user>, then log in again"
     )]
     Forbidden(String),
-    /// It is something else.
+    /// The file is no serial port.
     #[error("{0} is no serial port")]
     NoPort(String),
     /// The system's own reason.

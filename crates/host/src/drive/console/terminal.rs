@@ -18,7 +18,7 @@ const PATIENCE: u32 = 10;
 
 /// Ends the program two seconds after its terminal has gone, if it has not ended by itself:
 /// a terminal that goes at the very moment when a key is waited for is waited for without
-/// end. Nothing is half written then: files are written whole.
+/// end. No file is half written then: each is written at once.
 pub fn end_when_gone() {
     let look = || {
         let mut gone = 0;

@@ -30,7 +30,7 @@ pub struct Double {
     pub worn: Option<(usize, u8)>,
     /// The number of written pages after which the port vanishes.
     pub unplugged_after: Option<usize>,
-    /// Of pages written, in their order.
+    /// The addresses of written pages, in order.
     pub written: Vec<usize>,
     /// The number of resets so far.
     pub resets: usize,

@@ -39,12 +39,12 @@ pub enum Program {
     Lizard {
         /// The version mark in the code.
         mark: Mark,
-        /// It is not the code that is to be written, though it may have its version.
+        /// True if it is not the code that is to be written, though it may have its version.
         differs: bool,
     },
     /// A program that is no lizard firmware.
     Other {
-        /// Up to its last byte; none where only its beginning was read.
+        /// The size up to the last byte; none if only the first page was read.
         bytes: Option<usize>,
     },
 }
@@ -54,7 +54,7 @@ pub enum Program {
 pub enum TheirRobot {
     /// Nothing was ever written there.
     None,
-    /// Its name and hash.
+    /// A valid robot, by its name and hash.
     Named(String),
     /// One that was not written to its end, was damaged, or is of another format.
     Damaged,

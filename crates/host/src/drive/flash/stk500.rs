@@ -79,11 +79,11 @@ pub struct Patience {
     /// After a reset: the loader blinks and does not listen. Bytes sent meanwhile overflow its
     /// receiver, and half a command makes it give up.
     pub blinks: Duration,
-    /// For the answer to one call.
+    /// Time for the answer to one call.
     pub call: Duration,
-    /// After the first answer, for those to earlier calls that are late.
+    /// Time after the first answer, for late answers to earlier calls.
     pub quiet: Duration,
-    /// For an answer to any other command. Writing a page takes about 20 ms.
+    /// Time for an answer to any other command. Writing a page takes about 20 ms.
     pub answer: Duration,
 }
 
@@ -240,7 +240,7 @@ impl<B: Board> Loader<B> {
                 return Ok(true);
             }
             last = byte;
-            // A board that never stops talking would hold this up for ever.
+            // A board that never stops talking would block this loop.
             if Instant::now() > end {
                 return Ok(false);
             }

@@ -19,9 +19,9 @@ const RIM: f64 = 0.6;
 
 /// A page onto which the robot is drawn.
 pub struct Sheet<At> {
-    /// From mm in the chassis frame to the page.
+    /// The projection from mm in the chassis frame to the page.
     pub at: At,
-    /// Of a mm on the page.
+    /// The length of a mm on the page.
     pub scale: f64,
     /// The robot's turn on the page, deg counter-clockwise.
     pub turn: f64,

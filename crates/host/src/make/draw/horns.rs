@@ -70,7 +70,7 @@ fn on_page(at: Vector, scale: f64) -> (f64, f64) {
     (MIDDLE.0 + scale * at.x, MIDDLE.1 - scale * at.y)
 }
 
-/// From a place on the page, so far in a direction.
+/// The point at a distance from another in some direction, on the page.
 fn toward(from: (f64, f64), degrees: f64, far: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
     (from.0 + far * cos, from.1 - far * sin)

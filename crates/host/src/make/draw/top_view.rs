@@ -14,7 +14,7 @@ const PIXELS_PER_MM: f64 = 3.1;
 const MARGIN: (f64, f64) = (80.0, 28.0);
 /// A head's skin reaches so far beyond its point, mm; a tail's less.
 pub(super) const SKIN_BEYOND: f64 = 30.0;
-/// From the skin to the name of what it is of, mm.
+/// Distance from the skin to its label, mm.
 pub(super) const NAME_BEYOND: f64 = 6.0;
 /// Half the length of the plate for which the skin is drawn, mm.
 const SKIN_LENGTH: f64 = 80.4;
@@ -76,7 +76,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// From the chassis frame to the page.
+    /// The point on the page for a point in the chassis frame.
     pub(super) fn page(&self, joint: Joint) -> (f64, f64) {
         (
             SIZE.0 / 2.0 + self.scale * joint.x,

@@ -22,7 +22,8 @@ const LOWER_ROW: f64 = 1.0;
 const POWER: (f64, [&str; 7]) = (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
 const REFERENCES: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
 
-/// Of the pins beside the upper header's GND, and of its other half.
+/// Places of D13, D7 and A0, from which the other pins are counted, in tenths of an inch from
+/// the left edge.
 const D13: f64 = 11.4;
 const D7: f64 = 18.0;
 const A0: f64 = 20.0;

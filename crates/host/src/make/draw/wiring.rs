@@ -31,7 +31,7 @@ const BODY: (f64, f64) = (50.0, 92.0);
 /// A servo's wires leave it this far from its middle.
 const LEAD: f64 = 14.0;
 
-/// Its signal goes down this far right of its middle.
+/// Distance of a signal wire to the right of its servo's middle.
 const ASIDE: f64 = 42.0;
 
 /// A pull-down resistor's body: its middle's height and its size.

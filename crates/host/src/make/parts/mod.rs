@@ -56,7 +56,7 @@ struct Listed {
     instead_of: Option<String>,
     /// The bodies that are made so, by their names in the assembly.
     bodies: Vec<String>,
-    /// Of one, mm^3.
+    /// The volume of one piece, mm^3.
     volume: f64,
     files: Vec<String>,
 }

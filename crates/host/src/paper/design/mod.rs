@@ -55,7 +55,7 @@ pub struct Args {
     /// Half the base [default: 0.1]
     #[arg(long, value_parser = Quantity::SHARE.parser())]
     r3: Option<f64>,
-    /// Print the performance charts over the whole triangle, as CSV
+    /// Print the performance charts over the complete triangle, as CSV
     #[arg(long, conflicts_with = "search")]
     chart: bool,
     /// Rank all designs that keep the servos' travel and the margins

@@ -57,8 +57,8 @@ pub struct Entry {
     unit: &'static str,
     /// The worst miss at a place that deserves a closer look, and that place.
     aside: Option<(f64, &'static str)>,
-    /// With right-hand angles clockwise from -x; null where that reading does
-    /// not arise.
+    /// True if it holds with right-hand angles clockwise from -x; null if that reading does not
+    /// arise.
     holds_clockwise: Option<bool>,
     corrected: Option<&'static str>,
     corrected_worst: Option<f64>,

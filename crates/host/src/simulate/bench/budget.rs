@@ -9,9 +9,9 @@ use super::Figures;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// It may be this large.
+    /// The largest allowed value.
     AtMost(f64),
-    /// It may be this small.
+    /// The smallest allowed value.
     AtLeast(f64),
     /// There is no budget for it.
     None,

@@ -111,7 +111,7 @@ const LONG_LINES: [&str; 20] = [
 ];
 /// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
 const SERVO_VECTORS: [u8; 2] = [11, 12];
-/// And those of USART_RX and USART_UDRE.
+/// Data sheet numbers of USART_RX and USART_UDRE.
 const SERIAL_VECTORS: [u8; 2] = [18, 19];
 /// Cycles from the end of an instruction to a handler's first: 4 of the interrupt
 /// and 3 of the jump in the vector table.

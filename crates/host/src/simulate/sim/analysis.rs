@@ -76,9 +76,9 @@ pub struct Safety {
 pub struct Leg {
     /// The command in effect.
     pub command: String,
-    /// From this many seconds since power-on.
+    /// The beginning, seconds since power-on.
     pub from: f64,
-    /// To this many.
+    /// The end, seconds since power-on.
     pub to: f64,
     /// Distance forward from its own beginning, mm; none if it depends on a tie, two feet
     /// against two.

@@ -66,7 +66,7 @@ impl CoreRun {
         widths
     }
 
-    /// When lines and bytes that wait for room are written and taken.
+    /// The cycle at which waiting lines are written and waiting bytes are taken.
     fn retry(&self) -> Option<u64> {
         let board = &self.running.board;
         let waits = board.waiting() > 0 || self.running.has_output();

@@ -12,11 +12,11 @@ const STILL: f64 = 4.0;
 /// The movement of a foot from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// It moves back: in a forward gait it pushes the body on.
+    /// The foot moves back: in a forward gait it pushes the body on.
     Stance,
-    /// It moves forward.
+    /// The foot moves forward.
     Swing,
-    /// It stands still.
+    /// The foot stands still.
     Still,
 }
 

@@ -14,7 +14,7 @@ pub struct Step {
 pub struct Script {
     /// The commands in order of time.
     pub steps: Vec<Step>,
-    /// When the run ends, ms since power-on.
+    /// The end of the run, ms since power-on.
     pub end_ms: u64,
 }
 
@@ -27,7 +27,7 @@ pub enum ScriptError {
     /// There is nothing after the time.
     #[error("line {0}: no command follows the time")]
     Silent(usize),
-    /// It comes before the line above it.
+    /// The line's time is before that of the line above.
     #[error("line {line}: {now} ms comes before the {before} ms of the command above")]
     Backwards {
         /// The number of the line.

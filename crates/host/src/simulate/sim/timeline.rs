@@ -36,7 +36,7 @@ pub struct Caption {
     pub axis: &'static str,
 }
 
-/// Of a run on the simulated UNO.
+/// The caption of a run on the simulated UNO.
 pub const SIMULATED: Caption = Caption {
     title: "Servo angles and footfalls, measured on the simulated UNO",
     note: "degrees in the chassis frame, read back from every pulse; dashed: the neutral angle",

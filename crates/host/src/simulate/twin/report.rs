@@ -12,7 +12,7 @@ use crate::shared::number::tidy;
 
 /// A row for each command.
 pub struct Report {
-    /// In order of time.
+    /// The rows in order of time.
     pub rows: Vec<Row>,
 }
 
@@ -21,14 +21,14 @@ pub struct Report {
 pub struct Row {
     /// The command as it was sent.
     pub command: String,
-    /// Its first frame's and its end's time since power-on, s.
+    /// The time of its first frame and of its end, s since power-on.
     pub seconds: [f64; 2],
     /// The complete path under the command.
     pub way: Way,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// The rest is of the last whole cycle where there is one, else of all frames:
-    /// how far the feet slid over the floor, mm, servo order.
+    /// The remaining figures are of the last complete cycle if there is one, else of all
+    /// frames: the distance that each foot slid over the floor, mm, servo order.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,

@@ -55,7 +55,7 @@ fn direction(line: &[Point]) -> f64 {
     y.atan2(x).to_degrees()
 }
 
-/// By how much one turns counter-clockwise from one direction to another.
+/// The counter-clockwise turn from one direction to another.
 fn turned(from: f64, to: f64) -> f64 {
     (to - from + 180.0).rem_euclid(360.0) - 180.0
 }

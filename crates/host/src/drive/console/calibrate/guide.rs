@@ -22,15 +22,15 @@ const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest wait for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
-/// Between two looks at the robot.
+/// Interval between two questions for the robot's status.
 const LOOK: Duration = Duration::from_millis(25);
 
 /// A key that means something here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
-    /// To the next step.
+    /// Go to the next step.
     Next,
-    /// To the step before.
+    /// Go to the previous step.
     Back,
     /// Leave; nothing is changed.
     Leave,
@@ -55,7 +55,7 @@ pub struct Guide<'a, P> {
     /// The neutral angles, degrees.
     neutral: [f64; 4],
     at: usize,
-    /// By how much the servo of this step has been moved, if it has.
+    /// The angle by which the servo of this step was moved, if it was.
     moved: Option<f64>,
     /// True if scales and limits are skipped.
     left_out: bool,

@@ -92,8 +92,8 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
         if !terminal::is_there() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
-        // Asked without waiting: a terminal that is closed while it is waited for keeps
-        // the one who waits busy for ever.
+        // Polled without waiting: crossterm never returns from a wait for a terminal that is
+        // closed meanwhile.
         if !event::poll(Duration::ZERO)? {
             if last_read.elapsed() >= TURN {
                 guide.idle()?;

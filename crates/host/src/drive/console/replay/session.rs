@@ -22,7 +22,7 @@ const LONGEST_MS: u64 = 86_400_000;
 /// The reason why a file is not a valid session.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SessionError {
-    /// It is another file, or of another format.
+    /// The file is no session, or one of another format.
     #[error("this is no session of `lizard console --record`: its first line has no \"{FORMAT}\"")]
     Format,
     /// A line is no event.
@@ -87,7 +87,7 @@ impl Session {
         }
     }
 
-    /// When the last event happened, ms.
+    /// The time of the last event, ms.
     pub(super) fn end_ms(&self) -> u64 {
         self.entries.last().map_or(0, |last| last.ms)
     }

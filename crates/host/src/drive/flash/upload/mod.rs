@@ -5,8 +5,8 @@
 //! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
 //! other pages are written and read back, and that first page comes last.
 //!
-//! A robot alone is written likewise: the first page of its section is made blank, and comes
-//! last. The firmware then meets either a whole robot or none, for which it has a fault and
+//! A robot alone is written in the same way: the first page of its section is made blank, and
+//! comes last. The firmware then finds either a valid robot or none, for which it has a fault and
 //! moves no servo. Since the code stays, it must be code that reads this robot: its mark
 //! ([`lizard_core::mark`]) is read before anything is written.
 //!
@@ -49,7 +49,7 @@ pub enum Event<'a> {
     Found(Found),
     /// The number of finished pages, and of all.
     Progress(Step, usize, usize),
-    /// The board is reset, and all begins again.
+    /// The board is reset for another attempt.
     Again {
         /// The reason for another attempt.
         trouble: &'a Trouble,
@@ -79,7 +79,7 @@ pub enum UploadError {
          start of this command"
     )]
     Nobody,
-    /// Not the chip of a UNO.
+    /// The chip is not that of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
     /// A robot alone, and no code that it could be written behind.
@@ -99,7 +99,7 @@ pub enum UploadError {
         /// The version mark of its code.
         mark: Mark,
     },
-    /// It would reach into the boot section.
+    /// The image would reach into the boot section.
     #[error(transparent)]
     TooLong(#[from] TooLong),
     /// A byte was written twice and is still another.
@@ -108,7 +108,7 @@ pub enum UploadError {
          {read:#04x}. The flash is worn out, or the supply too weak. {left}"
     )]
     NotKept {
-        /// Of the byte.
+        /// The address of the byte.
         address: usize,
         /// The byte that was written.
         written: u8,

@@ -10,9 +10,9 @@ pub enum Effect {
     Pop,
     Call(u32),
     Jump(u32),
-    /// To here or to the next instruction.
+    /// Continues here or at the next instruction.
     Branch(u32),
-    /// To the next instruction or over it.
+    /// Continues at the next instruction or behind it.
     Skip,
     Return,
     /// An indirect jump or call: `ijmp`, `icall` and their extended forms.

@@ -13,9 +13,9 @@ const RETURN_ADDRESS: i32 = 2;
 /// The context in which the analysed code runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Context {
-    /// From reset on.
+    /// The program from reset on.
     Main,
-    /// As an interrupt's handler, with interrupts off.
+    /// An interrupt's handler, with interrupts off.
     Interrupt,
 }
 
@@ -36,7 +36,7 @@ struct State {
     /// Bytes pushed since the function's beginning.
     depth: i32,
     pointer: Pointer,
-    /// Of a subtraction from r29:r28 whose high half is still to come.
+    /// The low half of a subtraction from r29:r28 whose high half follows.
     low: u8,
     /// The constant that the previous instruction loaded into r26.
     room: Option<u8>,
