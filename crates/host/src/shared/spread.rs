@@ -6,10 +6,6 @@
 //! machine computes them all, a part computes its own pieces, and a merge runs the same
 //! program with the pieces that it has read. A part contains the version, the options and
 //! the robot, so that parts of different computations cannot be mixed.
-#![cfg_attr(
-    not(any(feature = "paper", feature = "parts")),
-    allow(dead_code, reason = "nothing can be spread")
-)]
 
 use std::collections::BTreeMap;
 use std::io;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::status::angles;
 use crate::Failure;
+#[cfg(feature = "simulator")]
 use crate::shared::plain::plain;
 use crate::shared::{files, json};
 
@@ -122,6 +123,7 @@ impl Event {
     }
 
     /// The event with its texts fit for a terminal: a file may hold anything.
+    #[cfg(feature = "simulator")]
     #[must_use]
     pub fn plain(self) -> Self {
         match self {
