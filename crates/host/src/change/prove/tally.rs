@@ -106,3 +106,15 @@ impl Tally {
         }
     }
 }
+
+/// The result of comparing the guard with geometry at one end or one side.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
+    pub part: String,
+    /// The servos that decide it.
+    pub servos: Vec<&'static str>,
+    /// The sums over its pairs.
+    #[serde(flatten)]
+    pub tally: Tally,
+}
