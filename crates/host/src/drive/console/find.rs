@@ -36,7 +36,7 @@ pub enum FindError {
     Several {
         /// The subcommand, with what comes before the port.
         command: &'static str,
-        /// The candidates.
+        /// The ports that may have the board.
         ports: Vec<UsbPort>,
     },
 }
