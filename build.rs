@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::{env, fs};
 
-use lizard_core::section::START;
+use lizard_core::numbers::section::{SPACE, START};
 use lizard_robot::{Report, Robot};
 
 fn main() {
@@ -24,11 +24,13 @@ fn main() {
     let out = env::var_os("OUT_DIR").unwrap_or_else(|| stop("OUT_DIR is not set"));
     let out = PathBuf::from(out);
     write(&out.join("robot.bin"), &robot.section());
-    // Where everything is in flash; the section is where lizard_core::section::START says.
+    // Where everything is in flash; the section is where lizard_core::numbers::section::START says.
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("avr-specs/atmega328p.ld");
     println!("cargo::rerun-if-changed={}", script.display());
     println!("cargo::rustc-link-arg-bins=-Wl,-T,{}", script.display());
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START:#x}");
+    let end = START + SPACE;
+    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end:#x}");
     // No instruction names it, the mark of the code, or what simavr reads.
     for name in ["ROBOT", "MARK", "SIMAVR"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");

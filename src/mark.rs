@@ -1,9 +1,9 @@
 //! The mark of the code in the first page of flash, by which it is known before it runs.
 
-use lizard_core::mark::{LENGTH, Mark};
+use lizard_core::numbers::mark::{LENGTH, Mark};
 
 /// Nothing but the linker reads it: what is in this section comes first behind the interrupt
-/// vectors, at [`lizard_core::mark::AT`], and a test looks for it there.
+/// vectors, at [`lizard_core::numbers::mark::AT`], and a test looks for it there.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".progmem.gcc.mark")]

@@ -10,8 +10,8 @@
 use std::fmt::Write;
 
 use fastrand::Rng;
-use lizard_core::gait::{Gait, Wave};
-use lizard_core::section::SPACE;
+use lizard_core::numbers::gaits::{Gait, Wave};
+use lizard_core::numbers::section::SPACE;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 

@@ -7,7 +7,7 @@
 use std::thread;
 
 use fastrand::Rng;
-use lizard_core::memory::CONTENT;
+use lizard_core::memory::record::CONTENT;
 use lizard_core::virtual_board::Eeprom;
 use lizard_fuzz::Board;
 use lizard_host_tests::{robot, times};

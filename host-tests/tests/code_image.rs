@@ -7,7 +7,7 @@
 use std::io::Write as _;
 use std::process::Command;
 
-use lizard_core::section::START;
+use lizard_core::numbers::section::START;
 use lizard_host::firmware::CODE;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};

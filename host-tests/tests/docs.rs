@@ -6,9 +6,9 @@ use std::fs;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 
-use lizard_core::curve::Table;
-use lizard_core::gait::{Gait, Wave};
-use lizard_core::section::{Header, Numbers, SPACE, START};
+use lizard_core::numbers::curve::Table;
+use lizard_core::numbers::gaits::{Gait, Wave};
+use lizard_core::numbers::section::{Header, Numbers, SPACE, START};
 use lizard_host_tests::root;
 
 #[test]
@@ -219,7 +219,10 @@ fn the_files_of_a_console_command_are_those_that_know_one_and_no_more_than_seven
         .iter()
         .flat_map(|folder| knowing(&root().join(folder), "center"))
         .collect();
-    known.extend(knowing(&root().join("crates/core/src/text.rs"), "deadman"));
+    known.extend(knowing(
+        &root().join("crates/core/src/console/text.rs"),
+        "deadman",
+    ));
     assert_eq!(listed, known);
     assert!(listed.len() <= 7, "{listed:?}");
 }

@@ -7,19 +7,24 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 13] = [
     "crates/contact",
     "crates/core",
     "crates/host",
     "crates/kinematics",
     "crates/parts",
+    "crates/pulses",
     "crates/robot",
+    "crates/simulated-uno",
     "crates/tune",
     "crates/twin",
     "tools/linker",
     "web/wasm",
     "web/wasm-parts",
 ];
+
+/// The rooms of the core, the top one first. A room may use those below it.
+const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
 /// Folders whose face, too, may not be used by a module that it uses: its own functions and
 /// types count as one more module.
@@ -47,6 +52,21 @@ fn no_modules_use_each_other_in_a_circle() {
         }
     }
     assert!(count > 200, "only {count} uses of another module were read");
+}
+
+#[test]
+fn a_room_of_the_core_uses_only_rooms_below_it() {
+    let core = folders(&root().join("crates/core/src")).remove(0);
+    for (room, used) in core.uses(false) {
+        if let Some(place) = ROOMS.iter().position(|name| *name == room) {
+            for other in used {
+                assert!(
+                    ROOMS[place..].contains(&other.as_str()),
+                    "{room} uses {other}, which is not below it"
+                );
+            }
+        }
+    }
 }
 
 #[test]
@@ -164,7 +184,8 @@ impl Folder {
             for path in files(&place) {
                 let within = path.strip_prefix(&self.place).expect("it is in the folder");
                 let parents = within.parent().expect("a folder").iter();
-                let parents: Vec<_> = parents.map(|name| name.to_string_lossy()).collect();
+                let parents = parents.map(|name| name.to_string_lossy());
+                let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
                 // `mod.rs` is the module of its folder.
                 let depth = parents.len() - usize::from(path.ends_with("mod.rs"));
                 let above: String = parents[..depth]

@@ -1,11 +1,11 @@
-//! The bytes of RAM that the start of the program does not clear; [`lizard_core::kept`]
+//! The bytes of RAM that the start of the program does not clear; [`lizard_core::memory::kept`]
 //! defines what is in them.
 
 use core::arch::global_asm;
 
 use avr_device::atmega328p::CPU;
-use lizard_core::kept::{self, CELLS, Cells, Flags};
-use lizard_core::restart::{Restart, Stance};
+use lizard_core::memory::kept::{self, CELLS, Cells, Flags};
+use lizard_core::memory::restart::{Restart, Stance};
 
 use servo_pulses::cells::Byte;
 
@@ -51,7 +51,7 @@ fn cell(at: usize) -> &'static Byte {
 /// Why the program begins, and what it did until then; from now on it runs. Once,
 /// with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
-    let register = cpu.mcusr().read();
+    let register = cpu.mcusr.read();
     let flags = Flags {
         power_on: register.porf().bit_is_set(),
         external: register.extrf().bit_is_set(),
@@ -59,7 +59,7 @@ pub fn restart(cpu: &CPU) -> Restart {
         watchdog: register.wdrf().bit_is_set(),
     };
     // The watchdog cannot be changed while WDRF is set.
-    cpu.mcusr().reset();
+    cpu.mcusr.reset();
     kept::begin(&Ram, flags)
 }
 

@@ -31,11 +31,11 @@ pub mod supply;
 mod watchdog;
 
 use avr_device::atmega328p::Peripherals;
-use lizard_core::console::Counters;
-use lizard_core::pose::Pulses;
-use lizard_core::restart::{Restart, Stance};
+use lizard_core::console::answer::Counters;
+use lizard_core::numbers::pose::Pulses;
+use lizard_core::memory::restart::{Restart, Stance};
 use lizard_core::step::Board;
-use lizard_core::supply::Reading;
+use lizard_core::control::supply::Reading;
 
 /// The board, started.
 pub struct Uno {
@@ -58,11 +58,11 @@ impl Uno {
         // Which of them are the servos' is known later; none of them stays high until then.
         // SAFETY: any value of a port is sound; D0 and D1, the serial line, keep theirs.
         unsafe {
-            board.PORTB.portb().write(|w| w.bits(0));
-            board.PORTC.portc().write(|w| w.bits(0));
+            board.PORTB.portb.write(|w| w.bits(0));
+            board.PORTC.portc.write(|w| w.bits(0));
             board
                 .PORTD
-                .portd()
+                .portd
                 .modify(|port, w| w.bits(port.bits() & 0x03));
         }
         let restart = kept::restart(&board.CPU);

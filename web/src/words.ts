@@ -1,4 +1,4 @@
-// The console's words that the page sends or waits for. The core's list, crates/core/src/word.rs, decides
+// The console's words that the page sends or waits for. The core's list, crates/core/src/console/word.rs, decides
 // how they are written: a page with a word that is not there says so when it begins.
 
 export const WORDS = {
@@ -25,7 +25,7 @@ export const WORDS = {
 /** Gaits that the page asks for by name: the core has `stand` in every robot, and `walk` is looked for first. */
 export const GAITS = { stand: 'stand', walk: 'walk' } as const;
 
-/** What the firmware says after a reset where nothing was ever saved. */
+/** The firmware's line after a reset if nothing was ever saved. */
 export const NOTHING_SAVED = '# calibration: none is saved';
 
 /** Words of the page and of its buttons that are not among the core's. */

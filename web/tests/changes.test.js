@@ -1,4 +1,4 @@
-// What a person changes is in the file that the page gives, and outlasts a reload.
+// The user's changes are in the downloaded file and survive a reload.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';

@@ -14,7 +14,7 @@ after(close);
 const text = (opened, selector) => opened.locator(selector).innerText();
 const gait = (opened, name) => opened.locator(`#gaits button[data-command="${name}"]`);
 
-/** What the page predicts for a gait, and what the body did in the last cycle. */
+/** The page's prediction for a gait, and the body's displacement in the last cycle. */
 const ways = (opened, name) =>
   opened.evaluate((name) => {
     const { robot, description } = window.lizard;

@@ -1,59 +1,59 @@
-//! The energy that a leg needs to lag behind its servo.
+//! The energy of a leg's lag behind its servo.
 //!
 //! In the contact model a single function describes the drive of a leg, the energy of its
 //! lag: zero within the play, beyond it the energy of the spring on that side, and beyond
 //! a stop a slope that no pad can climb. It has kinks at the lags that are most likely.
 //! They are rounded off within `eps`, like the lengths of slides in `friction.rs`.
 
-/// A lag's energy, in the units of the contact problem: forces over the mean friction of a
+/// The energy of a lag, in the units of the contact problem: forces over the mean friction of a
 /// pad, mm and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Yield {
-    /// How far the leg moves freely to either side.
+    /// Free movement of the leg to either side, rad.
     pub play: f64,
-    /// What a stop pushes back with: more than a pad can. Much more would only make the
-    /// cost harder to minimise.
+    /// Torque of a stop, more than that of a pad. Much more would only make the cost harder to
+    /// minimise.
     pub stop: f64,
-    /// What a lag below 0 meets.
+    /// Resistance to a lag below 0.
     pub lower: Side,
-    /// And one above 0.
+    /// Resistance to a lag above 0.
     pub upper: Side,
 }
 
-/// What a leg meets on one side, beyond its play.
+/// The resistance to a lag on one side, beyond the play.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Side {
-    /// A stop.
+    /// A rigid stop.
     Stop,
-    /// A spring.
+    /// An ideal spring.
     Spring {
-        /// Its torque at the smallest lag.
+        /// Torque at the smallest lag.
         preload: f64,
-        /// How much more it is per radian.
+        /// Rate of the torque, per rad.
         rate: f64,
     },
-    /// A spring in a strut, and where its slot ends a stop.
+    /// A spring in a strut, and a stop at the end of its slot.
     Strut {
-        /// How the strut is stretched.
+        /// Geometry of the strut.
         stretch: Stretch,
-        /// What it pulls before.
+        /// Pull of the spring without a lag.
         force: f64,
-        /// How much more for each mm.
+        /// Rate of the spring, per mm.
         rate: f64,
-        /// The lag at which the slot ends, beyond the play, rad.
+        /// Lag at the end of the slot, beyond the play, rad.
         way: f64,
     },
 }
 
-/// How a leg's lag stretches its strut: the strut is the third side of a triangle, between
+/// The stretching of a strut by a leg's lag: the strut is the third side of a triangle, between
 /// the leg's arm and the line from the leg's pivot to the strut's other end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
-    /// Length of that line, mm.
+    /// Length of the line from the pivot to the strut's other end, mm.
     far: f64,
-    /// Length of the arm, mm.
+    /// Length of the leg's arm, mm.
     near: f64,
-    /// Between both while the leg does not lag, rad; a lag adds to it.
+    /// Angle between both while the leg does not lag, rad; a lag adds to it.
     angle: f64,
     /// Sine and cosine of that angle without its sign.
     sin_cos: (f64, f64),
@@ -61,10 +61,10 @@ pub(crate) struct Stretch {
     still: f64,
 }
 
-/// Energy, slope and curvature.
+/// The energy, its slope and its curvature.
 type Expansion = (f64, f64, f64);
 
-/// How far x is above 0, rounded off within `eps`.
+/// The part of x above 0, rounded off within `eps`.
 fn above(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
@@ -80,7 +80,7 @@ fn above(x: f64, eps: f64) -> Expansion {
 }
 
 impl Stretch {
-    /// Of a line and an arm (mm) with an angle between them, rad.
+    /// Makes the triangle of a line and an arm (mm) with an angle between them, rad.
     pub fn new(far: f64, near: f64, angle: f64) -> Self {
         let sin_cos = angle.abs().sin_cos();
         Self {
@@ -92,19 +92,19 @@ impl Stretch {
         }
     }
 
-    /// By how much the strut is longer for each radian more, mm, while the leg does not
-    /// lag: the lever of its pull. It is negative where a lag makes the strut shorter.
+    /// Lever of the strut's pull while the leg does not lag: the derivative of its length by the
+    /// lag, mm/rad. It is negative if a lag makes the strut shorter.
     pub fn lever(&self) -> f64 {
         (self.far * self.near * self.sin_cos.0 / self.still).copysign(self.angle)
     }
 
-    /// The same without its sign, at a lag in the direction in which the strut grows.
+    /// Lever without its sign, after a lag in the direction in which the strut grows.
     pub fn lever_after(&self, lag: f64) -> f64 {
         self.at(lag).1
     }
 
-    /// The lag at which the strut is longer by so much, rad, without its sign; infinite
-    /// where it never is.
+    /// Lag at which the strut has grown by this length, rad, without its sign; infinite if it
+    /// cannot.
     pub fn way(&self, longer: f64) -> f64 {
         let Self { far, near, .. } = self;
         let length = self.still + longer;
@@ -115,8 +115,8 @@ impl Stretch {
         }
     }
 
-    /// After a lag in the direction in which the strut grows: by how much it is longer
-    /// (mm), its lever (mm for each radian), and how much that has grown for each radian.
+    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with its
+    /// first and second derivative by the lag: the lever (mm/rad) and its slope.
     ///
     /// Lags are often a hundred-thousandth of a radian. The difference of two lengths
     /// would then be mostly rounding, and Newton's method would look for a minimum in it.
@@ -131,8 +131,8 @@ impl Stretch {
         (more / (length + self.still), lever, grows)
     }
 
-    /// What a spring takes that pulls the strut together with `force` and `rate`, where
-    /// `lag` is counted in the direction in which it grows; less `preload * lag`.
+    /// Energy of a spring that pulls the strut together with `force` and `rate`, less
+    /// `preload * lag`; `lag` is in the direction in which the strut grows.
     fn energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
         let (longer, lever, grows) = self.at(lag);
         let pull = force + rate * longer;
@@ -147,7 +147,7 @@ impl Stretch {
 }
 
 impl Side {
-    /// A strut's side.
+    /// The side of a strut.
     pub fn strut(stretch: Stretch, force: f64, rate: f64, slot: f64) -> Self {
         Self::Strut {
             stretch,
@@ -157,7 +157,7 @@ impl Side {
         }
     }
 
-    /// What so much lag beyond the play costs.
+    /// Energy of a lag beyond the play.
     fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
         let (far, slope, bend) = above(beyond, eps);
         let kink = |height: f64| (height * far, height * slope, height * bend);
@@ -191,7 +191,7 @@ impl Side {
         }
     }
 
-    /// With how much torque the spring pulls at so much lag beyond the play.
+    /// Torque of the spring at a lag beyond the play.
     fn pulls(&self, beyond: f64) -> f64 {
         match *self {
             _ if beyond <= 0.0 => 0.0,
@@ -206,7 +206,7 @@ impl Side {
         }
     }
 
-    /// How far a leg can be beyond its play.
+    /// Largest lag beyond the play.
     fn end(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
@@ -217,26 +217,26 @@ impl Side {
 }
 
 impl Yield {
-    /// The energy at a lag (rad), its slope and its curvature, with kinks that are rounded
-    /// off within `eps` rad.
+    /// Energy at a lag (rad), its slope and its curvature, with kinks rounded off within `eps`
+    /// rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps, self.stop);
         let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps, self.stop);
         (up + down, by_up - by_down, bend_up + bend_down)
     }
 
-    /// With how much torque the spring pulls the leg back, without its sign.
+    /// Torque with which the spring pulls the leg back, without its sign.
     pub fn pulls(&self, lag: f64) -> f64 {
         self.upper.pulls(lag - self.play) + self.lower.pulls(-lag - self.play)
     }
 
-    /// The least and the greatest lag that the stops allow, rad.
+    /// Least and greatest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
         [-self.play - self.lower.end(), self.play + self.upper.end()]
     }
 
-    /// The most that a torque can gain on this drive: the convex conjugate of the energy,
-    /// which the proof by duality needs. A torque that no stop bears gains without end.
+    /// Largest gain of a torque on this drive: the convex conjugate of the energy, for the proof
+    /// by duality. It is infinite for a torque that no stop bears.
     #[cfg(test)]
     pub fn conjugate(&self, torque: f64) -> f64 {
         let side = if torque > 0.0 { self.upper } else { self.lower };

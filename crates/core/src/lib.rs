@@ -14,19 +14,27 @@
 //! lines <- print <- Answer <- Refusal <- Safety (supervisor's table) <- Health
 //! ```
 //!
-//! [`step::Main`] holds a [`console::Console`] and a [`control::Control`] and does one
-//! thing at a time. The console knows bytes and lines and gives orders; the control knows
-//! none of that, owns motion, settings and safety, and says why it refuses. One table,
-//! [`supervisor`], says what it does at each event in each state.
+//! [`step::Main`] joins a [`console::Console`] and a [`control::Control`]: it is the loop
+//! that a board repeats. Below it are six rooms, each a folder that uses only those under
+//! it:
+//!
+//! | room | contents |
+//! |---|---|
+//! | [`console`] | bytes, lines, commands, sentences |
+//! | [`control`] | orders, refusals, the [`control::supervisor`]'s table, faults, supplies |
+//! | [`motion`] | gaits, moves between poses, and the changes from one to the next |
+//! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose breaks |
+//! | [`memory`] | settings and poses that outlast power, and a state that outlasts a reset |
+//! | [`numbers`] | units, and the section of flash with the numbers of a robot |
 //!
 //! This example shows two pieces that need no robot: bytes become a line, and an angle
 //! becomes the pulse that turns a servo there. All of it, on a board without a chip, is
 //! in `virtual_board` (feature `host`).
 //!
 //! ```
-//! use lizard_core::calibration::Calibration;
-//! use lizard_core::line::{Ended, Line};
-//! use lizard_core::units::{Angle, CYCLES_PER_US, Sweep, Width};
+//! use lizard_core::numbers::calibration::Calibration;
+//! use lizard_core::console::line::{Ended, Line};
+//! use lizard_core::numbers::units::{Angle, CYCLES_PER_US, Sweep, Width};
 //!
 //! let mut line = Line::new();
 //! let ended = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
@@ -55,63 +63,28 @@
 //! 4. **Small.** Flash and RAM come last: a type that costs a few bytes stays, as long as
 //!    the program fits.
 //!
-//! Everything here is integer arithmetic and runs unchanged on the
-//! microcontroller and on the host, where the tests compare it with floating
-//! point. The numbers of a robot come from its section of flash ([`section`],
-//! [`robot::Robot`]), the board through the trait [`step::Board`]; this crate can name neither a
-//! register nor a file.
+//! Everything here is integer arithmetic and runs unchanged on the microcontroller and on
+//! the host, where the tests compare it with floating point. The numbers of a robot come
+//! from its section of flash ([`numbers::section`], [`numbers::robot::Robot`]), the board
+//! through the trait [`step::Board`]; this crate can name neither a register nor a file.
+//!
+//! Do not use it for a robot of another build: head, tail and sides have to be five-bars on
+//! exactly four servos. To send pulses alone, take `servo-pulses`; to explore a linkage on
+//! a host, the floating-point `lizard-kinematics`.
 
 #![no_std]
 
 #[cfg(any(test, feature = "host"))]
 extern crate std;
 
-pub mod adjustment;
-pub mod answer;
-#[cfg(any(test, feature = "host"))]
-pub mod bounds;
-pub mod calibration;
-pub mod cells;
-mod check;
-mod checksum;
-pub mod command;
 pub mod console;
 pub mod control;
-pub mod couplers;
-pub mod curve;
-pub mod digits;
-pub mod fault;
-pub mod five_bar;
-pub mod gait;
 pub mod guard;
-pub mod hazard;
-pub mod kept;
-pub mod limits;
-pub mod line;
-pub mod mark;
 pub mod memory;
 pub mod motion;
-pub mod order;
-pub mod part;
-pub mod point_to_point;
-pub mod pose;
-pub mod record;
-pub mod refusal;
-pub mod restart;
-pub mod robot;
-pub mod root;
-pub mod safety;
+pub mod numbers;
 #[cfg(test)]
 mod sample;
-pub mod section;
-pub mod settings;
-pub mod slider;
 pub mod step;
-pub mod supervisor;
-pub mod supply;
-pub mod text;
-pub mod trig;
-pub mod units;
 #[cfg(any(test, feature = "host"))]
 pub mod virtual_board;
-pub mod word;

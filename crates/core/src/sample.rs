@@ -17,22 +17,24 @@ use lizard_avr::{Flash, Region};
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
 
-use crate::adjustment::Reach;
-use crate::checksum::Checksum;
-use crate::couplers::{self, Couplers, Coupling};
-use crate::curve::Table;
-use crate::five_bar::{self, FiveBar};
-use crate::gait::{Channel, Gait, GaitId, SAMPLES, Wave};
-use crate::guard::Clearance;
-use crate::limits::Limits;
-use crate::point_to_point::Slew;
-use crate::pose::Pose;
-use crate::robot::Robot;
-use crate::safety::Health;
-use crate::section::{self, Content, Header, Map};
-use crate::slider::{self, Slider};
-use crate::supply::{Reading, Supplies, Thresholds};
-use crate::units::{Angle, Scale, Sine, Sweep};
+use crate::control::safety::Health;
+use crate::control::supply::Reading;
+use crate::guard::clearance::Clearance;
+use crate::guard::five_bar::FiveBar;
+use crate::numbers::bars;
+use crate::numbers::calibration::Reach;
+use crate::numbers::checksum::Checksum;
+use crate::numbers::couplers::{self, Couplers, Coupling};
+use crate::numbers::curve::Table;
+use crate::numbers::gaits::{Channel, Gait, GaitId, SAMPLES, Wave};
+use crate::numbers::limits::Limits;
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
+use crate::numbers::section::{self, Content, Header, Map};
+use crate::numbers::slew::Slew;
+use crate::numbers::slider::{self, Slider};
+use crate::numbers::supplies::{Supplies, Thresholds};
+use crate::numbers::units::{Angle, Scale, Sine, Sweep};
 
 pub use measures::Measures;
 
@@ -152,9 +154,9 @@ impl Loop {
         let scale = (0..=14)
             .rev()
             .map(|bits| Scale { bits })
-            .find(|scale| longest * per_mm(*scale) < five_bar::LONGEST)?;
+            .find(|scale| longest * per_mm(*scale) < bars::LONGEST)?;
         let [a, b] = couplers.map(|mm| steps(mm, scale) as i16);
-        if a.min(b) < five_bar::SHORTEST_COUPLER {
+        if a.min(b) < bars::SHORTEST_COUPLER {
             return None;
         }
         Some(Self {
@@ -178,7 +180,7 @@ impl Loop {
 
     pub fn five_bar(&self) -> FiveBar<'_> {
         let Bars { left, right, .. } = self.couplers;
-        let bars = five_bar::Bars::new(self.bars, [left, right], self.scale);
+        let bars = bars::Bars::new(self.bars, [left, right], self.scale);
         FiveBar::new(bars, self.couplers.tables())
     }
 }

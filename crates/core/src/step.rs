@@ -13,14 +13,15 @@ use core::convert::Infallible;
 use lizard_avr::Region;
 use ufmt::uWrite;
 
-use crate::console::{Console, Counters, LONGEST_LINE};
+use crate::console::answer::Counters;
+use crate::console::{Console, LONGEST_LINE};
 use crate::control::Control;
-use crate::memory::Memory;
-use crate::pose::Pulses;
-use crate::restart::{Restart, Stance};
-use crate::safety::Health;
-use crate::supply::Reading;
-use crate::units::CYCLES_PER_US;
+use crate::control::safety::Health;
+use crate::control::supply::Reading;
+use crate::memory::record::Memory;
+use crate::memory::restart::{Restart, Stance};
+use crate::numbers::pose::Pulses;
+use crate::numbers::units::CYCLES_PER_US;
 
 /// What main needs of a board.
 pub trait Board {
@@ -83,7 +84,7 @@ pub trait Board {
     /// The serial line's writer.
     fn writer(&mut self) -> &mut Self::Writer;
 
-    /// The next byte received, if any; [`crate::line::GARBLED`] for one that came
+    /// The next byte received, if any; [`crate::console::line::GARBLED`] for one that came
     /// garbled.
     fn receive(&mut self) -> Option<u8>;
 

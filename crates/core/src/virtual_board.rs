@@ -27,13 +27,13 @@ mod transmitter;
 
 use std::collections::VecDeque;
 
-use crate::console::Counters;
-use crate::kept::Flags;
-use crate::pose::Pulses;
-use crate::restart::{Cause, Restart, Stance};
+use crate::console::answer::Counters;
+use crate::control::supply::Reading;
+use crate::memory::kept::Flags;
+use crate::memory::restart::{Cause, Restart, Stance};
+use crate::numbers::pose::Pulses;
+use crate::numbers::units::{CYCLES_PER_US, Width};
 use crate::step::Board;
-use crate::supply::Reading;
-use crate::units::{CYCLES_PER_US, Width};
 
 pub use converter::{Converter, reading};
 pub use eeprom::Eeprom;

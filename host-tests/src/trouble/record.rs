@@ -1,7 +1,7 @@
 //! What was seen of a scenario, from the outside: pulses, lines, the LED, resets, what
 //! was written; and what was done to the board.
 
-use lizard_core::word::Effect;
+use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
 use simulated_uno::{
     CYCLES_PER_MS, Edge, EepromOperation, Pin, Pulse, Reset, ResetCause, State, pulses,

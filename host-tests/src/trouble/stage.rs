@@ -1,7 +1,7 @@
 //! Plays a scenario on a simulated UNO and records all that can be seen of it.
 
-use lizard_core::command::{effect, parse};
-use lizard_core::word::Effect;
+use lizard_core::console::command::{effect, parse};
+use lizard_core::console::word::Effect;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::lines::LineReader;
 use lizard_host::sim::supplies;

@@ -2,8 +2,8 @@
 //! line carries them: for 15 seconds each, or as many times that as `LIZARD_FUZZ` says.
 
 use fastrand::Rng;
-use lizard_core::record::{self, Outcome};
-use lizard_core::settings::Settings;
+use lizard_core::memory::copies::{self, Outcome};
+use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
@@ -59,7 +59,7 @@ fn assert_well(mut bench: FirmwareBench) {
     let firmware = robot().firmware();
     let contents = bench.uno.eeprom();
     let mut settings = Settings::of(firmware);
-    let outcome = record::load(firmware, &Eeprom::with(contents), &mut settings);
+    let outcome = copies::load(firmware, &Eeprom::with(contents), &mut settings);
     assert!(
         matches!(outcome, Outcome::Latest | Outcome::Blank),
         "{outcome:?}"

@@ -5,8 +5,8 @@
 use std::mem::offset_of;
 use std::ops::Range;
 
-use lizard_core::section::{Header, Numbers, SPACE, START, seal};
-use lizard_core::word::Word;
+use lizard_core::console::word::Word;
+use lizard_core::numbers::section::{Header, Numbers, SPACE, START, seal};
 use lizard_host::board::SimulatedBoard;
 use lizard_host::firmware::with_robot;
 use lizard_host_tests::{FRAME, FirmwareBench, rng, robot, root};
@@ -92,8 +92,8 @@ fn missing() -> Vec<Damage> {
     }
     for format in [
         0u16,
-        lizard_core::section::FORMAT - 1,
-        lizard_core::section::FORMAT + 1,
+        lizard_core::numbers::section::FORMAT - 1,
+        lizard_core::numbers::section::FORMAT + 1,
         0xffff,
     ] {
         all.push(changed(format!("version {format}"), FORMAT, |section| {

@@ -1,10 +1,10 @@
 //! The guard on the chip: what it refuses, and that no frame gets past it.
 
 use fastrand::Rng;
-use lizard_core::guard::Clearance;
-use lizard_core::part::{End, Side};
-use lizard_core::pose::Pose as Sweeps;
-use lizard_core::units::Sweep;
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::numbers::part::{End, Side};
+use lizard_core::numbers::pose::Pose as Sweeps;
+use lizard_core::numbers::units::Sweep;
 use lizard_host::prove::{STEPS_BAND, margin_band};
 use lizard_host::sim::analysis::instants;
 use lizard_host_tests::robot;

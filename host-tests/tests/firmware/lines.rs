@@ -2,7 +2,7 @@
 //! then perhaps a byte or two changed.
 
 use fastrand::Rng;
-use lizard_core::word::Word;
+use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
 /// A number as a person would type it, within some range and sometimes beyond.

@@ -1,7 +1,7 @@
 //! Robots that nobody has measured: whatever their pins, directions and gaits, no frame of
 //! theirs is late.
 
-use lizard_core::gait::LONGEST_NAME;
+use lizard_core::numbers::gaits::LONGEST_NAME;
 use lizard_host::bench::longest_step;
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::core_run;

@@ -1,8 +1,8 @@
 //! Power that fails while settings are saved, at every byte and with every way that
 //! a byte may be torn; and bits that change in the years.
 
-use lizard_core::record::{self, Outcome};
-use lizard_core::settings::Settings;
+use lizard_core::memory::copies::{self, Outcome};
+use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
@@ -13,7 +13,7 @@ use crate::kept::{calibration, power_cycle};
 /// What an EEPROM says to the core, the turn left out.
 fn loaded(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
     let mut settings = Settings::of(robot().firmware());
-    let outcome = record::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
+    let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
     settings.set_turn(0);
     (settings, outcome)
 }

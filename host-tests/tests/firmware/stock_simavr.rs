@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use lizard_core::units::CYCLES_PER_US;
+use lizard_core::numbers::units::CYCLES_PER_US;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::{FirmwareBench, robot};
 

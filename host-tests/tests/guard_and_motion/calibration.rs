@@ -1,6 +1,6 @@
 //! Each servo by its own numbers: neutral, gain, travel and pin.
 
-use lizard_core::units::Sweep;
+use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, robots};
 
 use crate::truth::degrees;

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use fastrand::Rng;
-use lizard_core::gait::GaitId;
 use lizard_core::motion::{Activity, Motion};
-use lizard_core::pose::{Pose, Pulses};
-use lizard_core::units::CYCLE;
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::pose::{Pose, Pulses};
+use lizard_core::numbers::units::CYCLE;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::Named;
 use lizard_robot::{CheckedGait, Robot};

@@ -1,9 +1,9 @@
 //! The gaits of every robot as its core reads them, against the gaits in floating
 //! point and against what robot.toml says that they do.
 
-use lizard_core::gait::{Gait, GaitId};
-use lizard_core::pose::Pose;
-use lizard_core::units::{CYCLE, Sweep};
+use lizard_core::numbers::gaits::{Gait, GaitId};
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::units::{CYCLE, Sweep};
 use lizard_host_tests::{Named, paper, robots};
 use lizard_kinematics::End;
 use lizard_robot::servo::{FORWARD, LEGS, OPPOSITE};

@@ -2,7 +2,7 @@
 //! servos of robot.toml and put on the ground of the contact model, must lead where
 //! the gait was meant to.
 
-use lizard_core::pose::Pulses;
+use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{Named, paper, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 

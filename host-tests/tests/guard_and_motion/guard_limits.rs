@@ -1,9 +1,9 @@
 //! Each limit at its own place, to the last bit.
 
-use lizard_core::guard::Clearance;
-use lizard_core::hazard::Hazard;
-use lizard_core::part::Side;
-use lizard_core::units::Sine;
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::guard::hazard::Hazard;
+use lizard_core::numbers::part::Side;
+use lizard_core::numbers::units::Sine;
 use lizard_host_tests::{Named, robots};
 use lizard_robot::Robot;
 

@@ -1,12 +1,12 @@
 //! The guard's decision on whole poses, anywhere in the servos' travel.
 
 use fastrand::Rng;
-use lizard_core::guard::Clearance;
-use lizard_core::hazard::Hazard;
-use lizard_core::part::Side;
-use lizard_core::pose::Pose;
-use lizard_core::root::root;
-use lizard_core::units::Sweep;
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::guard::hazard::Hazard;
+use lizard_core::numbers::part::Side;
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::root::root;
+use lizard_core::numbers::units::Sweep;
 use lizard_host::prove::STEPS_BAND;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::Robot;

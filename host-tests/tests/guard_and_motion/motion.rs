@@ -2,7 +2,7 @@
 //! the end that every command comes to.
 
 use lizard_core::motion::Activity;
-use lizard_core::pose::Pose;
+use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{Named, rng, robots};
 
 use crate::frames::{WAKING, Walker, any_command, jerk, long_enough, meant};
@@ -200,7 +200,7 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_begins_anew() {
             walker.does("stand");
             walker.does(&crate::frames::words(&robot.gaits()[gait]));
             let firmware = robot.firmware();
-            let id = lizard_core::gait::GaitId::all(firmware.gait_count())
+            let id = lizard_core::numbers::gaits::GaitId::all(firmware.gait_count())
                 .nth(gait)
                 .expect("a gait");
             let first = firmware.gait(id).pose(firmware.waves(), 0);

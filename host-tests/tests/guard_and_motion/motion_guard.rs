@@ -2,10 +2,10 @@
 //! safe poses there may be one that is not.
 
 use fastrand::Rng;
-use lizard_core::guard::Clearance;
+use lizard_core::guard::clearance::Clearance;
 use lizard_core::motion::Activity;
-use lizard_core::pose::Pose;
-use lizard_core::units::Sweep;
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
@@ -122,9 +122,9 @@ fn lies_ahead(
     from: Pose,
     to: Pose,
     held: Pose,
-    hazard: lizard_core::hazard::Hazard,
+    hazard: lizard_core::guard::hazard::Hazard,
 ) -> bool {
-    use lizard_core::hazard::Hazard;
+    use lizard_core::guard::hazard::Hazard;
     let same = |other: Hazard| match (hazard, other) {
         (Hazard::Margin { margin: a, .. }, Hazard::Margin { margin: b, .. }) => a == b,
         (Hazard::Stroke { side: a, .. }, Hazard::Stroke { side: b, .. }) => a == b,

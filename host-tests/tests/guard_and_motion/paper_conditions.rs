@@ -1,12 +1,12 @@
 //! Why the guard is not built on the conditions that the paper prints,
 //! sin(theta2 + theta3) = 0 (and its kin of the tail) and sin(2 theta11) = 0.
 
-use lizard_core::gait::GaitId;
-use lizard_core::guard::Clearance;
-use lizard_core::hazard::{Hazard, Margin};
-use lizard_core::part::End;
-use lizard_core::pose::Pose;
-use lizard_core::units::{Angle, Sweep};
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::guard::hazard::{Hazard, Margin};
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::part::End;
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::units::{Angle, Sweep};
 use lizard_host_tests::paper;
 
 use crate::truth::{angles, is_safe};

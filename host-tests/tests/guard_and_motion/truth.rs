@@ -4,12 +4,12 @@
 use std::fmt;
 
 use fastrand::Rng;
-use lizard_core::calibration::Calibration;
-use lizard_core::guard::Clearance;
-use lizard_core::hazard::Margin;
-use lizard_core::part::{End, Servo, Side};
-use lizard_core::pose::Pose;
-use lizard_core::units::{Angle, Scale, Sine, Sweep};
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::guard::hazard::Margin;
+use lizard_core::numbers::calibration::Calibration;
+use lizard_core::numbers::part::{End, Servo, Side};
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep};
 use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_robot::{CoreRobot, Robot};

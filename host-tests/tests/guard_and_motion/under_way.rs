@@ -1,7 +1,7 @@
 //! Gaits under way: how long their cycles take, at every pace, and which poses their frames are.
 
-use lizard_core::gait::GaitId;
-use lizard_core::units::CYCLE;
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{Named, rng, robots};
 
 use crate::frames::{Walker, long_enough, words};

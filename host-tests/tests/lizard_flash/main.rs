@@ -14,7 +14,7 @@ mod shell;
 use std::sync::LazyLock;
 
 use desk::{BOOT, Desk, boot_loader, loader};
-use lizard_core::section::START;
+use lizard_core::numbers::section::START;
 use lizard_host::firmware::named;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::{avr_gcc, robot, root};

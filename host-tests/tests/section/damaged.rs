@@ -5,14 +5,14 @@
 use std::mem::offset_of;
 
 use fastrand::Rng;
-use lizard_core::calibration::Calibration;
-use lizard_core::gait::GaitId;
-use lizard_core::hazard::Hazard;
-use lizard_core::limits::Limits;
+use lizard_core::guard::hazard::Hazard;
 use lizard_core::motion::Activity;
-use lizard_core::robot::Robot;
-use lizard_core::section::{Damage, Header, MAGIC, Numbers, Region, SPACE, seal};
-use lizard_core::units::{Sine, Sweep, Width};
+use lizard_core::numbers::calibration::Calibration;
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::limits::Limits;
+use lizard_core::numbers::robot::Robot;
+use lizard_core::numbers::section::{Damage, Header, MAGIC, Numbers, Region, SPACE, seal};
+use lizard_core::numbers::units::{Sine, Sweep, Width};
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::rng;
 use lizard_robot::flash;
@@ -119,7 +119,7 @@ fn a_hundred_thousand_random_sections_are_no_robot() {
             put(
                 &mut section,
                 FORMAT.start,
-                &lizard_core::section::FORMAT.to_le_bytes(),
+                &lizard_core::numbers::section::FORMAT.to_le_bytes(),
             );
         }
         if n % 4 > 2 {

@@ -2,15 +2,15 @@
 //! reader is the one of the AVR, and the truth is the robot in floating point, not the
 //! numbers that the section was made of.
 
-use lizard_core::curve::{ENTRIES, Table, argument};
-use lizard_core::five_bar::Bars;
-use lizard_core::gait::GaitId;
-use lizard_core::guard::Clearance;
-use lizard_core::part::{End, Servo, Side};
-use lizard_core::pose::Pose;
-use lizard_core::robot::Robot;
-use lizard_core::section::{Header, MapHead, Numbers, Part, Region};
-use lizard_core::units::{Scale, Sine, Sweep};
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::numbers::bars::Bars;
+use lizard_core::numbers::curve::{ENTRIES, Table, argument};
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::part::{End, Servo, Side};
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::robot::Robot;
+use lizard_core::numbers::section::{Header, MapHead, Numbers, Part, Region};
+use lizard_core::numbers::units::{Scale, Sine, Sweep};
 use lizard_host_tests::rng;
 use lizard_robot::{Robot as Toml, STEPS_PER_DEGREE};
 
@@ -52,7 +52,7 @@ fn the_name_the_pins_and_the_supplies() {
         );
         let read = robot.supplies();
         let is = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
-        let three = |of: lizard_core::supply::Thresholds, volts: [f64; 3]| {
+        let three = |of: lizard_core::numbers::supplies::Thresholds, volts: [f64; 3]| {
             is(of.slow, volts[0]) && is(of.stop, volts[1]) && is(of.rest, volts[2])
         };
         assert!(is(read.reference, supplies.reference), "{name} {read:?}");

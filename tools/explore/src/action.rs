@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use lizard_core::restart::Cause;
-use lizard_core::word::Word;
+use lizard_core::console::word::Word;
+use lizard_core::memory::restart::Cause;
 
 /// One thing that happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

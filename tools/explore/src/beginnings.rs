@@ -1,12 +1,12 @@
 //! Where a walk begins: memories of every kind, and robots that already do something.
 
-use lizard_core::memory::Progress;
-use lizard_core::part::Servo;
-use lizard_core::record::COPIES;
-use lizard_core::restart::Cause;
-use lizard_core::robot::Robot;
-use lizard_core::settings::Settings;
-use lizard_core::units::Sweep;
+use lizard_core::memory::copies::COPIES;
+use lizard_core::memory::record::Progress;
+use lizard_core::memory::restart::Cause;
+use lizard_core::memory::settings::Settings;
+use lizard_core::numbers::part::Servo;
+use lizard_core::numbers::robot::Robot;
+use lizard_core::numbers::units::Sweep;
 use lizard_core::virtual_board::Eeprom;
 
 use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::vec;
 
-use lizard_core::robot::Robot;
+use lizard_core::numbers::robot::Robot;
 
 use crate::action::Action;
 use crate::beginnings::{self, Beginning};

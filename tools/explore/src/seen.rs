@@ -1,7 +1,7 @@
 //! What an observer remembers: the servos, the lines, the faults. No part of it asks the
 //! core for its intentions.
 
-use lizard_core::pose::Pulses;
+use lizard_core::numbers::pose::Pulses;
 
 /// Milliseconds of a frame.
 const FRAME_MS: u16 = 20;

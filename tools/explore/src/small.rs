@@ -1,12 +1,12 @@
 //! A small robot: the paper's, with few and short gaits, so that the states of a walk
 //! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
 
-use lizard_core::adjustment::Reach;
-use lizard_core::gait::{Channel, Gait, SAMPLES, Wave};
-use lizard_core::point_to_point::Slew;
-use lizard_core::robot::Robot;
-use lizard_core::section::Content;
-use lizard_core::units::Sweep;
+use lizard_core::numbers::calibration::Reach;
+use lizard_core::numbers::gaits::{Channel, Gait, SAMPLES, Wave};
+use lizard_core::numbers::robot::Robot;
+use lizard_core::numbers::section::Content;
+use lizard_core::numbers::slew::Slew;
+use lizard_core::numbers::units::Sweep;
 use lizard_robot::flash;
 
 /// A third of the paper's speed, 1/65536 turn in a frame: servos that begin elsewhere than

@@ -2,13 +2,13 @@
 
 mod rules;
 
-use lizard_core::kept::Flags;
-use lizard_core::line::GARBLED;
-use lizard_core::memory::{LENGTH, WHOLE};
-use lizard_core::pose::Pulses;
-use lizard_core::record::{COPIES, RESTED};
-use lizard_core::restart::{Cause, Restart};
-use lizard_core::robot::Robot;
+use lizard_core::console::line::GARBLED;
+use lizard_core::memory::copies::{COPIES, RESTED};
+use lizard_core::memory::kept::Flags;
+use lizard_core::memory::record::{LENGTH, WHOLE};
+use lizard_core::memory::restart::{Cause, Restart};
+use lizard_core::numbers::pose::Pulses;
+use lizard_core::numbers::robot::Robot;
 use lizard_core::step::{Board, Step};
 use lizard_core::virtual_board::{Eeprom, Running, reading};
 

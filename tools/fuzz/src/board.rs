@@ -1,11 +1,11 @@
 //! The core on a board without time: what it says and does is checked at every byte
 //! and every frame.
 
-use lizard_core::line::GARBLED;
-use lizard_core::memory::Memory;
-use lizard_core::record::{self, Outcome, RESTED};
-use lizard_core::restart::Restart;
-use lizard_core::settings::Settings;
+use lizard_core::console::line::GARBLED;
+use lizard_core::memory::copies::{self, Outcome, RESTED};
+use lizard_core::memory::record::Memory;
+use lizard_core::memory::restart::Restart;
+use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::Robot;
 
@@ -119,14 +119,14 @@ impl Board {
     pub fn assert_memory_is_right(&self) {
         let robot = self.robot.firmware();
         let mut settings = Settings::of(robot);
-        let outcome = record::load(robot, self.memory(), &mut settings);
+        let outcome = copies::load(robot, self.memory(), &mut settings);
         assert!(
             matches!(outcome, Outcome::Latest | Outcome::Blank),
             "{outcome:?}"
         );
         let is_forgotten = self.memory().read(RESTED.0) == 0xff;
         assert!(
-            is_forgotten || record::rested(robot, self.memory()).is_some(),
+            is_forgotten || copies::rested(robot, self.memory()).is_some(),
             "a pose that is not whole"
         );
         let beyond = 192..1024;

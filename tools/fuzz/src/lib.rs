@@ -14,9 +14,9 @@ pub use board::Board;
 
 use std::sync::LazyLock;
 
-use lizard_core::memory::{Address, CONTENT, Progress};
-use lizard_core::record::{COPIES, RESTED};
-use lizard_core::settings::Settings;
+use lizard_core::memory::copies::{COPIES, RESTED};
+use lizard_core::memory::record::{Address, CONTENT, Progress};
+use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
 

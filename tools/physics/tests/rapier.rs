@@ -1,18 +1,18 @@
-//! The contact model beside rapier, on springs, at other frictions, on legs mounted outward.
+//! Tests of the contact model against rapier, on springs, at other frictions, on legs mounted
+//! outward.
 //!
-//! The ways are those that rapier 0.36 gave for a chassis and four dragging balls, which had
-//! inertia and did not use the model. The engine is not compiled any more; its answers stay, so
-//! a change of the model that leads elsewhere is noticed. Where a gait leans on inertia, the
-//! engine played it slower. Gaits that are another one reversed or mirrored were played at one
-//! friction only.
+//! The displacements are the answers of rapier 0.36 for a chassis and four dragging balls, which
+//! had inertia and did not use the model. The engine is not compiled any more; its answers stay, so
+//! a wrong change of the model is noticed. A gait that depends on inertia was walked more slowly
+//! in the engine.
 
-use lizard_physics::{Way, robot};
+use lizard_physics::{Displacement, robot};
 use lizard_robot::{Body, Drive, Feet, Ground};
 
-/// The gaits that no other one gives by symmetry.
+/// The gaits of which none follows from another by symmetry.
 const KINDS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 
-/// Where a cycle of each of them led: mm forward, mm to the left, deg counter-clockwise.
+/// The displacement by a cycle of each: mm forward, mm to the left, deg counter-clockwise.
 type Ways = [[f64; 3]; 5];
 
 /// The paper's robot of 280 g.
@@ -26,12 +26,12 @@ fn ground() -> Ground {
     }
 }
 
-/// Asserts that the model differs from the engine by no more than this, mm and deg.
+/// Asserts that the model differs from the engine by at most so many mm and deg.
 fn agree(ground: &Ground, theirs: &Ways, mm: f64, deg: f64) {
     let paper = robot("paper");
     for (name, way) in KINDS.into_iter().zip(theirs) {
-        let ours = Way::from(paper.gait(name).expect(name).walked(ground).travel);
-        let (off, turned) = ours.off(&Way(*way));
+        let ours = Displacement::from(paper.gait(name).expect(name).walked(ground).travel);
+        let (off, turned) = ours.distance_to(&Displacement(*way));
         assert!(
             off <= mm && turned <= deg,
             "{name} goes {way:?} by the engine, {ours:?} by the model, with {:?}",
@@ -77,8 +77,8 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     let (paper, tuned) = (robot("paper"), robot("own-gaits"));
     let stride = tuned.gait("stride").expect("stride");
     let walk = paper.gait("walk").expect("walk");
-    let ours = Way::from(stride.walked(&ground()).travel);
-    let (off, turned) = ours.off(&Way([40.95, -0.44, 0.0]));
+    let ours = Displacement::from(stride.walked(&ground()).travel);
+    let (off, turned) = ours.distance_to(&Displacement([40.95, -0.44, 0.0]));
     assert!(off <= 0.5 && turned <= 0.3, "{ours:?}");
     let kept = lizard_physics::Figures::kept();
     let speed = |robot: &str, gait: &str, period: f64| {

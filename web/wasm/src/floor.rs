@@ -1,22 +1,22 @@
-//! What the page's sliders set: floor, weight, feet, and what drives the legs.
+//! The values of the page's sliders: floor, mass, feet, and the drive of the legs.
 
 use lizard_robot::{Body, Drive, Ground, Kind, Robot, Spring, Stance};
 use serde::{Deserialize, Serialize};
 
-/// What drives the legs, under the word that robot.toml has for it.
+/// The kind of drive of the legs, by its name in robot.toml.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Legs {
-    /// A bar.
+    /// A rigid strut.
     Rigid,
-    /// A slotted strut, which yields one way.
+    /// A slotted strut with a spring, which yields one way.
     Strut,
-    /// A spring both ways.
+    /// An ideal spring, which yields both ways.
     Spring,
 }
 
 impl Legs {
-    /// The word in robot.toml.
+    /// The name of the kind in robot.toml.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -35,8 +35,7 @@ impl Legs {
     }
 }
 
-/// What a robot stands on, what it weighs and what drives its legs. The rest of the ground is
-/// the robot's own.
+/// The floor, the mass and the drive of the legs. The rest of the ground is the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Floor {
     /// Friction of a pad that slides forward, above 0.
@@ -45,29 +44,29 @@ pub struct Floor {
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,
-    /// What drives the legs.
+    /// Kind of drive of the legs.
     pub kind: Legs,
-    /// Of an ideal spring, N mm/deg, above 0.
+    /// Stiffness of an ideal spring, N mm/deg, above 0.
     pub stiffness: f64,
-    /// Torque up to which a leg on it does not lag at all, N mm.
+    /// Torque up to which a leg on an ideal spring does not lag, N mm.
     pub preload: f64,
-    /// What the spring in a strut pulls, N, above 0.
+    /// Pull of the spring in a strut, N, above 0.
     pub force: f64,
-    /// What it pulls more for each mm, N/mm.
+    /// Rate of the spring in a strut, N/mm.
     pub rate: f64,
-    /// A leg's play to either side, deg.
+    /// Play of a leg to either side, deg.
     pub play: f64,
-    /// What lifts a foot by a mm, N, above 0.
+    /// Stiffness of a foot, N/mm, above 0.
     pub leaf: f64,
-    /// By how much the front left foot is too long, mm.
+    /// Excess length of the front left foot, mm.
     pub twist: f64,
 }
 
-/// What an ideal spring has where the robot has none, N mm/deg.
+/// Stiffness of an ideal spring for a robot that has none, N mm/deg.
 const STIFFNESS: f64 = 10.0;
 
 impl Floor {
-    /// As a robot has it.
+    /// The values of a robot.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
@@ -95,7 +94,7 @@ impl Floor {
         }
     }
 
-    /// The same where no value is out of its range: such a one is the robot's own.
+    /// Replaces every value that is out of range by the robot's own.
     #[must_use]
     pub fn within(self, robot: &Robot) -> Self {
         let own = Self::of(robot);
@@ -125,7 +124,7 @@ impl Floor {
         }
     }
 
-    /// A robot's ground with these values.
+    /// The robot's ground with these values.
     #[must_use]
     pub fn over(self, robot: &Robot) -> Ground {
         let (floor, ground) = (self.within(robot), robot.ground());
@@ -168,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_stays_as_it_was() {
+    fn a_value_out_of_range_is_the_robots_own() {
         for more in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
             let robot = robot(more);
             let nonsense = Floor {
@@ -189,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_floor_of_a_robot_is_its_ground() {
+    fn the_floor_of_a_robot_is_its_ground() {
         for more in [
             "",
             "[leg.drive]\nkind = \"spring\"\nstiffness = 5.0\npreload = 12.0",

@@ -1,4 +1,4 @@
-//! The least cost against the dual problem, for random pads and springs.
+//! The least cost compared with the dual problem, for random pads and springs.
 
 use super::*;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use crate::yields::{Side, Stretch};
 
 const EVEN: [f64; 4] = [1.0; 4];
-/// More than a pad at the end of a leg of 45 mm can push.
+/// Torque of a stop: more than that of a pad at the end of a leg of 45 mm.
 const STOP: f64 = 250.0;
 const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
@@ -27,7 +27,7 @@ fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
     friction + pads.give.map_or(0.0, energy)
 }
 
-/// The lower bound of duality: forces within the pads' friction that balance
+/// Proves a lower bound by duality: forces within the pads' friction that balance
 /// each other do at least `sum f . swing` of work, whatever the body does, less
 /// what their torques can gain on the springs. The forces at a displacement, if they
 /// balance, prove how far its cost is from the least. Returns their imbalance
@@ -180,7 +180,7 @@ proptest! {
 
     // Springs from too soft to walk (.8 N mm/deg) to nearly rigid, with and without a stop.
     #[test]
-    fn no_lag_costs_less_either(
+    fn no_lag_costs_less_than_the_balanced_forces_prove(
         sweep in prop::array::uniform4(-90.0f64..90.0),
         swing in prop::array::uniform4(point(5.0)),
         ratio in 0.5f64..2.0,
@@ -208,7 +208,7 @@ proptest! {
 
     // Play together with stops, and slotted struts that yield one way.
     #[test]
-    fn nor_does_another_place_within_the_play_or_the_slot(
+    fn no_place_within_the_play_or_the_slot_costs_less(
         swing in prop::array::uniform4(point(5.0)),
         load in prop::array::uniform4(0.5f64..1.5),
         play in 0.0f64..0.03,

@@ -2,25 +2,28 @@
 
 use ufmt::uWrite;
 
-use super::{Counters, LONGEST_NAMES};
-use crate::answer::Answer;
+use crate::console::answer::{Answer, Counters};
+use crate::console::digits;
+use crate::console::line::Line;
+use crate::console::text::Text;
+use crate::console::word::{RESERVED, Word};
 use crate::control::Control;
-use crate::digits;
-use crate::fault::Fault;
-use crate::gait::GaitId;
-use crate::guard::Clearance;
-use crate::line::Line;
+use crate::control::fault::Fault;
+use crate::control::safety::Notice;
+use crate::control::supply::{Level, Voltage};
+use crate::guard::clearance::Clearance;
+use crate::memory::copies::Outcome;
+use crate::memory::restart::Cause;
+use crate::memory::settings::Boot;
 use crate::motion::{Activity, Motion};
-use crate::part::Servo;
-use crate::record::Outcome;
-use crate::robot::Robot;
-use crate::safety::Notice;
-use crate::section::Damage;
-use crate::settings::Boot;
-use crate::supply::{Level, Voltage};
-use crate::text::Text;
-use crate::units::{Angle, Sweep, thousandths_from_phase};
-use crate::word::{RESERVED, Word};
+use crate::numbers::gaits::GaitId;
+use crate::numbers::part::Servo;
+use crate::numbers::robot::Robot;
+use crate::numbers::section::Damage;
+use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
+
+/// The longest line of gaits' names, without its line end: a frame may wait for one.
+pub(super) const LONGEST_NAMES: u8 = 125;
 
 /// Places of the lines of `cal`.
 const CAL_BOOT: u8 = 4;
@@ -40,10 +43,12 @@ where
     W: uWrite + ?Sized,
 {
     match answer {
+        Answer::Misread(misread) => {
+            Text::Err.print(out)?;
+            misread.print(control.motion(), out)?;
+        }
         Answer::Refused(refusal) => {
             Text::Err.print(out)?;
-            digits::number(out, refusal.code().into(), 0)?;
-            out.write_char(' ')?;
             refusal.print(control.motion(), out)?;
         }
         Answer::Gaits(first) => {
@@ -172,10 +177,10 @@ where
     Text::StatusFault.print(out)?;
     control
         .fault()
-        .map_or(Text::FaultNone, Fault::word)
+        .map_or(Text::FaultNone, fault_word)
         .print(out)?;
     Text::StatusReset.print(out)?;
-    control.cause().word().print(out)?;
+    cause_word(control.cause()).print(out)?;
     digits::count(out, Text::StatusResets, control.restarts().into())?;
     let robot = control.motion().robot();
     // Only a robot says by which reference a voltage is to be computed.
@@ -264,7 +269,7 @@ where
             match control.damage() {
                 Some(Damage::Format) => Text::WhyRobotFormat,
                 Some(Damage::Damaged | Damage::Impossible) => Text::WhyRobotDamaged,
-                _ => fault.map_or(Text::FaultNone, Fault::sentence),
+                _ => fault.map_or(Text::FaultNone, fault_sentence),
             }
             .print(out)
         }
@@ -325,4 +330,42 @@ pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, robot: &Robot) -> Result<(
         out.write_char(char::from(digit))?;
     }
     Text::BannerEnd.print(out)
+}
+
+/// The word for a fault in `status`.
+const fn fault_word(fault: Fault) -> Text {
+    match fault {
+        Fault::Guard => Text::FaultGuard,
+        Fault::Supply => Text::FaultSupply,
+        Fault::Link => Text::FaultLink,
+        Fault::Watchdog => Text::FaultWatchdog,
+        Fault::Late => Text::FaultLate,
+        Fault::Stack => Text::FaultStack,
+        Fault::BrownOut => Text::FaultBrownOut,
+        Fault::Robot => Text::FaultRobot,
+    }
+}
+
+/// The sentence that announces a fault.
+const fn fault_sentence(fault: Fault) -> Text {
+    match fault {
+        Fault::Guard => Text::WhyGuard,
+        Fault::Supply => Text::WhySupply,
+        Fault::Link => Text::WhyLink,
+        Fault::Watchdog => Text::WhyWatchdog,
+        Fault::Late => Text::WhyLate,
+        Fault::Stack => Text::WhyStack,
+        Fault::BrownOut => Text::WhyBrownOut,
+        Fault::Robot => Text::WhyRobot,
+    }
+}
+
+/// The word for a reset's cause in `status`.
+const fn cause_word(cause: Cause) -> Text {
+    match cause {
+        Cause::Power => Text::CausePower,
+        Cause::External => Text::CauseExternal,
+        Cause::BrownOut => Text::CauseBrownOut,
+        Cause::Watchdog => Text::CauseWatchdog,
+    }
 }

@@ -1,9 +1,9 @@
 //! What the servos follow, and what comes after it.
 
-use crate::gait::{Gait, GaitId};
-use crate::point_to_point::PointToPoint;
-use crate::pose::Pose;
-use crate::robot::Robot;
+use crate::motion::point_to_point::PointToPoint;
+use crate::numbers::gaits::{Gait, GaitId};
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
 
 /// What the robot does, or is on its way to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

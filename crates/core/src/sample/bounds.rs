@@ -1,6 +1,6 @@
-//! The bounds of [`crate::bounds`] for the bars of a sample.
+//! The bounds of [`crate::guard::bounds`] for the bars of a sample.
 
-pub use crate::bounds::*;
+pub use crate::guard::bounds::*;
 
 use super::Loop;
 

@@ -5,8 +5,8 @@ use lizard_kinematics::{Leg, Links, Lizard};
 use proptest::prelude::*;
 
 use super::STEPS_PER_DEGREE;
-use crate::calibration::Calibration;
-use crate::units::{Sweep, Width};
+use crate::numbers::calibration::Calibration;
+use crate::numbers::units::{Sweep, Width};
 
 /// One servo as robot.toml has it.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! The analogue converter: what it reads, and when it has read all of it.
 
-use crate::supply::{Reading, Supplies};
+use crate::control::supply::Reading;
+use crate::numbers::supplies::Supplies;
 
 /// What measures the supplies, a part of them in every second frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]

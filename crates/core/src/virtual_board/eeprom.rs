@@ -5,7 +5,7 @@ use core::hash::{Hash, Hasher};
 use std::sync::Arc;
 use std::vec::Vec;
 
-use crate::memory::{ERASED, Memory, SIZE};
+use crate::memory::record::{ERASED, Memory, SIZE};
 
 /// An EEPROM. Clones share their bytes until one of them is written to.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
 
-use crate::kept::{self, CELLS, Cells, Flags};
-use crate::restart::{Restart, Stance};
+use crate::memory::kept::{self, CELLS, Cells, Flags};
+use crate::memory::restart::{Restart, Stance};
 
 /// Those bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,10 +7,10 @@ use lizard_avr::Region;
 
 use super::{Converter, Eeprom, VirtualBoard, reading};
 use crate::console::LONGEST_LINE;
+use crate::memory::restart::{Cause, Restart};
 use crate::motion::Motion;
-use crate::pose::Pulses;
-use crate::restart::{Cause, Restart};
-use crate::robot::Robot;
+use crate::numbers::pose::Pulses;
+use crate::numbers::robot::Robot;
 use crate::step::{Main, Step};
 
 /// The firmware's main and its board.

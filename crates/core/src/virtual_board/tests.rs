@@ -3,7 +3,7 @@
 use super::*;
 use std::format;
 
-use crate::memory::{ERASED, Memory};
+use crate::memory::record::{ERASED, Memory};
 use crate::sample::Sample;
 use crate::step::{Main, Step};
 

@@ -6,7 +6,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
-use lizard_core::section::SPACE;
+use lizard_core::numbers::section::SPACE;
 
 use crate::drive::flash::file;
 use crate::shared::{files, firmware};

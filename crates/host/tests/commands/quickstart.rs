@@ -71,7 +71,10 @@ fn every_line_of_the_quickstart_is_answered_as_it_shows() {
 
 #[test]
 fn every_sentence_in_the_table_of_troubles_is_one_of_the_firmware() {
-    let (page, sentences) = (read("docs/quickstart.md"), read("crates/core/src/text.rs"));
+    let (page, sentences) = (
+        read("docs/quickstart.md"),
+        read("crates/core/src/console/text.rs"),
+    );
     let (_, table) = page.split_once("## Troubleshooting").expect("a table");
     let mut codes = [false; 10];
     let mut rows = 0;

@@ -1,9 +1,9 @@
-//! What the robot is built of: `[parts]` in robot.toml.
+//! The measures of the parts to print and to buy: `[parts]` in robot.toml.
 //!
-//! The links' lengths say where the joints are. This table says how wide and thick the
-//! parts are that hold the joints, and what is bought for them: servos, screws, springs,
-//! a board, a battery. None of it moves a joint, so the firmware does not depend on it.
-//! The places of the feet do depend on it, see `hips.rs`. All keys may be left out.
+//! The links' lengths place the joints. This table has the width and the thickness of the
+//! parts that hold the joints, and the measures of parts from a shop: servos, screws, springs, a
+//! board, a battery. None of it moves a joint, so the firmware does not depend on it. The
+//! places of the feet do, see `hips.rs`. All keys may be left out.
 
 use crate::file::{Checked, Section};
 use crate::measures::coil::Coil;
@@ -11,7 +11,7 @@ use crate::measures::coil::Coil;
 /// Measures of the parts, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Air on each side between a part and what is pushed into it or slides in it.
+    /// Air on each side between a part and another that is pushed into it or slides in it.
     pub fit: f64,
     /// Least thickness of a printed wall.
     pub wall: f64,
@@ -23,29 +23,29 @@ pub struct Parts {
     pub plate: f64,
     /// Air between parts that pass over each other.
     pub gap: f64,
-    /// What a laser or a cutter takes away along a line.
+    /// Width of the cut of a laser or a cutter.
     pub kerf: f64,
-    /// The leg's driven pivot on the chassis, from its servo's shaft: outward and
-    /// towards the middle. The other pivot is a ground link further out.
+    /// The leg's driven pivot on the chassis, from its servo's shaft: outward and towards the
+    /// middle. The follower's pivot is a ground link further out.
     pub pivot: [f64; 2],
-    /// The foot's place on its coupler: from the crank's joint, outward and towards the
-    /// middle. So much lies the hip, the middle of the foot's circle, from the driven
-    /// pivot. None where it is left out; [`crate::LegPlan`] has where the foot is.
+    /// The foot's place on its coupler, from the crank's joint: outward and towards the middle.
+    /// The hip, the centre of the foot's circle, has the same offset from the driven pivot. None
+    /// if it is left out; [`crate::LegPlan`] then has the place that follows.
     pub foot: Option<[f64; 2]>,
-    /// Where the strut holds the servo's link and, in parallel, the leg: distance from
-    /// the shaft, and angle (deg) from the crank, away from the arm.
+    /// The strut's anchor on the servo's link and, in parallel, on the leg: distance from the
+    /// shaft, and angle (deg) from the crank, away from the arm.
     pub anchor: [f64; 2],
-    /// From the top of the chassis plate down to the floor.
+    /// Height of the top of the chassis plate above the floor.
     pub height: f64,
-    /// What four servos have in common.
+    /// The servos without their horns.
     pub servo: ServoBody,
-    /// Their horns.
+    /// The servos' horns.
     pub horn: Horn,
     /// Screws that are joints.
     pub screw: Screw,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
-    /// The battery: to the right, forward, up.
+    /// Size of the battery: to the right, forward, up.
     pub battery: [f64; 3],
     /// Length of the two links behind the tail's point, which make the robot look like a
     /// lizard; 0 leaves them out.
@@ -67,11 +67,11 @@ pub struct ServoBody {
     pub flange: f64,
     /// Thickness of the flange.
     pub flange_thickness: f64,
-    /// Underside of the flange.
+    /// Height of the flange's underside.
     pub flange_height: f64,
-    /// From the shaft to the nearer end of the case.
+    /// Distance from the shaft to the nearer end of the case.
     pub shaft: f64,
-    /// Top of the boss around the shaft.
+    /// Height of the boss around the shaft.
     pub boss: f64,
     /// Distance of the two screws in the flange.
     pub holes: f64,
@@ -175,11 +175,11 @@ const KEYS: [&str; 18] = [
     "head",
 ];
 
-/// The key that gives the kind of strut now.
+/// The table that replaces `[parts] strut`.
 const STRUT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
 
 impl Parts {
-    /// Reads the table, all of which may be left out.
+    /// Reads `[parts]`; every key may be left out.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
         let all = Self::default();
         if !root.has("parts") {
@@ -190,7 +190,7 @@ impl Parts {
         let section = section.only(&KEYS)?;
         let mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
         let list = |name, default: [f64; 2], min, max| match section.has(name) {
-            true => section.pair(name, min, max, "(mm; an angle in deg)"),
+            true => section.numbers(name, min, max, "(mm; an angle in deg)"),
             false => Ok(default),
         };
         let foot = match section.has("foot") {
@@ -224,8 +224,8 @@ impl Parts {
     }
 }
 
-/// Reads keys of a table whose values are lengths above 0; a table or a key that is
-/// not there leaves the default.
+/// Implements the reader of a table of lengths above 0. A table or a key that is left out has its
+/// default.
 macro_rules! lengths {
     ($type:ident, $table:literal, [$($key:ident),*]) => {
         impl $type {
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_what_the_papers_robot_is_built_of() {
+    fn a_key_that_is_left_out_has_the_value_of_the_papers_robot() {
         assert_eq!(built(""), Ok(Parts::default()));
         let parts = built("[parts]\nbar = 10.0\npivot = [30, 11]\n[parts.servo]\nshaft = 5.9");
         let expected = Parts {
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_built_is_refused_with_its_key() {
+    fn a_part_that_cannot_be_built_is_refused_with_its_key() {
         for (table, sentence) in [
             (
                 "[parts]\nbars = 3.0",

@@ -1,5 +1,5 @@
-//! How pads, mounting, feet and play change the gaits: how far a cycle goes if the floor
-//! or the print differs from robot.toml.
+//! The effect of pads, mounting, feet and play on the gaits, if the floor or the print differs
+//! from robot.toml.
 
 use std::fmt;
 
@@ -9,29 +9,30 @@ use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
 /// Friction backward over forward: even pads, pads that grip when pushed back,
-/// and pads that are on the wrong way round.
+/// and pads that are mounted in reverse.
 pub const RATIOS: [f64; 6] = [0.8, 1.0, 1.1, 1.25, 1.5, 2.0];
 /// Outward sweep of the legs at neutral, deg; 41.4 is a leg in line with its
 /// servo's horn.
 pub const MOUNTS: [f64; 5] = [0.0, 20.0, 41.4, 49.0, -41.4];
 
-/// By how much the front left foot may be too long, mm, on the feet that robot.toml has.
+/// Excess lengths of the front left foot, mm, on the feet of robot.toml.
 pub const TWISTS: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
-/// Other feet, N/mm, the front left one too long by [`LONG`]; the last are leaves of 2 mm.
+/// Stiffness of other feet, N/mm, the front left one too long by [`LONG`]; the last are leaves of
+/// 2 mm.
 pub const LEAVES: [f64; 3] = [1.0, 2.0, 3.3];
-/// How much too long it is on each of [`LEAVES`], mm.
+/// Excess length of the front left foot on each of [`LEAVES`], mm.
 pub const LONG: f64 = 0.6;
-/// A leg's play to either side, deg.
+/// Play of the legs to either side, deg.
 pub const PLAYS: [f64; 2] = [1.0, 2.0];
 
 /// Predictions for one gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitive {
-    /// The gait's name.
+    /// Name of the gait.
     pub name: String,
-    /// A cycle for each of [`RATIOS`], legs mounted as robot.toml says.
+    /// A cycle for each of [`RATIOS`], with the mounting of robot.toml.
     pub ratios: [Prediction; RATIOS.len()],
-    /// A cycle for each of [`MOUNTS`], pads as robot.toml says.
+    /// A cycle for each of [`MOUNTS`], with the pads of robot.toml.
     pub mounts: [Prediction; MOUNTS.len()],
     /// A cycle for each of [`TWISTS`].
     pub twists: [Prediction; TWISTS.len()],
@@ -44,9 +45,9 @@ pub struct Sensitive {
 /// Predictions for all gaits that move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// In the order of the file.
+    /// Rows of the tables, in the order of the file.
     pub rows: Vec<Sensitive>,
-    /// What the robot's feet have, N/mm.
+    /// Stiffness of the robot's own feet, N/mm.
     pub leaf: f64,
 }
 
@@ -136,7 +137,7 @@ impl fmt::Display for Sensitivity {
 }
 
 impl Sensitivity {
-    /// A row of values, and for each gait a row of what it comes to with them.
+    /// Writes a row of values, and for each gait a row of its movements with them.
     fn table(
         &self,
         f: &mut fmt::Formatter,

@@ -1,4 +1,4 @@
-//! docs/gaits.md shows what the commands print, docs/twin.md what springs cost.
+//! docs/gaits.md shows the output of the commands, docs/twin.md the cost of springs.
 
 use lizard_robot::{Drive, Ground, Kind, Report, Sensitivity};
 
@@ -12,7 +12,7 @@ fn fenced(text: String) -> String {
     format!("```text\n{text}```\n")
 }
 
-/// The page with what stands between a marker and the next end replaced.
+/// Replaces the text between a marker of a page and the next end.
 fn filled(page: &str, marker: &str, text: &str) -> String {
     let marker = format!("<!-- {marker} -->\n");
     let start = page.find(&marker).expect(&marker) + marker.len();
@@ -22,7 +22,7 @@ fn filled(page: &str, marker: &str, text: &str) -> String {
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
-fn the_page_on_gaits_shows_what_the_commands_print() {
+fn the_page_on_gaits_shows_the_output_of_the_commands() {
     let page = std::fs::read_to_string(PAGE).expect(PAGE);
     let mut now = filled(
         &page,
@@ -37,7 +37,7 @@ fn the_page_on_gaits_shows_what_the_commands_print() {
     check(PAGE, &page, &now);
 }
 
-/// Asserts that a page is as it should be, or makes it so.
+/// Asserts that a page is up to date, or writes it.
 fn check(path: &str, page: &str, now: &str) {
     let (_, name) = path.split_once("/../../").expect("a page");
     if std::env::var_os("BLESS_GAITS").is_some() {
@@ -49,7 +49,7 @@ fn check(path: &str, page: &str, now: &str) {
     }
 }
 
-/// What a gait of the paper's robot comes to on springs of a rate; none is rigid.
+/// The movement of a gait of the paper's robot on springs of this rate; rigid legs for none.
 fn sprung(name: &str, rate: Option<f64>) -> lizard_robot::Travel {
     let ground = Ground {
         drive: rate.map_or(Drive::RIGID, |rate| Drive::spring(rate, 0.0)),
@@ -58,7 +58,7 @@ fn sprung(name: &str, rate: Option<f64>) -> lizard_robot::Travel {
     gait(paper(), name).walked(&ground).travel
 }
 
-/// A row of the table of slotted struts, whose springs have the rate of the paper's coil.
+/// Makes a row of the table of slotted struts, whose springs have the rate of the paper's coil.
 fn slotted(name: &str, of: fn(lizard_robot::Travel) -> f64) -> String {
     let rate = paper().parts().spring.rate();
     let forces = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
@@ -75,12 +75,12 @@ fn slotted(name: &str, of: fn(lizard_robot::Travel) -> f64) -> String {
     ways.concat()
 }
 
-/// Where a gait goes less far than this in a cycle it stops, mm.
+/// Smallest movement of a cycle that counts as walking, mm.
 const STOPS: f64 = 1.0;
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
-fn the_page_on_the_twin_shows_what_springs_cost() {
+fn the_page_on_the_twin_shows_the_cost_of_springs() {
     let page = std::fs::read_to_string(TWIN).expect(TWIN);
     let ground = paper().ground();
     let (grip, leg) = (ground.grip(), ground.feet.reach);

@@ -1,5 +1,5 @@
-//! What drives a leg: struts that yield one way, and play. The figures are those of a
-//! separate implementation of the same model.
+//! The drive of a leg: struts that yield one way, and play. The figures are those of a separate
+//! implementation of the same model.
 
 use lizard_robot::{Body, CheckedGait, Drive, Ground, Kind, Walker};
 

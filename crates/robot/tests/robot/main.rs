@@ -1,5 +1,5 @@
-//! robot.toml and the gaits, from the outside. What is not said of every robot is
-//! said of the paper's, by its file.
+//! robot.toml and the gaits, by the crate's public functions; where no robot is named, those of
+//! robots/paper.toml.
 
 use std::sync::LazyLock;
 
@@ -30,7 +30,7 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
 }
 
-/// The paper's robot with one line of its file changed.
+/// Reads the paper's robot with one part of its file replaced.
 fn paper_with(from: &str, to: &str) -> Result<Robot, Error> {
     let text = paper_text();
     assert!(text.contains(from), "robots/paper.toml has no {from:?}");

@@ -1,4 +1,4 @@
-//! What holds for every robot whose file is in robots/, and for the builder's own.
+//! Tests of every robot in robots/, and of the builder's own.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use lizard_kinematics::Check;
 use lizard_robot::{Robot, STEPS_PER_DEGREE};
 
-/// The files in robots/ and robot.toml.
+/// Lists the files in robots/ and robot.toml.
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = std::fs::read_dir(root.join("robots")).expect("robots/");
@@ -59,11 +59,11 @@ fn every_gait_is_safe_between_its_samples_too() {
 }
 
 #[test]
-fn an_audit_is_the_least_of_what_its_phases_give() {
+fn an_audit_has_the_least_margins_of_all_phases() {
     each(|file, robot| {
         for gait in robot.gaits() {
             let audit = gait.audit();
-            let mut seen = [f64::INFINITY; 3];
+            let mut least_margins = [f64::INFINITY; 3];
             let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
             for phase in (0..=u16::MAX).step_by(64) {
                 let pose = gait.table_angles(phase).into();
@@ -72,16 +72,17 @@ fn an_audit_is_the_least_of_what_its_phases_give() {
                     .into_iter()
                     .enumerate()
                 {
-                    seen[place] = margins.iter().fold(seen[place], |a, b| a.min(*b));
+                    least_margins[place] =
+                        margins.iter().fold(least_margins[place], |a, b| a.min(*b));
                 }
                 least = least.min(s.left.s).min(s.right.s);
                 most = most.max(s.left.s).max(s.right.s);
             }
             let found = [audit.type2.value, audit.type1.value, audit.leg.value];
-            for (found, seen) in found.into_iter().zip(seen) {
+            for (found, sampled) in found.into_iter().zip(least_margins) {
                 // It looks at more phases, so it may find less.
                 assert!(
-                    (0.0..0.002).contains(&(seen - found)),
+                    (0.0..0.002).contains(&(sampled - found)),
                     "{file} {}",
                     gait.name()
                 );

@@ -178,7 +178,7 @@ mod tests {
     fn every_place_of_a_line_that_can_be_another_is_found_once() {
         let text =
             "fn f() {\n    a.b(1); // 2 < 3\n    if x < 17 && y {}\n}\n#[cfg(test)]\n1 < 2\n";
-        let mut made: Vec<String> = all("crates/core/src/motion.rs", text)
+        let mut made: Vec<String> = all("crates/core/src/motion/frames.rs", text)
             .iter()
             .map(|mutant| mutant.make(text).expect("it is there once"))
             .collect();

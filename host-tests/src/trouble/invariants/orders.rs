@@ -1,6 +1,6 @@
 //! What is answered is done, and what is refused is not.
 
-use lizard_core::word::Effect;
+use lizard_core::console::word::Effect;
 
 use super::Rules;
 use crate::trouble::record::{Exchange, MS, Record};

@@ -1,6 +1,6 @@
 //! What every pulse is, and how far it may be from the one before.
 
-use lizard_core::word::Effect;
+use lizard_core::console::word::Effect;
 use simulated_uno::Pulse;
 
 use super::Rules;

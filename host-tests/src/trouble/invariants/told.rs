@@ -1,6 +1,6 @@
 //! The reason for a stop is reported: by `status`, on the console, by the LED.
 
-use lizard_core::word::Effect;
+use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
 use simulated_uno::{Edge, Pin, ResetCause, State};
 

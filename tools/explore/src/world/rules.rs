@@ -1,14 +1,14 @@
 //! The rules, each in the words of a user.
 
-use lizard_core::command::effect;
-use lizard_core::gait::GaitId;
-use lizard_core::guard::Clearance;
+use lizard_core::console::command::effect;
+use lizard_core::console::word::Effect;
+use lizard_core::guard::clearance::Clearance;
+use lizard_core::memory::copies;
 use lizard_core::motion::Activity;
-use lizard_core::pose::Pose;
-use lizard_core::record;
-use lizard_core::robot::Robot;
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::pose::Pose;
+use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::{Eeprom, Running, is_final};
-use lizard_core::word::Effect;
 
 use super::{BELIEVED, Held, World, broken};
 use crate::fingerprint;
@@ -166,7 +166,7 @@ impl World {
         let readable = Eeprom::with(*memory.bytes());
         self.seen.rests
             && motion.is_resting()
-            && record::rested(motion.robot(), &readable) == Some(*motion.pose())
+            && copies::rested(motion.robot(), &readable) == Some(*motion.pose())
     }
 
     fn has_pulses_after(&self, line: &str) -> Held {

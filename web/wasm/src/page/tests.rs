@@ -1,3 +1,5 @@
+//! The page's robot, without a browser.
+
 use lizard_robot::Travel;
 
 use super::*;
@@ -6,7 +8,7 @@ use crate::floor::Legs;
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
 #[test]
-fn a_refused_robot_leaves_the_one_of_before() {
+fn a_refused_robot_leaves_the_previous_one() {
     let mut page = Page::default();
     assert_eq!(page.pulses([24_000; 4]), None);
     page.read(PAPER).expect("right");
@@ -16,7 +18,7 @@ fn a_refused_robot_leaves_the_one_of_before() {
 }
 
 #[test]
-fn a_length_that_will_not_do_says_why_and_its_text_is_kept() {
+fn an_impossible_length_is_refused_and_its_text_is_kept() {
     let edited = Page::edit(PAPER, "links.l2", 21.0).expect("there");
     assert!(edited.text.contains("l2 = 21.0"));
     let refusal = edited.refusal.expect("the head is out of reach");
@@ -35,7 +37,7 @@ fn page() -> Page {
     page
 }
 
-/// The place of a gait among the robot's.
+/// The index of a gait.
 fn index(page: &Page, name: &str) -> usize {
     let gait = page.robot().and_then(|robot| robot.gait(name));
     gait.expect(name).index()
@@ -77,8 +79,8 @@ fn an_sg90_stays_inside_its_dead_band_and_turns_at_its_rate() {
     near(turned(&mut page, 0), [0.0, 0.0]);
 }
 
-/// The second cycle of a gait with ideal servos: its way, how far each foot slid in each of
-/// its frames, and the largest lag.
+/// Follows the second cycle of a gait with ideal servos: its movement, the slides of the feet in
+/// each frame, and the largest lag.
 fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
@@ -105,14 +107,14 @@ fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
         let mut page = page();
         let robot = page.robot().expect("a robot");
         let wanted = robot.predict(robot.gait(name).expect("a gait"));
-        // Every frame, and every second one, as a board on USB tells.
+        // Every frame, and every second one, as a board on USB reports.
         for frames in [1, 2] {
             let (way, _, _) = cycle(&mut page, name, frames);
             let near = |got: f64, wanted: Option<f64>, within: f64| {
                 let off = got - wanted.expect("decided");
                 assert!(off.abs() < within, "{name} {frames} {way:?}");
             };
-            // What lies between two poses is taken for straight.
+            // The poses in between are interpolated.
             near(way.forward, wanted.forward, 0.4 * f64::from(frames));
             near(way.left, wanted.left, 0.5);
             near(way.turn, wanted.turn, 0.3);

@@ -1,8 +1,8 @@
 //! The pairs of positions of an end, decided by the guard and by geometry.
 
-use lizard_core::cells::Cells;
-use lizard_core::five_bar::EndMargins;
-use lizard_core::part;
+use lizard_core::guard::five_bar::EndMargins;
+use lizard_core::numbers::cells::Cells;
+use lizard_core::numbers::part;
 use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
@@ -12,7 +12,7 @@ use super::tally::{STEPS_BAND, Tally, margin_band};
 
 /// The pairs of an end.
 pub struct EndWalk<'a> {
-    fixed: lizard_core::five_bar::FiveBar<'a>,
+    fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
     /// Type-2 and type-1, as robot.toml and as the firmware has them.
     limits: [f64; 2],

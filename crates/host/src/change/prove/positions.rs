@@ -1,7 +1,7 @@
 //! Every position of a servo, as the firmware and as floating point see it.
 
-use lizard_core::trig::Direction;
-use lizard_core::units::Sweep;
+use lizard_core::guard::trig::Direction;
+use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{End, Vector};
 use lizard_robot::CoreRobot;
 

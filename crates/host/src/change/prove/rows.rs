@@ -1,6 +1,6 @@
 //! Rows and columns of positions, walked on all cores and eight columns at a time.
 
-use lizard_core::units::ONE_Q15;
+use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
 use rayon::prelude::*;
 

@@ -1,9 +1,9 @@
 //! The pairs of positions of a side, and the positions of a leg, decided by the guard and by
 //! geometry.
 
-use lizard_core::cells::Cells;
-use lizard_core::part;
-use lizard_core::trig::Direction;
+use lizard_core::guard::trig::Direction;
+use lizard_core::numbers::cells::Cells;
+use lizard_core::numbers::part;
 use lizard_kinematics::{End, Lanes, Side, Slider};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
@@ -15,7 +15,7 @@ use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
 pub struct SideWalk<'a> {
     side: Side,
     cells: Cells<'a>,
-    fixed: lizard_core::slider::Slider,
+    fixed: lizard_core::numbers::slider::Slider,
     exact: Slider,
     stroke: [f64; 2],
     steps_per_mm: f64,

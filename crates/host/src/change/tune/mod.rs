@@ -15,9 +15,6 @@ use crate::shared::spread::{Spread, Spreads};
 use crate::shared::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
 
-/// The gait with which every robot.toml's gaits begin.
-const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-
 /// Search a gait that walks faster with the same servo rate
 ///
 /// Takes a gait of robot.toml that goes straight ahead or turns on the spot, and searches
@@ -138,9 +135,9 @@ fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
     if robot.gait(name).is_some() {
         return refused("robot.toml has a gait of this name already".to_owned());
     }
-    let gait = format!("{STAND}[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
-    match robot.with_gaits(&gait) {
-        Err(error) => refused(error.problem.to_string()),
+    let gait = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
+    match robot.with_gait(&gait) {
+        Err(error) => refused(error.problem),
         Ok(read) if read.gait(name).is_none() => refused("it is no name".to_owned()),
         Ok(_) => Ok(()),
     }
@@ -161,7 +158,7 @@ fn found(tuning: &Tuning, args: &Args) -> Result<Option<Built>, Failure> {
                 tuning.score(kind, parameters)
             });
             let scores: Vec<_> = judged.collect();
-            search.judged(scores);
+            search.score(scores);
         }
         search.found()
     };

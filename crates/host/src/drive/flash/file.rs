@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lizard_core::section::START;
+use lizard_core::numbers::section::START;
 use lizard_robot::Robot;
 
 use super::image::{BLANK, Image, ImageError};
@@ -41,7 +41,7 @@ pub fn read(path: &Path) -> Result<Image, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use lizard_core::mark::Mark;
+    use lizard_core::numbers::mark::Mark;
 
     use super::*;
 

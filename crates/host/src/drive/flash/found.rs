@@ -5,8 +5,8 @@
 
 use std::fmt;
 
-use lizard_core::mark::Mark;
-use lizard_core::section::START;
+use lizard_core::numbers::mark::Mark;
+use lizard_core::numbers::section::START;
 
 use super::image::{BLANK, Image, PAGE};
 use crate::shared::firmware::{named, robot_in};

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use ihex::Record;
-use lizard_core::section::START;
+use lizard_core::numbers::section::START;
 
 /// Bytes that the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
 pub const PAGE: usize = 128;

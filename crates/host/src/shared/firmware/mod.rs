@@ -11,8 +11,8 @@
 //! An ELF has a robot in it. If that is not the selected robot, one of the two is a mistake,
 //! and the ELF is refused.
 
-use lizard_core::robot::Robot as CoreRobot;
-use lizard_core::section::{Region, START};
+use lizard_core::numbers::robot::Robot as CoreRobot;
+use lizard_core::numbers::section::{Region, START};
 
 #[cfg(feature = "simulator")]
 pub use simulated::{Firmware, Unreadable, inside, read, with_robot};

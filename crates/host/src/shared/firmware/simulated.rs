@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lizard_core::section::{SPACE, START};
+use lizard_core::numbers::section::{SPACE, START};
 use lizard_robot::Robot;
 use simulated_uno::{Image, LoadError};
 

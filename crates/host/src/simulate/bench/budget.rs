@@ -1,6 +1,6 @@
 //! Budgets: the limits of the figures, and the figures of the Arduino Servo library.
 
-use lizard_core::section::{SPACE, START};
+use lizard_core::numbers::section::{SPACE, START};
 use serde::Serialize;
 
 use super::Figures;

@@ -11,7 +11,7 @@
 //! reconstructed; here they take no time.
 
 use lizard_core::console::LONGEST_LINE;
-use lizard_core::robot::Robot;
+use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::{Converter, Running, Transmitter, VirtualBoard};
 use simulated_uno::SerialByte;
 

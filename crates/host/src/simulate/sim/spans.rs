@@ -1,6 +1,6 @@
 //! The commands of a run and the time spans in which each was in effect.
 
-use lizard_core::word::{Effect, Word};
+use lizard_core::console::word::{Effect, Word};
 
 use super::script::Script;
 

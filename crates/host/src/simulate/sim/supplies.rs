@@ -4,7 +4,8 @@
 //! besides its own 5 V, the voltage that it measures according to robot.toml: the servos'
 //! rail through its divider.
 
-use lizard_core::supply::{Reading, Supplies};
+use lizard_core::control::supply::Reading;
+use lizard_core::numbers::supplies::Supplies;
 use lizard_robot::{Robot, healthy_rail_mv};
 use simulated_uno::{Pin, Uno};
 

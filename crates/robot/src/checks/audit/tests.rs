@@ -2,9 +2,9 @@
 
 use crate::testing::{all, body, robot, with};
 use crate::{CheckedGait, Robot};
-use lizard_core::hazard::{Hazard, Margin};
-use lizard_core::part::{End, Servo, Side as CoreSide};
-use lizard_core::units::Sine;
+use lizard_core::guard::hazard::{Hazard, Margin};
+use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
+use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
 /// The slider's least and greatest travel on each side over a gait, mm.
@@ -121,8 +121,8 @@ fn what_the_guard_finds_is_called_as_solve_calls_it() {
 fn every_sample_of_every_servo_is_checked() {
     for (name, robot) in all() {
         for gait in robot.gaits() {
-            let phases = super::phases(gait.tabled());
-            for channel in gait.tabled().table().channels {
+            let phases = super::phases(gait);
+            for channel in gait.table().channels {
                 for sample in (0..=u16::MAX).step_by(1024) {
                     let phase = sample.wrapping_sub(channel.offset);
                     assert!(phases.contains(&phase), "{name} {} {phase}", gait.name());

@@ -2,7 +2,7 @@
 
 use crate::testing::{body, robot};
 use crate::{Error, Robot};
-use lizard_core::word::Word;
+use lizard_core::console::word::Word;
 
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}{gaits}", body("paper")))
@@ -161,7 +161,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
     for count in 80..255 {
         match paper_with_gaits(&gaits(count)) {
             Ok(robot) => {
-                assert!(robot.section().len() <= usize::from(lizard_core::section::SPACE))
+                assert!(robot.section().len() <= usize::from(lizard_core::numbers::section::SPACE))
             }
             Err(error) => {
                 assert!(count > 85, "{count}");

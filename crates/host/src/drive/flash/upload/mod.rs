@@ -8,7 +8,7 @@
 //! A robot alone is written in the same way: the first page of its section is made blank, and
 //! comes last. The firmware then finds either a valid robot or none, for which it has a fault and
 //! moves no servo. Since the code stays, it must be code that reads this robot: its mark
-//! ([`lizard_core::mark`]) is read before anything is written.
+//! ([`lizard_core::numbers::mark`]) is read before anything is written.
 //!
 //! Pages that are right already are left alone: it saves time, and flash wears out (10 000 times,
 //! ATmega328P data sheet, "Features").
@@ -16,8 +16,8 @@
 use std::fmt;
 use std::ops::Range;
 
-use lizard_core::mark::Mark;
-use lizard_core::section::{FORMAT, Header, MAGIC, Region, START};
+use lizard_core::numbers::mark::Mark;
+use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START};
 
 use super::chip::Chip;
 use super::found::{Found, IDLE, Program};

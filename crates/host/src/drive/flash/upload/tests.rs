@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use lizard_core::mark::AT;
+use lizard_core::numbers::mark::AT;
 
 use super::super::double::Double;
 use super::super::stk500::Patience;

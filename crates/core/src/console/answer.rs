@@ -1,0 +1,47 @@
+//! Answers: what the robot replies to a line.
+//!
+//! Every line gets exactly one final line, `ok ...` or `err <code> <reason>`; some
+//! answers have other lines before it.
+
+use crate::console::command::Misread;
+use crate::control::refusal::Refusal;
+use crate::numbers::gaits::GaitId;
+
+/// The next line of an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
+#[repr(u8)]
+pub enum Answer {
+    /// `ok` and the line as it was understood.
+    Done = 1,
+    /// The gaits from this one on, as many as a line takes.
+    Gaits(GaitId),
+    /// The words of the console.
+    Words,
+    /// What else there is to say to who asks for help.
+    Hint,
+    /// The end of help, `ok help`.
+    Helped,
+    /// `ok`, the motion and its pose; the next answer continues the line. It is written in
+    /// three parts, so that a frame waits for one of them at most.
+    Status,
+    /// The margin, which takes the guard most of a frame's time; the pace; the frames.
+    Margin,
+    /// Counters, faults, restarts and supplies.
+    Health,
+    /// A line of what is set, by its number; after the last one `ok cal`.
+    Settings(u8),
+    /// `err`, since the line is not a command; nothing was changed.
+    Misread(Misread),
+    /// `err`, since the robot refuses the order; nothing was changed.
+    Refused(Refusal),
+}
+
+/// What the board counts for `status`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Pulse edges that came late.
+    pub late: u16,
+    /// Bytes received and lost.
+    pub rx_lost: u16,
+}

@@ -1,0 +1,364 @@
+//! Lines into commands.
+//!
+//! A line is one command: a word of the console, or the name of a gait in `robot.toml`.
+//! This module only parses. A line that is not understood completely is an error and
+//! changes nothing.
+
+use lizard_avr::flash;
+
+use crate::console::text::Text;
+use crate::console::word::{Effect, RESERVED, Word};
+use crate::control::order::{Order, Setting};
+use crate::memory::settings::Boot;
+use crate::numbers::gaits::{GaitId, Name};
+use crate::numbers::part::Servo;
+use crate::numbers::robot::Robot;
+use crate::numbers::units::{Angle, Sweep, TURN_CENTIDEG};
+
+/// A command, with its arguments checked as far as syntax and range go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// The gaits and the words of the other commands.
+    Help,
+    /// The state of the robot.
+    Status,
+    /// All settings.
+    Cal,
+    /// The pose every this many frames; 0: no more.
+    Watch(u16),
+    /// Something to do.
+    Order(Order),
+}
+
+/// The reason for which a line is not a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Misread {
+    /// A byte of the line was garbled.
+    Garbled,
+    /// The line is too long.
+    TooLong,
+    /// The first word is no command.
+    Unknown,
+    /// A command that takes no argument has one.
+    Surplus,
+    /// The first words of a gait's name, without the others.
+    Incomplete,
+    /// An argument is missing, malformed or too much: the sentence says what is
+    /// wanted.
+    Wants(Text),
+    /// An argument is out of the range that the sentence tells.
+    Range(Text),
+    /// The angle of this servo is more than a turn.
+    PoseRange(Servo),
+}
+
+/// The rarest report: every 200 s.
+pub const WATCH_MOST: u16 = 10_000;
+
+/// The longest time that `deadman` allows, a minute.
+pub const DEADMAN_MOST: u16 = 60_000;
+
+/// Larger angles are taken for mistakes; a turn either way is enough.
+const LARGEST_ANGLE: u16 = TURN_CENTIDEG as u16;
+
+/// How an argument is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Kind {
+    /// Digits.
+    Whole,
+    /// Degrees with a sign and at most two decimals, read as an [`Angle`].
+    Degrees,
+    /// A number with at most two decimals, read as hundredths.
+    Hundredths,
+    /// `+`, read as 1, or `-`, read as 0.
+    Sign,
+}
+
+/// The arguments of a command.
+#[derive(Clone, Copy)]
+struct Form {
+    /// Whether a servo's number comes first.
+    servo: bool,
+    /// How many there are besides.
+    count: u8,
+    /// What each of them is.
+    kind: Kind,
+    /// The range of each, without its sign.
+    least: u16,
+    most: u16,
+    /// The answer to a line that is not of this form.
+    wants: Text,
+    /// The answer to an argument out of range.
+    range: Text,
+}
+
+flash! {
+    /// In the order of [`form`].
+    const FORMS: [Form; 8] = [
+        Form { servo: false, count: 4, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::PoseWants, range: Text::Nothing },
+        Form { servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
+        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: WATCH_MOST, wants: Text::WatchWants, range: Text::WatchRange },
+        Form { servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
+        Form { servo: true, count: 2, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::LimitWants, range: Text::LimitRange },
+        Form { servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
+        Form { servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
+        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: DEADMAN_MOST, wants: Text::DeadmanWants, range: Text::DeadmanRange },
+    ];
+}
+
+/// Where the form of a command is that takes arguments.
+const fn form(word: Word) -> Option<usize> {
+    match word {
+        Word::Pose => Some(0),
+        Word::Speed => Some(1),
+        Word::Watch => Some(2),
+        Word::Trim => Some(3),
+        Word::Limit => Some(4),
+        Word::Dir => Some(5),
+        Word::Scale => Some(6),
+        Word::Deadman => Some(7),
+        _ => None,
+    }
+}
+
+/// Reads a line that is trimmed, not empty and in lower case.
+///
+/// # Errors
+/// What keeps the line from being a command.
+pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
+    parse_among::<RESERVED>(line, robot)
+}
+
+/// The same; words from number `YIELDING` on yield to a gait of the same name.
+#[inline(never)]
+fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
+    let mut words = Words(line);
+    let word = Word::find(words.next()).filter(|word| {
+        // No instruction is spent on it while no word yields.
+        YIELDING >= Word::ALL.len()
+            || (*word as usize) < YIELDING
+            || !matches!(gait(line, robot), Ok(_) | Err(Misread::Surplus))
+    });
+    let Some(word) = word else {
+        return Ok(Command::Order(Order::Gait(gait(line, robot)?)));
+    };
+    let Arguments { servo, numbers } = match form(word) {
+        Some(place) => Arguments::read(word, words, &FORMS.at(place).load())?,
+        None if word != Word::Boot && !words.is_done() => return Err(Misread::Surplus),
+        None => Arguments::NONE,
+    };
+    let [number, second, ..] = numbers;
+    let set = |setting| Order::Set(servo, setting);
+    Ok(Command::Order(match word {
+        Word::Help | Word::QuestionMark => return Ok(Command::Help),
+        Word::Status => return Ok(Command::Status),
+        Word::Cal => return Ok(Command::Cal),
+        Word::Watch => return Ok(Command::Watch(number)),
+        Word::Stop => Order::Stop,
+        Word::Rest => Order::Rest,
+        Word::Pose => Order::Pose(numbers.map(Angle)),
+        Word::Center => Order::Center,
+        Word::Speed => Order::Speed(number as u8),
+        Word::Trim => set(Setting::Trim(Sweep(number as i16))),
+        Word::Limit => set(Setting::Limit(Angle(number), Angle(second))),
+        Word::Dir => set(Setting::Direct(number != 0)),
+        Word::Scale => set(Setting::Scale(number)),
+        Word::Save => Order::Save,
+        Word::Load => Order::Load,
+        Word::Factory => Order::Factory,
+        Word::Boot => Order::Boot(boot(words.0.trim_ascii(), robot)?),
+        Word::Deadman => Order::Deadman(number),
+    }))
+}
+
+/// The effect of a line on the servos: that of its word, or of a gait. A line that is no
+/// command has none.
+pub fn effect(line: &str, robot: &Robot) -> Effect {
+    let line = line.as_bytes();
+    match parse(line, robot) {
+        Err(_) => Effect::None,
+        Ok(Command::Order(Order::Gait(_))) => Effect::Moves,
+        Ok(_) => Word::find(Words(line).next()).map_or(Effect::None, Word::effect),
+    }
+}
+
+/// What follows the word `boot`.
+fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
+    if Word::find(rest) == Some(Word::Rest) {
+        return Ok(Boot::Rest);
+    }
+    match gait(rest, robot) {
+        Ok(gait) => Ok(Boot::Gait(gait)),
+        Err(_) => Err(Misread::Wants(Text::BootWants)),
+    }
+}
+
+/// What follows a word.
+struct Arguments {
+    /// The servo that is to be set.
+    servo: Servo,
+    /// A percentage, frames or milliseconds as they are; `+` as 1 and `-` as 0;
+    /// hundredths as such; degrees as an [`Angle`].
+    numbers: [u16; 4],
+}
+
+impl Arguments {
+    /// None at all.
+    const NONE: Self = Self {
+        servo: Servo::A1,
+        numbers: [0; 4],
+    };
+
+    /// Reads what follows `word`.
+    #[inline(never)]
+    fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
+        let wants = Err(Misread::Wants(form.wants));
+        let mut arguments = Self::NONE;
+        if form.servo {
+            arguments.servo = match words.next() {
+                [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
+                _ => return wants,
+            };
+        }
+        let mut beyond = None;
+        for (place, number) in (0..form.count).zip(&mut arguments.numbers) {
+            let Some((size, negative)) = number_of(words.next(), form.kind) else {
+                return wants;
+            };
+            *number = size;
+            let mut within = form.least <= size && size <= form.most;
+            if form.kind == Kind::Degrees {
+                let size = i32::from(size);
+                *number = Angle::from_centideg(if negative { -size } else { size }).0;
+            } else {
+                within &= !negative;
+            }
+            if !within {
+                beyond = beyond.or(Some(place));
+            }
+        }
+        match beyond {
+            _ if !words.is_done() => wants,
+            Some(place) if word == Word::Pose => {
+                Err(Misread::PoseRange(Servo::at(usize::from(place))))
+            }
+            Some(_) => Err(Misread::Range(form.range)),
+            None => Ok(arguments),
+        }
+    }
+}
+
+/// What is left of a line, to be taken word by word.
+#[derive(Clone, Copy)]
+struct Words<'a>(&'a [u8]);
+
+impl<'a> Words<'a> {
+    /// The next word; empty at the end of the line.
+    fn next(&mut self) -> &'a [u8] {
+        let rest = self.0.trim_ascii_start();
+        let length = rest
+            .iter()
+            .take_while(|byte| !byte.is_ascii_whitespace())
+            .count();
+        let (word, rest) = rest.split_at_checked(length).unwrap_or((rest, &[]));
+        self.0 = rest;
+        word
+    }
+
+    fn is_done(mut self) -> bool {
+        self.next().is_empty()
+    }
+}
+
+/// A gait's name, or what is wrong with it. Any blanks between words will do.
+#[inline(never)]
+fn gait(line: &[u8], robot: &Robot) -> Result<GaitId, Misread> {
+    let line = line.trim_ascii_start();
+    let mut misread = Misread::Unknown;
+    for id in GaitId::all(robot.gait_count()) {
+        match compare(line, robot.name(id)) {
+            Some(Misread::Unknown) => {}
+            Some(other) => misread = other,
+            None => return Ok(id),
+        }
+    }
+    Err(misread)
+}
+
+/// What keeps a line from being a name. It is read no farther than it is one: there
+/// may be many names, and a frame may wait.
+fn compare(line: &[u8], name: Name) -> Option<Misread> {
+    let mut rest = line;
+    for byte in name {
+        match rest {
+            [] if byte == b' ' => return Some(Misread::Incomplete),
+            [first, ..] if byte == b' ' && first.is_ascii_whitespace() => {
+                rest = rest.trim_ascii_start();
+            }
+            [first, others @ ..] if *first == byte => rest = others,
+            _ => return Some(Misread::Unknown),
+        }
+    }
+    match rest {
+        [] => None,
+        [first, ..] if first.is_ascii_whitespace() => Some(Misread::Surplus),
+        _ => Some(Misread::Unknown),
+    }
+}
+
+/// Hundredths have this many decimals.
+const DECIMALS: u8 = 2;
+
+/// A word as an argument, without its sign, and whether that is a minus. 65535 stands
+/// for more than sixteen bits hold.
+#[inline(never)]
+fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
+    let (mut sign, mut digits) = (b'+', word);
+    if kind != Kind::Whole
+        && let [first @ (b'+' | b'-'), rest @ ..] = word
+    {
+        (sign, digits) = (*first, rest);
+    }
+    let negative = sign == b'-';
+    if kind == Kind::Sign {
+        return (word.len() == 1 && digits.is_empty()).then_some((u16::from(!negative), false));
+    }
+    let mut size = None;
+    let mut decimals = None;
+    for byte in digits {
+        match byte {
+            b'0'..=b'9' => size = Some(append(size.unwrap_or(0), byte - b'0')),
+            b'.' if kind != Kind::Whole && size.is_some() && decimals.is_none() => {
+                decimals = Some(0);
+                continue;
+            }
+            _ => return None,
+        }
+        if let Some(decimals) = &mut decimals {
+            *decimals += 1;
+        }
+    }
+    let mut size = size?;
+    if kind != Kind::Whole {
+        // Zeros in place of the missing decimals.
+        for _ in 0..DECIMALS.checked_sub(decimals.unwrap_or(0))? {
+            size = append(size, 0);
+        }
+    }
+    Some((size, negative))
+}
+
+/// A number with one more digit; 65535 stands for more than sixteen bits hold.
+#[inline(never)]
+fn append(number: u16, digit: u8) -> u16 {
+    // 6553 and one more digit is where sixteen bits may end.
+    if number < 6553 {
+        number * 10 + u16::from(digit)
+    } else {
+        u16::MAX
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,201 @@
+//! The console: one line in, one answer out.
+//!
+//! While the console has nothing to write, the caller passes bytes to it. When the serial
+//! line has room for a whole line, the caller lets it write one. So nothing waits: a long
+//! list comes line by line between the frames, and a slow listener never delays a frame.
+
+use ufmt::uWrite;
+
+use crate::console::answer::{Answer, Counters};
+use crate::console::command::{self, Command, Misread};
+use crate::console::digits;
+use crate::console::line::{Ended, Line};
+use crate::console::print;
+use crate::console::refusal;
+use crate::console::text::Text;
+use crate::console::watch::Watch;
+use crate::control::Control;
+use crate::control::order::Taken;
+use crate::control::refusal::Refusal;
+use crate::control::safety::Notice;
+use crate::numbers::gaits::GaitId;
+
+/// The longest line that [`Console::write_line`] writes, with its line end: a
+/// `status` whose every number has all its digits.
+pub const LONGEST_LINE: u8 = 250;
+
+/// A line that waits to be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Output {
+    /// What robot this is, once after power-on.
+    Banner,
+    /// The answer to the last line received, or a part of it.
+    Answer(Answer),
+    /// A notice that comes without a command.
+    Notice(Notice),
+    /// Why the guard holds the robot.
+    Held,
+    /// The pose, as `watch` asked for it.
+    Report,
+}
+
+/// Somebody at the other end of a serial line.
+#[derive(Clone, Debug)]
+pub struct Console {
+    line: Line,
+    greeted: bool,
+    answer: Option<Answer>,
+    watch: Watch,
+}
+
+impl Default for Console {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Console {
+    /// The banner is not yet written, and nothing has come.
+    pub const fn new() -> Self {
+        Self {
+            line: Line::new(),
+            greeted: false,
+            answer: None,
+            watch: Watch::every(0),
+        }
+    }
+
+    /// A frame has passed.
+    pub fn frame(&mut self) {
+        self.watch.frame();
+    }
+
+    /// True while a line waits to be written. No byte is to be passed on
+    /// meanwhile: the answer may still need the line it answers.
+    pub const fn has_output(&self, control: &Control) -> bool {
+        self.next_output(control).is_some()
+    }
+
+    /// Takes a byte from the serial line and executes the line that it ends.
+    // Out of line, as the next: half a kilobyte of flash.
+    #[inline(never)]
+    pub fn receive(&mut self, byte: u8, control: &mut Control) {
+        control.byte_came();
+        let Some(ended) = self.line.push(byte) else {
+            return;
+        };
+        control.line_came();
+        let answer = match ended {
+            Ended::Line => self.obey(control),
+            Ended::TooLong => Err(Answer::Misread(Misread::TooLong)),
+            Ended::Garbled => Err(Answer::Misread(Misread::Garbled)),
+        };
+        self.answer = answer.unwrap_or_else(Some);
+    }
+
+    /// Does what the line says. No answer yet where the memory has to do something
+    /// first: then [`Console::done`] has to follow.
+    #[inline(never)]
+    fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
+        let robot = control.motion().robot();
+        let command = command::parse(self.line.text(), robot);
+        let reads = matches!(
+            command,
+            Ok(Command::Help | Command::Status | Command::Watch(_))
+        );
+        if robot.is_none() && !reads {
+            return Err(Answer::Refused(Refusal::NoRobot));
+        }
+        Ok(match command.map_err(Answer::Misread)? {
+            Command::Help => Some(Answer::Gaits(GaitId::STAND)),
+            Command::Status => Some(Answer::Status),
+            Command::Cal => Some(Answer::Settings(0)),
+            Command::Watch(frames) => {
+                self.watch = Watch::every(frames);
+                Some(Answer::Done)
+            }
+            Command::Order(order) => match control.execute(&order).map_err(Answer::Refused)? {
+                Taken::Done => Some(Answer::Done),
+                Taken::Later => None,
+            },
+        })
+    }
+
+    /// What was to be done later has been done, or not.
+    pub fn done(&mut self, outcome: Result<(), Refusal>) {
+        self.answer = Some(match outcome {
+            Ok(()) => Answer::Done,
+            Err(refusal) => Answer::Refused(refusal),
+        });
+    }
+
+    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
+    /// is, once after power-on; an answer or a part of it; a notice; why
+    /// the guard holds the robot; the pose, as `watch` asked for it. Of the longest
+    /// line it writes one part, and the next calls the others.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    #[inline(never)]
+    pub fn write_line<W>(
+        &mut self,
+        control: &mut Control,
+        out: &mut W,
+        counters: Counters,
+    ) -> Result<(), W::Error>
+    where
+        W: uWrite + ?Sized,
+    {
+        match self.next_output(control) {
+            None => return Ok(()),
+            Some(Output::Banner) => {
+                self.greeted = true;
+                print::banner(out, control.motion().robot())?;
+            }
+            Some(Output::Answer(answer)) => {
+                self.answer = print::answer(out, answer, &self.line, control, counters)?;
+                if matches!(answer, Answer::Status | Answer::Margin) {
+                    return Ok(());
+                }
+            }
+            Some(Output::Notice(notice)) => {
+                control.written(notice);
+                print::notice(out, notice, control)?;
+            }
+            Some(Output::Held) => {
+                if let Some(hazard) = control.take_held() {
+                    Text::Held.print(out)?;
+                    refusal::print_hazard(hazard, control.motion(), out)?;
+                }
+            }
+            Some(Output::Report) => {
+                self.watch.due = false;
+                Text::WatchTime.print(out)?;
+                digits::number(out, control.motion().frames(), 0)?;
+                print::pose(out, control.motion())?;
+            }
+        }
+        out.write_char('\r')?;
+        out.write_char('\n')
+    }
+
+    /// What is to be written next: the one order of everything that may wait.
+    const fn next_output(&self, control: &Control) -> Option<Output> {
+        if !self.greeted {
+            Some(Output::Banner)
+        } else if let Some(answer) = self.answer {
+            Some(Output::Answer(answer))
+        } else if let Some(notice) = control.safety().notice() {
+            Some(Output::Notice(notice))
+        } else if control.was_held() {
+            Some(Output::Held)
+        } else if self.watch.due {
+            Some(Output::Report)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

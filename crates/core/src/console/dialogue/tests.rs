@@ -1,0 +1,265 @@
+//! The console as seen from the other end of the line.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+mod any_line;
+mod calibration;
+mod dialogue;
+mod effect;
+mod faults;
+mod memory;
+mod status;
+
+use super::*;
+use crate::console::word::Word;
+use crate::guard::clearance::Clearance;
+use crate::memory::restart::{Cause, Restart, Stance};
+use crate::memory::settings::Settings;
+use crate::motion::Activity;
+use crate::numbers::pose::{Pose, Pulses};
+use crate::numbers::units::Width;
+use crate::sample::{GAITS, Sample};
+use crate::step::Step;
+use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
+use dialogue::{Dialogue, awake, neutral, pairs, standing, supply, widths};
+
+/// The neutral pose of the odd robot, as a command.
+const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
+
+#[test]
+fn the_banner_names_version_and_tables_once() {
+    for hash in [0, 0x1f0a_9c3e, 0x0000_00f0, u32::MAX, 0x9999_9999] {
+        let mut dialogue = Dialogue::power_on(Sample::odd().with_hash(hash));
+        let version = env!("CARGO_PKG_VERSION");
+        let banner =
+            format!("# lizard {version} robot sample {hash:08x}, send help for the commands");
+        let blank = "# calibration: none is saved, robot.toml's is in use".to_string();
+        assert_eq!(dialogue.lines(), [banner, blank]);
+        assert!(dialogue.run(50).is_empty());
+    }
+}
+
+#[test]
+fn what_is_obeyed_is_answered_by_ok_and_the_line_as_it_was_understood() {
+    let commands = [
+        "stop",
+        "rest",
+        "speed 10",
+        "speed 100",
+        "watch 3",
+        "watch 0",
+        NEUTRAL,
+    ];
+    for command in commands.into_iter().chain(GAITS) {
+        assert_eq!(standing().say(command), format!("ok {command}"));
+        let shouted = format!("  {}\t", command.to_uppercase());
+        assert_eq!(standing().say(&shouted), format!("ok {command}"));
+    }
+}
+
+#[test]
+fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
+    let mut dialogue = standing();
+    let said = dialogue.send(b"help\r");
+    let gaits = format!("# gaits: {}", GAITS.join("|"));
+    let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
+    let others = format!("# others: {}", words.join("|"));
+    let expected = [
+        gaits.as_str(),
+        others.as_str(),
+        "# a word alone tells what it wants, the docs what it does",
+        "ok help",
+    ];
+    assert_eq!(said, expected);
+    assert_eq!(dialogue.send(b"?\r"), expected);
+}
+
+#[test]
+fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_long() {
+    for (count, length) in [
+        (4, 48),
+        (40, 5),
+        (8, 23),
+        (6, 28),
+        (70, 1),
+        (26, 48),
+        (6, 21),
+    ] {
+        let mut robot = Sample::paper();
+        for number in 0..count {
+            robot = robot.with_gait(&format!("{number:x>length$}")[..length]);
+        }
+        let names: Vec<String> = crate::numbers::gaits::GaitId::all(robot.gait_count())
+            .map(|id| robot.name(id).map(char::from).collect())
+            .collect();
+        let said = awake(robot).send(b"help\r");
+        let lines: Vec<&str> = said
+            .iter()
+            .filter_map(|line| line.strip_prefix("# gaits: "))
+            .collect();
+        let told: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
+        assert_eq!(told, names);
+        // A line ends only where the next name has no room: with the prefix and the bar.
+        for pair in lines.windows(2) {
+            let next = pair[1].split('|').next().expect("a name");
+            let whole = "# gaits: ".len() + pair[0].len() + 1 + next.len();
+            assert!(whole > usize::from(print::LONGEST_NAMES), "{pair:?}");
+        }
+    }
+}
+
+/// A robot that the guard has just stopped, with nothing read since.
+fn guarded() -> Dialogue {
+    let mut dialogue = standing();
+    dialogue.say("stray");
+    for _ in 0..200 {
+        dialogue.run_unheard(1);
+        if dialogue.motion().hazard().is_some() {
+            return dialogue;
+        }
+    }
+    panic!("stray is safe");
+}
+
+#[test]
+fn why_the_guard_holds_the_robot_is_told_once_and_status_goes_on_saying_so() {
+    let mut dialogue = guarded();
+    let told = dialogue.lines();
+    assert_eq!(told.len(), 1);
+    assert!(
+        told[0].starts_with("# held in the last safe pose: "),
+        "{told:?}"
+    );
+    assert!(told[0].contains(" margin of ") || told[0].contains(" slider is at "));
+    assert!(dialogue.run(100).is_empty());
+    assert_eq!(dialogue.status("guard"), "held");
+    assert_eq!(dialogue.status("fault"), "guard");
+    dialogue.say("stand");
+    dialogue.run(1);
+    assert_eq!(dialogue.status("guard"), "clear");
+    assert_eq!(dialogue.status("fault"), "none");
+    dialogue.run(100);
+    dialogue.say("stray");
+    assert_eq!(
+        dialogue.run(200).len(),
+        1,
+        "and again, when it happens again"
+    );
+}
+
+#[test]
+fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
+    let mut dialogue = guarded();
+    dialogue.board.send(b"stand\r");
+    dialogue.run_unheard(3);
+    let said = dialogue.lines();
+    assert_eq!(said.len(), 2);
+    assert!(said[0].starts_with("# held in the last safe pose: "));
+    assert_eq!(said[1], "ok stand");
+    assert!(!dialogue.has_output());
+    dialogue.run(3);
+    assert_eq!(dialogue.status("guard"), "clear");
+}
+
+#[test]
+fn what_waits_is_written_in_one_order_banner_answer_fault_reason_report() {
+    let mut dialogue = Dialogue::power_on(*Sample::odd());
+    dialogue.board.send(b"stray\rwatch 1\rhelp\r");
+    // Room for a line at a time, until the first one of the help is written.
+    let mut said = Vec::new();
+    let mut line = |dialogue: &mut Dialogue| {
+        while !dialogue.board.transmitter.text.ends_with("\r\n") {
+            assert_eq!(dialogue.main.step(&mut dialogue.board), Step::Worked);
+        }
+        said.push(core::mem::take(&mut dialogue.board.transmitter.text));
+        said.last().expect("a line").starts_with("# gaits: ")
+    };
+    while !line(&mut dialogue) {}
+    // The guard holds the robot, an edge comes late, a report is due.
+    dialogue.run_unheard(199);
+    assert!(dialogue.motion().hazard().is_some());
+    dialogue.board.late = 1;
+    dialogue.run_unheard(1);
+    let rest = dialogue.lines();
+    let starts = [
+        "# lizard ",
+        "# calibration: ",
+        "ok stray",
+        "ok watch 1",
+        "# gaits: ",
+        "# others: ",
+        "# a word ",
+        "ok help",
+        "# fault: ",
+        "# held ",
+        "# t=200 pose=",
+    ];
+    said.extend(rest);
+    assert_eq!(said.len(), starts.len(), "{said:?}");
+    for (line, start) in said.iter().zip(starts) {
+        assert!(line.starts_with(start), "{line}");
+    }
+}
+
+#[test]
+fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
+    let unsafe_pose = "pose 95 90 309.64 226.18";
+    for line in ["sway", "sway left", "stop", NEUTRAL, unsafe_pose] {
+        let mut dialogue = standing();
+        assert_eq!(dialogue.say("rest"), "ok rest");
+        assert_eq!(
+            dialogue.say(line),
+            "err 7 servos are resting, send stand first"
+        );
+        for _ in 0..50 {
+            assert_eq!(dialogue.frame(), Pulses::default(), "{line}");
+        }
+        assert_eq!(dialogue.status("gait"), "rest");
+        // What moves nothing is answered, and a mistake is still a mistake.
+        for line in ["speed 50", "watch 0", "rest", "help"] {
+            assert_eq!(dialogue.say(line), format!("ok {line}"));
+        }
+        assert_eq!(
+            dialogue.say("pose 1 2 3 4"),
+            "err 3 A1 reaches 61.37..215.36"
+        );
+        assert!(dialogue.say("dance").starts_with("err 1 "));
+        assert_eq!(dialogue.say("stand"), "ok stand");
+        dialogue.run(25);
+        assert!(dialogue.frame().0.iter().all(|width| *width > Width(0)));
+    }
+}
+
+#[test]
+fn travel_is_checked_before_margins_and_a_refusal_names_what_is_wrong() {
+    let mut dialogue = standing();
+    assert_eq!(
+        dialogue.say("pose 400 1 1 1"),
+        "err 3 A1 reaches 61.37..215.36"
+    );
+    assert_eq!(
+        dialogue.say("pose 132 47 200 226"),
+        "err 3 A3 reaches 235.64..18.64"
+    );
+    let refused = dialogue.say("pose 132.37 4 309.64 226.18");
+    assert!(
+        refused.starts_with("err 4 ") || refused.starts_with("err 5 "),
+        "{refused}"
+    );
+    assert_eq!(dialogue.status("gait"), "stand");
+}
+
+#[test]
+fn a_pose_that_is_accepted_is_reached_and_told_to_the_hundredth() {
+    let mut dialogue = standing();
+    for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
+        let line = format!("pose {pose}");
+        assert_eq!(dialogue.say(&line), format!("ok {line}"));
+        dialogue.run(120);
+        assert_eq!(dialogue.status("pose"), pose.replace(' ', ","));
+    }
+}

@@ -1,0 +1,357 @@
+//! What is set of the servos, kept, and taken back.
+
+use super::*;
+use crate::memory::copies::COPIES;
+use crate::memory::record::Progress;
+use crate::numbers::part::Servo;
+use crate::numbers::units::Sweep;
+
+/// The lines of `cal`.
+fn cal(dialogue: &mut Dialogue) -> Vec<String> {
+    dialogue.send(b"cal\r")
+}
+
+#[test]
+fn cal_prints_all_that_is_set_and_nothing_that_varies() {
+    let mut dialogue = standing();
+    let untouched = cal(&mut dialogue);
+    assert_eq!(untouched.len(), 7);
+    assert!(untouched[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
+    assert_eq!(untouched[4..], ["# boot stand", "# deadman 0", "ok cal"]);
+    for line in [
+        "trim 1 -3.25",
+        "limit 2 350 130.5",
+        "dir 3 -",
+        "scale 4 9.87",
+        "boot sway left",
+        "deadman 1500",
+    ] {
+        assert_eq!(dialogue.say(line), format!("ok {line}"));
+    }
+    let set = cal(&mut dialogue);
+    assert!(
+        set[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir "),
+        "{set:?}"
+    );
+    assert!(
+        set[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir "),
+        "{set:?}"
+    );
+    assert!(set[2].contains(" dir - scale "), "{set:?}");
+    assert!(set[3].ends_with(" scale 9.87"), "{set:?}");
+    assert_eq!(set[4..], ["# boot sway left", "# deadman 1500", "ok cal"]);
+    dialogue.say("sway");
+    dialogue.run(77);
+    assert_eq!(cal(&mut dialogue), set);
+    assert_eq!(dialogue.say("factory"), "ok factory");
+    assert_eq!(cal(&mut dialogue), untouched);
+}
+
+#[test]
+fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
+    let mut dialogue = standing();
+    dialogue.say("trim 2 4");
+    assert_eq!(dialogue.say("save"), "ok save");
+    let saved = cal(&mut dialogue);
+    dialogue.say("trim 2 5");
+    assert_ne!(cal(&mut dialogue), saved);
+    let mut again = Dialogue::with(
+        *Sample::odd(),
+        dialogue.board.memory.clone(),
+        Restart::default(),
+    );
+    assert_eq!(again.lines().len(), 1, "the banner alone");
+    assert_eq!(cal(&mut again), saved);
+    // And without power going off.
+    assert_eq!(dialogue.say("load"), "ok load");
+    assert_eq!(cal(&mut dialogue), saved);
+}
+
+#[test]
+fn there_is_nothing_to_load_before_the_first_save_and_a_worn_memory_is_told() {
+    let mut dialogue = standing();
+    assert_eq!(
+        dialogue.say("load"),
+        "err 9 nothing is saved that could be loaded"
+    );
+    dialogue.board.memory.worn = true;
+    assert_eq!(
+        dialogue.say("save"),
+        "err 9 the memory does not keep what is written"
+    );
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+#[test]
+fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_the_rest() {
+    for change in [
+        "trim 1 20",
+        "trim 1 -12.5",
+        "scale 1 8",
+        "dir 1 -",
+        "dir 1 +",
+        "load",
+        "factory",
+    ] {
+        let mut dialogue = standing();
+        if change == "factory" {
+            dialogue.say("trim 1 15");
+        }
+        if change == "load" {
+            dialogue.say("trim 1 -15");
+            dialogue.say("save");
+            dialogue.say("factory");
+        }
+        dialogue.run(100);
+        dialogue.say("pose 145 50 311 224.5");
+        dialogue.run(150);
+        let before = widths(&mut dialogue);
+        assert_eq!(dialogue.say(change), format!("ok {change}"));
+        let motion = dialogue.motion();
+        let wanted = motion
+            .pose()
+            .pulses(motion.calibration())
+            .0
+            .map(|width| width.0);
+        let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
+        let most = f64::from(motion.robot().slew().per_frame) * gain;
+        let mut last = before;
+        for _ in 0..200 {
+            let now = widths(&mut dialogue);
+            assert!(
+                f64::from(now[0].abs_diff(last[0])) <= most.max(1.0),
+                "{change}"
+            );
+            assert_eq!(now[1..], before[1..], "{change}");
+            last = now;
+        }
+        assert_eq!(last, wanted, "{change}");
+        assert_eq!(dialogue.status("pose"), "145.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn a_calibration_in_a_gait_halts_it_until_the_pulses_have_settled_and_it_goes_on() {
+    let mut dialogue = standing();
+    dialogue.say("sway");
+    dialogue.run(120);
+    let before = dialogue.motion().phase();
+    dialogue.say("trim 2 15");
+    dialogue.run(1);
+    assert_eq!(dialogue.motion().phase(), before);
+    dialogue.run(200);
+    assert_eq!(dialogue.status("gait"), "sway");
+    assert_ne!(dialogue.motion().phase(), before);
+    let motion = dialogue.motion();
+    let wanted = motion.pose().pulses(motion.calibration());
+    assert_eq!(motion.sent(), &wanted);
+}
+
+#[test]
+fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothing() {
+    let mut dialogue = standing();
+    let before = cal(&mut dialogue);
+    for line in [
+        "limit 1 140 215",
+        "limit 1 61.37 132",
+        "limit 2 131 350",
+        "limit 3 309 310",
+    ] {
+        let refused = dialogue.say(line);
+        assert!(refused.starts_with("err 3 A"), "{line}: {refused}");
+        assert!(refused.contains(" would not reach what the gaits need, "));
+        assert_eq!(cal(&mut dialogue), before);
+    }
+    dialogue.say("pose 150 47.91 309.64 226.18");
+    dialogue.run(2);
+    let refused = dialogue.say("limit 1 61.37 149");
+    assert!(refused.ends_with(" would not reach where it is or goes, send stand first"));
+    assert_eq!(cal(&mut dialogue), before);
+    dialogue.say("stand");
+    dialogue.run(150);
+    assert_eq!(dialogue.say("limit 1 61.37 149"), "ok limit 1 61.37 149");
+    assert_eq!(
+        dialogue.say("pose 150 47.91 309.64 226.18"),
+        "err 3 A1 reaches 61.37..149.00"
+    );
+}
+
+#[test]
+fn a_factory_or_a_load_that_is_refused_changes_nothing() {
+    let mut dialogue = standing();
+    for line in [
+        "trim 1 10",
+        "limit 1 61.37 149",
+        "save",
+        "limit 1 61.37 215.36",
+    ] {
+        assert_eq!(dialogue.say(line), format!("ok {line}"));
+    }
+    dialogue.say("pose 155 47.91 309.64 226.18");
+    dialogue.run(150);
+    let before = cal(&mut dialogue);
+    assert!(
+        dialogue
+            .say("load")
+            .starts_with("err 3 A1 would not reach where it is")
+    );
+    assert_eq!(cal(&mut dialogue), before);
+    let mut other = standing();
+    other.say("trim 3 4");
+    let before = cal(&mut other);
+    other.board.memory.bytes_mut()[0] = 0;
+    assert_eq!(
+        other.say("load"),
+        "err 9 nothing is saved that could be loaded"
+    );
+    assert_eq!(cal(&mut other), before);
+    // Saved for other servos: not loaded, and what is set stays.
+    let mut chip = standing();
+    chip.say("save");
+    other.board.memory = chip.board.memory.clone();
+    other.board.memory.bytes_mut()[44] ^= 1;
+    assert!(other.say("load").starts_with("err 9 "));
+    assert_eq!(cal(&mut other), before);
+    // A trim moves the travel: this pose is within it, but not within robot.toml's.
+    let narrow = Sweep(2200);
+    let robot = Sample::odd().with(|content| content.calibration[0].max = narrow);
+    let mut narrow = awake(robot);
+    assert_eq!(narrow.say("trim 1 -5"), "ok trim 1 -5");
+    assert_eq!(narrow.say("limit 1 67 149"), "ok limit 1 67 149");
+    narrow.run(100);
+    let pose = "pose 146 47.91 309.64 226.18";
+    assert_eq!(narrow.say(pose), format!("ok {pose}"));
+    narrow.run(150);
+    let before = cal(&mut narrow);
+    assert!(
+        narrow
+            .say("factory")
+            .starts_with("err 3 A1 would not reach where it is")
+    );
+    assert_eq!(cal(&mut narrow), before);
+}
+
+#[test]
+fn settings_that_cut_a_gait_off_are_not_loaded_and_change_nothing() {
+    for servo in Servo::ALL {
+        for (beyond, served) in [(1, true), (-1, false)] {
+            let mut dialogue = standing();
+            let robot = Sample::odd();
+            let mut settings = Settings::of(&robot);
+            let mut set = settings.servo(servo);
+            set.min = Sweep(robot.reach(servo).min.0 - beyond);
+            settings.set_servo(servo, set);
+            let mut writing = COPIES[0].write();
+            while writing.step(settings.bytes(), &mut dialogue.board.memory) == Progress::Going {}
+            let before = cal(&mut dialogue);
+            let answer = dialogue.say("load");
+            let refused = answer == "err 9 nothing is saved that could be loaded";
+            assert_eq!(refused, !served, "{servo:?}: {answer}");
+            assert_eq!(cal(&mut dialogue) == before, refused, "{servo:?}");
+        }
+    }
+}
+
+#[test]
+fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
+    let mut dialogue = standing();
+    for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
+        dialogue.say(line);
+    }
+    dialogue.run(100);
+    assert!(dialogue.say("center 1").starts_with("err 2 "));
+    assert_eq!(dialogue.say("center"), "ok center");
+    dialogue.run(200);
+    let neutral = Sample::odd().calibration().map(|servo| servo.neutral.0);
+    for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
+        assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
+    }
+    dialogue.say("stand");
+    dialogue.run(200);
+    let motion = dialogue.motion();
+    assert_eq!(motion.sent(), &Pose::NEUTRAL.pulses(motion.calibration()));
+}
+
+#[test]
+fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
+    let names = ["walk 1", "walk 2", "walk 3", "walk 4"];
+    let robot = || {
+        names
+            .iter()
+            .fold(Sample::odd(), |robot, name| robot.with_gait(name))
+    };
+    for name in names {
+        let mut dialogue = Dialogue::power_on(*robot());
+        dialogue.run(30);
+        assert_eq!(
+            dialogue.say(&format!("boot {name}")),
+            format!("ok boot {name}")
+        );
+        assert_eq!(dialogue.say("save"), "ok save");
+        let memory = dialogue.board.memory.clone();
+        let mut again = Dialogue::with(*robot(), memory, Restart::NONE);
+        again.run(151);
+        assert_eq!(again.status("gait"), name.replace(' ', "-"));
+    }
+}
+
+#[test]
+fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
+    for servo in Servo::ALL {
+        let robot = Sample::odd();
+        let mut settings = Settings::of(&robot);
+        let mut set = settings.servo(servo);
+        set.max = Sweep(robot.reach(servo).max.0 - 1);
+        settings.set_servo(servo, set);
+        assert_eq!(settings.unfit(&robot), Some(servo));
+    }
+}
+
+#[test]
+fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
+    let mut dialogue = standing();
+    dialogue.say("sway left");
+    dialogue.run(150);
+    // Far outside of all gaits. The gait brakes first, so the pose is only to come.
+    assert_eq!(
+        dialogue.say("pose 152 50 311 224.5"),
+        "ok pose 152 50 311 224.5"
+    );
+    dialogue.run(2);
+    let refused = dialogue.say("limit 1 115 150");
+    assert!(
+        refused.starts_with("err 3 A1 would not reach where it is"),
+        "{refused}"
+    );
+    dialogue.run(300);
+    assert_eq!(dialogue.status("pose"), "152.00,50.00,311.00,224.50");
+    dialogue.say("stand");
+    dialogue.run(200);
+    assert_eq!(dialogue.say("limit 1 115 150"), "ok limit 1 115 150");
+}
+
+#[test]
+fn after_a_calibration_a_gait_gathers_its_pace_again() {
+    let mut dialogue = standing();
+    dialogue.say("sway left");
+    dialogue.run(150);
+    let full = phase_of_a_frame(&mut dialogue);
+    dialogue.say("trim 2 3");
+    let mut phases = Vec::new();
+    for _ in 0..100 {
+        phases.push(phase_of_a_frame(&mut dialogue));
+    }
+    let first = phases
+        .iter()
+        .position(|phase| *phase > 0)
+        .expect("it goes on");
+    assert!(first > 0 && phases[first] < full / 4, "{phases:?}");
+    assert_eq!(phases.last(), Some(&full));
+}
+
+/// By how much the phase advances in a frame, 1/2^24 cycle.
+fn phase_of_a_frame(dialogue: &mut Dialogue) -> u32 {
+    let before = dialogue.motion().phase();
+    dialogue.frame();
+    dialogue.motion().phase().wrapping_sub(before) & 0xff_ffff
+}

@@ -1,0 +1,325 @@
+//! What stops the robot, and where it begins.
+
+use super::*;
+
+#[test]
+fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
+    let mut dialogue = standing();
+    for boot in ["sway left", "rest"] {
+        dialogue.say(&format!("boot {boot}"));
+        assert_eq!(dialogue.say("save"), "ok save");
+        let chip = dialogue.board.memory.clone();
+        let mut alone = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
+        let said = alone.run(149);
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
+        assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
+        assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
+        let mut watched = Dialogue::with(*Sample::odd(), chip, Restart::default());
+        watched.run(100);
+        watched.board.send(b" ");
+        watched.run(400);
+        assert_eq!(watched.status("gait"), "stand");
+    }
+}
+
+#[test]
+fn a_gait_ends_when_the_link_is_lost_and_says_why() {
+    let mut dialogue = standing();
+    dialogue.say("deadman 400");
+    dialogue.say("sway");
+    for _ in 0..30 {
+        assert!(dialogue.run(15).is_empty());
+        dialogue.say("status");
+    }
+    let said = dialogue.run(21);
+    assert_eq!(
+        said,
+        ["# fault: no line for as long as deadman says, stopped"]
+    );
+    assert_eq!(
+        (dialogue.status("gait"), dialogue.status("fault")),
+        ("stop".into(), "link".into())
+    );
+    dialogue.say("sway");
+    assert_eq!(dialogue.status("fault"), "none");
+}
+
+#[test]
+fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothing_restarts() {
+    let mut dialogue = standing();
+    dialogue.say("sway");
+    dialogue.run(150);
+    let pace = |dialogue: &mut Dialogue| {
+        let before = dialogue.motion().phase();
+        dialogue.run(10);
+        dialogue.motion().phase().wrapping_sub(before) & 0xff_ffff
+    };
+    let full = pace(&mut dialogue);
+    supply(&mut dialogue, 4_400);
+    let said = dialogue.run(40);
+    assert!(
+        said[0].starts_with("# supply: 4.") && said[0].ends_with("V, low: half speed, no saving"),
+        "{said:?}"
+    );
+    let half = f64::from(pace(&mut dialogue)) / f64::from(full);
+    assert!((half - 0.5).abs() < 0.02, "{half}");
+    assert_eq!(dialogue.say("save"), "err 8 the supply is too low");
+    supply(&mut dialogue, 4_200);
+    let said = dialogue.run(40);
+    assert_eq!(said.len(), 2);
+    assert_eq!(dialogue.status("gait"), "stop");
+    assert_eq!(dialogue.status("fault"), "supply");
+    assert!(dialogue.say("sway").starts_with("err 8 "));
+    assert!(dialogue.say(NEUTRAL).starts_with("err 8 "));
+    supply(&mut dialogue, 4_000);
+    dialogue.run(40);
+    assert_eq!(dialogue.status("gait"), "rest");
+    assert_eq!(dialogue.frame(), Pulses::default());
+    supply(&mut dialogue, 5_000);
+    let said = dialogue.run(100);
+    assert!(
+        said.last().is_some_and(|line| line.ends_with(" V, good")),
+        "{said:?}"
+    );
+    assert_eq!(dialogue.status("gait"), "rest");
+    assert_eq!(dialogue.say("stand"), "ok stand");
+}
+
+/// Servos that were held in a pose, with the pulses of robot.toml.
+fn held(sweeps: [i16; 4]) -> Stance {
+    let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
+    Stance {
+        resting: false,
+        awake: crate::motion::AWAKE,
+        pose,
+        sent: pose.pulses(&Sample::odd().calibration()),
+    }
+}
+
+fn hung(count: u8, stance: Stance) -> Restart {
+    Restart {
+        cause: Cause::Watchdog,
+        count,
+        before: Some(stance),
+        ..Restart::NONE
+    }
+}
+
+#[test]
+fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
+    let stance = held([400, -300, 200, -100]);
+    let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(3, stance));
+    let said = dialogue.run(1);
+    assert!(
+        said.contains(&"# fault: the program hung and began anew".to_string()),
+        "{said:?}"
+    );
+    for _ in 0..400 {
+        assert_eq!(dialogue.frame(), stance.sent, "at once, and for good");
+    }
+    assert_eq!(dialogue.status("reset"), "watchdog");
+    assert_eq!(dialogue.status("resets"), "3");
+    assert_eq!(dialogue.status("fault"), "watchdog");
+    dialogue.say("stand");
+    dialogue.run(100);
+    assert_eq!(dialogue.status("fault"), "none");
+    assert_eq!(dialogue.status("pose"), neutral());
+}
+
+#[test]
+fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over_and_the_robot_rests() {
+    for sweeps in [[30_000, 0, 0, 0], [-6803, 7663, 0, 0]] {
+        for cause in [Cause::Watchdog, Cause::External] {
+            let restart = Restart {
+                cause,
+                ..hung(1, held(sweeps))
+            };
+            let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), restart);
+            for _ in 0..140 {
+                assert_eq!(dialogue.frame(), Pulses::default());
+            }
+            assert_eq!(dialogue.status("gait"), "rest");
+            dialogue.say("stand");
+            dialogue.run(50);
+            assert_eq!(dialogue.status("pose"), neutral());
+        }
+    }
+}
+
+#[test]
+fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
+    let mut dialogue = standing();
+    assert!(dialogue.say("limit 1 115 160").starts_with("ok "));
+    assert_eq!(dialogue.say("save"), "ok save");
+    let chip = dialogue.board.memory.clone();
+    // 132.37 deg and 30 more is safe, and beyond 160.
+    let beyond = held([5461, 0, 0, 0]);
+    let mut within = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(1, beyond));
+    within.run(10);
+    assert_eq!(within.status("gait"), "stop");
+    let mut narrow = Dialogue::with(*Sample::odd(), chip, hung(1, beyond));
+    narrow.run(10);
+    assert_eq!(narrow.status("gait"), "rest");
+}
+
+#[test]
+fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
+    for (setting, servo, cause) in [
+        ("trim 1 15", 0, Cause::Watchdog),
+        ("trim 4 -15", 3, Cause::External),
+        ("scale 2 12", 1, Cause::External),
+        ("dir 3 -", 2, Cause::BrownOut),
+    ] {
+        let mut dialogue = standing();
+        dialogue.say("pose 140 50 311 224.5");
+        dialogue.run(100);
+        assert!(dialogue.say(setting).starts_with("ok "), "{setting}");
+        dialogue.run(100);
+        let mut last = dialogue.frame();
+        dialogue.reset(cause);
+        let calibration = *dialogue.motion().calibration();
+        let mut moved = 0;
+        for _ in 0..200 {
+            let pulses = dialogue.frame();
+            for (place, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
+                if pulse.0 == 0 {
+                    continue;
+                }
+                let most = calibration[place].slew(Sample::odd().slew().per_frame);
+                let way = pulse.0.abs_diff(before.0);
+                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", place + 1);
+                moved += usize::from(place == servo && way > 0);
+                *before = *pulse;
+            }
+        }
+        assert!(moved > 3, "{setting}: it was undone");
+        assert_eq!(last, dialogue.motion().pose().pulses(&calibration));
+    }
+}
+
+#[test]
+fn a_reset_while_servos_wake_wakes_no_two_together() {
+    for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
+        for frames in 1..25 {
+            let mut dialogue = standing();
+            dialogue.say("rest");
+            dialogue.run(10);
+            dialogue.say("stand");
+            dialogue.run(frames);
+            let mut had = dialogue.frame().0.map(|width| width.0 > 0);
+            dialogue.reset(cause);
+            let known = had;
+            if cause != Cause::Watchdog {
+                had = [false; 4];
+            }
+            for _ in 0..60 {
+                let has = dialogue.frame().0.map(|width| width.0 > 0);
+                let woken = (0..4).filter(|servo| has[*servo] && !had[*servo]);
+                let unknown = woken.clone().filter(|servo| !known[*servo]).count();
+                assert!(unknown <= 1, "{cause:?} after {frames}");
+                let together = woken.count();
+                assert!(together <= 1, "{cause:?} after {frames}");
+                had = has;
+            }
+            assert_eq!(had, [true; 4]);
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
+    for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
+        let mut dialogue = standing();
+        dialogue.say("pose 140 50 311 224.5");
+        dialogue.run(150);
+        dialogue.say("rest");
+        dialogue.run(5);
+        let kept = *dialogue.board.memory.bytes();
+        dialogue.reset(cause);
+        dialogue.board.memory.log.clear();
+        for _ in 0..149 {
+            assert_eq!(dialogue.frame(), Pulses::default(), "{cause:?}");
+        }
+        assert_eq!(*dialogue.board.memory.bytes(), kept, "{cause:?}");
+        assert!(dialogue.board.memory.log.is_empty(), "it is there already");
+        // `boot` is stand, and a hang calls it off.
+        let said = dialogue.run(1);
+        let boots = said.iter().any(|line| line == "# boot: stand");
+        assert_eq!(boots, cause != Cause::Watchdog, "{said:?}");
+        assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
+    for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
+        let mut dialogue = standing();
+        dialogue.say("pose 140 50 311 224.5");
+        dialogue.run(150);
+        dialogue.board.memory.slowness = 4;
+        dialogue.board.memory.timed = true;
+        dialogue.board.send(b"rest\r");
+        dialogue.frame();
+        dialogue.reset(cause);
+        assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
+        dialogue.run(100);
+        let chip = dialogue.board.memory.clone();
+        let mut again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
+        assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
+    }
+}
+
+#[test]
+fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_somebody_orders_a_motion() {
+    // A boot loader hides which of the two it was.
+    for (boot_loader, cause) in [
+        (false, Cause::BrownOut),
+        (true, Cause::BrownOut),
+        (true, Cause::External),
+    ] {
+        let mut dialogue = standing();
+        dialogue.board.boot_loader = boot_loader;
+        dialogue.lines();
+        for resets in 1..=5 {
+            dialogue.reset(cause);
+            let said = dialogue.run(17);
+            let rests = dialogue.frame() == Pulses::default();
+            assert_eq!(rests, resets >= 3, "{resets}");
+            let why =
+                "# fault: reset several times in a row by the button or a weak supply, resting";
+            assert_eq!(said.iter().any(|line| line == why), resets >= 3);
+        }
+        dialogue.run(300);
+        assert_eq!(dialogue.frame(), Pulses::default(), "boot is called off");
+        assert_eq!(dialogue.status("fault"), "brownout");
+        assert!(dialogue.say("sway").starts_with("err 7 "));
+        assert_eq!(dialogue.say("stand"), "ok stand");
+        dialogue.run(30);
+        dialogue.reset(Cause::BrownOut);
+        dialogue.run(30);
+        assert_ne!(dialogue.frame(), Pulses::default(), "the count began anew");
+    }
+}
+
+#[test]
+fn who_opens_the_port_again_and_again_and_says_something_is_no_weak_supply() {
+    let mut dialogue = standing();
+    dialogue.board.boot_loader = true;
+    for _ in 0..20 {
+        dialogue.reset(Cause::External);
+        dialogue.run(30);
+        assert_eq!(dialogue.status("fault"), "none");
+        assert_ne!(dialogue.frame(), Pulses::default());
+    }
+}
+
+#[test]
+fn brown_outs_half_a_minute_apart_are_none_in_a_row() {
+    let mut dialogue = standing();
+    for _ in 0..6 {
+        dialogue.reset(Cause::BrownOut);
+        dialogue.run(1501);
+        assert_ne!(dialogue.frame(), Pulses::default());
+    }
+}

@@ -1,0 +1,131 @@
+//! What `status` and `watch` tell.
+
+use super::*;
+
+#[test]
+fn status_tells_everything_as_key_and_value() {
+    let mut dialogue = standing();
+    dialogue.board.late = 7;
+    dialogue.board.lose(65_535);
+    dialogue.run(1);
+    dialogue.say("speed 42");
+    dialogue.say("sway left");
+    dialogue.run(200);
+    let line = dialogue.say("status");
+    let motion = dialogue.motion();
+    let phase = (u64::from(motion.phase()) * 1000) >> 24;
+    let angles: Vec<String> = motion
+        .pose()
+        .angles(&motion.robot().neutral())
+        .iter()
+        .map(|angle| {
+            let centideg = angle.centideg();
+            format!("{}.{:02}", centideg / 100, centideg % 100)
+        })
+        .collect();
+    let margin = Clearance::of(motion.robot(), motion.pose())
+        .smallest()
+        .thousandths();
+    let expected = format!(
+        "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \
+         late=7 rx_lost=65535 guard=clear fault=none reset=power resets=0 vcc=5.00 rail=6.00",
+        angles.join(","),
+        motion.frames(),
+    );
+    assert_eq!(line, expected);
+}
+
+#[test]
+fn status_names_what_the_robot_does() {
+    let mut dialogue = standing();
+    assert_eq!(dialogue.status("gait"), "stand");
+    for (command, name) in [
+        ("sway", "sway"),
+        ("sway left", "sway-left"),
+        (NEUTRAL, "pose"),
+        ("stop", "stop"),
+        ("rest", "rest"),
+        ("stand", "stand"),
+    ] {
+        dialogue.say(command);
+        assert_eq!(dialogue.status("gait"), name);
+    }
+}
+
+#[test]
+fn the_longest_status_that_there_can_be_fits_a_line() {
+    let name = "longest name of a gait that any robot may have..";
+    assert_eq!(name.len(), crate::numbers::gaits::LONGEST_NAME);
+    let robot = Sample::odd().with_gait(name);
+    let mut dialogue = awake(robot);
+    dialogue.board.late = u16::MAX;
+    dialogue.board.lose(u16::MAX);
+    assert_eq!(dialogue.say(name), format!("ok {name}"));
+    let line = dialogue.say("status");
+    // Each number as long as it gets.
+    let values = pairs(line.strip_prefix("ok ").expect("a status"));
+    let most = [
+        ("phase", "0.999"),
+        ("pose", "359.99,359.99,359.99,359.99"),
+        ("margin", "-1.000"),
+        ("speed", "100"),
+        ("frames", "4294967295"),
+        ("guard", "clear"),
+    ];
+    let more: usize = most
+        .iter()
+        .map(|(key, most)| most.len() - values[*key].len())
+        .sum();
+    assert!(line.len() + more + "\r\n".len() <= usize::from(LONGEST_LINE));
+}
+
+#[test]
+fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
+    for every in [1u32, 2, 7, 50] {
+        let mut dialogue = standing();
+        dialogue.say("sway");
+        dialogue.say(&format!("watch {every}"));
+        let begin = dialogue.motion().frames();
+        let mut times = Vec::new();
+        for _ in 0..200 {
+            for line in dialogue.run(1) {
+                let report = pairs(line.strip_prefix("# ").expect("a report"));
+                let time: u32 = report["t"].parse().expect("a number");
+                assert_eq!(time, dialogue.motion().frames());
+                assert_eq!(report["pose"], dialogue.status("pose"));
+                assert_eq!(report.len(), 2);
+                times.push(time - begin);
+            }
+        }
+        let expected: Vec<u32> = (1..=200).filter(|time| time % every == 0).collect();
+        assert_eq!(times, expected);
+        dialogue.say("watch 0");
+        assert!(dialogue.run(200).is_empty());
+    }
+}
+
+#[test]
+fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginning() {
+    let mut dialogue = standing();
+    dialogue.say("watch 5");
+    dialogue.say("rest");
+    assert_eq!(dialogue.run(50).len(), 10);
+    dialogue.run(3);
+    dialogue.say("watch 10");
+    assert!(dialogue.run(9).is_empty());
+    assert_eq!(dialogue.run(1).len(), 1);
+}
+
+#[test]
+fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
+    let mut dialogue = standing();
+    dialogue.say("watch 2");
+    dialogue.run_unheard(20);
+    assert_eq!(dialogue.lines().len(), 1);
+    dialogue.run_unheard(2);
+    assert!(dialogue.has_output());
+    dialogue.board.send(b"watch 0\r");
+    let said = dialogue.lines();
+    assert!(said.len() == 2 && said[1] == "ok watch 0", "{said:?}");
+    assert!(dialogue.run(10).is_empty());
+}

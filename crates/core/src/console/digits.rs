@@ -1,0 +1,193 @@
+//! Numbers as text: the chip has no division worth its time, and its texts are in flash.
+
+use lizard_avr::flash;
+use ufmt::uWrite;
+
+use crate::console::text::Text;
+use crate::numbers::part::Servo;
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
+use crate::numbers::units::Sine;
+
+/// Prints bytes of seven bits as they are.
+///
+/// # Errors
+/// Those of `out`.
+pub fn ascii<W>(out: &mut W, bytes: impl Iterator<Item = u8>) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    for byte in bytes {
+        out.write_char(char::from(byte & 0x7f))?;
+    }
+    Ok(())
+}
+
+/// Prints the four chassis angles of a pose in degrees, with commas between them.
+///
+/// # Errors
+/// Those of `out`.
+pub fn angles<W>(out: &mut W, pose: &Pose, robot: &Robot) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    for servo in Servo::all() {
+        if servo != Servo::A1 {
+            out.write_char(',')?;
+        }
+        let angle = robot.neutral_of(servo).swept(*servo.of(&pose.0));
+        number(out, angle.centideg().into(), 2)?;
+    }
+    Ok(())
+}
+
+/// Prints a number, the last `decimals` of its digits behind a point.
+///
+/// # Errors
+/// Those of `out`.
+pub fn number<W>(out: &mut W, value: u32, decimals: usize) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    let mut rest = value;
+    let mut begun = false;
+    let mut place = DECADES.as_slice().len();
+    while place > 0 {
+        place -= 1;
+        let unit = DECADES.at(place).load();
+        let mut digit = b'0';
+        while rest >= unit {
+            rest -= unit;
+            digit += 1;
+        }
+        begun |= digit != b'0' || place <= decimals;
+        if begun {
+            out.write_char(char::from(digit & 0x7f))?;
+            if place == decimals && place > 0 {
+                out.write_char('.')?;
+            }
+        }
+    }
+    Ok(())
+}
+
+flash! {
+    const DECADES: [u32; 10] = [
+        1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
+    ];
+}
+
+/// Prints a text and a number after it, with two decimals.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn field<W>(out: &mut W, text: Text, hundredths: u16) -> Result<(), W::Error>
+where
+    W: uWrite + ?Sized,
+{
+    text.print(out)?;
+    number(out, hundredths.into(), 2)
+}
+
+/// Prints a text and a whole number after it.
+///
+/// # Errors
+/// Those of `out`.
+#[inline(never)]
+pub fn count<W: uWrite + ?Sized>(out: &mut W, text: Text, count: u32) -> Result<(), W::Error> {
+    text.print(out)?;
+    number(out, count, 0)
+}
+
+/// Prints a number that may be negative, `decimals` behind the point.
+///
+/// # Errors
+/// Those of `out`.
+pub fn signed<W: uWrite + ?Sized>(
+    out: &mut W,
+    value: i32,
+    decimals: usize,
+) -> Result<(), W::Error> {
+    if value < 0 {
+        out.write_char('-')?;
+    }
+    number(out, value.unsigned_abs(), decimals)
+}
+
+/// Prints a margin with three decimals.
+///
+/// # Errors
+/// Those of `out`.
+pub fn sine<W: uWrite + ?Sized>(out: &mut W, sine: Sine) -> Result<(), W::Error> {
+    signed(out, sine.thousandths().into(), 3)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::format;
+    use std::string::{String, ToString};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::numbers::units::Angle;
+    use crate::sample::Sample;
+
+    fn printed(value: u32, decimals: usize) -> String {
+        let mut text = String::new();
+        let Ok(()) = number(&mut text, value, decimals);
+        text
+    }
+
+    /// The same with the standard library: digits, and a point before the last.
+    fn expected(value: u32, decimals: usize) -> String {
+        let digits = format!("{value:0>width$}", width = decimals + 1);
+        let (whole, rest) = digits.split_at(digits.len() - decimals);
+        if decimals == 0 {
+            whole.to_string()
+        } else {
+            format!("{whole}.{rest}")
+        }
+    }
+
+    #[test]
+    fn numbers_around_every_decade_are_printed_as_the_standard_library_would() {
+        let edges = (0..10).flat_map(|n| {
+            let decade = 10u32.pow(n);
+            [decade - 1, decade, decade + 1]
+        });
+        for value in edges.chain([u32::MAX - 1, u32::MAX]) {
+            for decimals in 0..=3 {
+                assert_eq!(printed(value, decimals), expected(value, decimals));
+            }
+        }
+    }
+
+    #[test]
+    fn a_negative_number_has_its_sign_and_zero_has_none() {
+        for value in (-33_000..33_000).chain([i32::MIN, i32::MAX]) {
+            let mut text = String::new();
+            let Ok(()) = signed(&mut text, value, 3);
+            let sign = if value < 0 { "-" } else { "" };
+            assert_eq!(text, format!("{sign}{}", expected(value.unsigned_abs(), 3)));
+        }
+    }
+
+    #[test]
+    fn angles_have_two_decimals_and_commas_between_them() {
+        let mut text = String::new();
+        let centideg = [0, 4_141, 31_860, 35_999];
+        let robot = Sample::odd();
+        let pose = Pose::at(&centideg.map(Angle::from_centideg), &robot.neutral());
+        let Ok(()) = angles(&mut text, &pose, &robot);
+        assert_eq!(text, "0.00,41.41,318.60,359.99");
+    }
+
+    proptest! {
+        #[test]
+        fn any_number_is_printed_as_the_standard_library_would(value: u32, decimals in 0usize..=3) {
+            prop_assert_eq!(printed(value, decimals), expected(value, decimals));
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! The console: lines in, answers out.
+//!
+//! The top room. It knows bytes, lines and sentences, gives [orders](crate::control::order)
+//! to the robot and prints the answers. A board without a serial line needs none of it.
+
+pub mod answer;
+pub mod command;
+mod dialogue;
+pub mod digits;
+pub mod line;
+mod print;
+mod refusal;
+pub mod text;
+mod watch;
+pub mod word;
+
+pub use dialogue::{Console, LONGEST_LINE};

@@ -1,0 +1,235 @@
+//! The words that the console takes for its own.
+
+use lizard_avr::flash;
+use ufmt::uWrite;
+
+use crate::numbers::gaits::GaitId;
+use crate::numbers::robot::Robot;
+
+/// The effect of a command on the servos, if the robot does it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// No pulse changes: a question, or a setting for later.
+    None,
+    /// A motion begins, with pulses for every servo.
+    Moves,
+    /// The pose is frozen.
+    Freezes,
+    /// The pulses end.
+    Rests,
+    /// A gait goes faster or slower.
+    Paces,
+    /// A servo's calibration changes: the pulses of a pose, or the travel.
+    Calibrates,
+}
+
+macro_rules! words {
+    (
+        reserved: { $($old:ident = $old_word:literal $old_arguments:literal, $old_effect:ident;)* }
+        later: { $($new:ident = $new_word:literal $new_arguments:literal, $new_effect:ident;)* }
+    ) => {
+        words! { @all
+            $($old = $old_word $old_arguments, $old_effect;)*
+            $($new = $new_word $new_arguments, $new_effect;)*
+        }
+
+        /// Of [`Word::ALL`] the first that are reserved for ever.
+        pub(crate) const RESERVED: usize = [$(Word::$old),*].len();
+    };
+    (@all $($name:ident = $word:literal $arguments:literal, $effect:ident;)*) => {
+        /// A word of the console.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        #[allow(missing_docs, reason = "each name is followed by its word")]
+        pub enum Word { $($name),* }
+
+        impl Word {
+            /// All of them, as `help` lists them.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// The word as it is written.
+            pub const fn text(self) -> &'static str {
+                match self { $(Self::$name => $word),* }
+            }
+
+            /// Its effect on the servos: the one place that says so. Rules and tests on
+            /// hosts ask here, or [`crate::console::command::effect`] for a whole line.
+            pub const fn effect(self) -> Effect {
+                match self { $(Self::$name => Effect::$effect),* }
+            }
+
+            /// A line that the paper's robot takes: the word, with arguments where it wants
+            /// some.
+            pub const fn example(self) -> &'static str {
+                match self { $(Self::$name => concat!($word, $arguments)),* }
+            }
+        }
+
+        /// Each with a bar behind it.
+        const LIST: &str = concat!($($word, "|"),*);
+    };
+}
+
+// Each row: name = word and the arguments of an example, effect.
+words! {
+    // No gait's name may begin with one of these. The list is closed: a robot that has been
+    // accepted once is accepted by every later version.
+    reserved: {
+        Help = "help" "", None;
+        QuestionMark = "?" "", None;
+        Stop = "stop" "", Freezes;
+        Rest = "rest" "", Rests;
+        Status = "status" "", None;
+        Pose = "pose" " 155 41.41 318.59 221.41", Moves;
+        Speed = "speed" " 50", Paces;
+        Watch = "watch" " 5", None;
+        Trim = "trim" " 1 8", Calibrates;
+        Limit = "limit" " 4 200 240", Calibrates;
+        Dir = "dir" " 2 -", Calibrates;
+        Scale = "scale" " 3 12", Calibrates;
+        Cal = "cal" "", None;
+        Center = "center" "", Moves;
+        Save = "save" "", None;
+        Load = "load" "", Calibrates;
+        Factory = "factory" "", Calibrates;
+        Boot = "boot" " rest", None;
+        Deadman = "deadman" " 2000", None;
+    }
+    // These yield to a gait of the same name.
+    later: {
+    }
+}
+
+/// Follows each word in the list.
+const BAR: u8 = b'|';
+
+flash! {
+    const CHARACTERS: [u8; LIST.len()] = *LIST.as_bytes().first_chunk().unwrap();
+    const WORDS: [Word; Word::ALL.len()] = *Word::ALL.first_chunk().unwrap();
+}
+
+impl Word {
+    /// The one that is written so.
+    #[inline(never)]
+    pub fn find(written: &[u8]) -> Option<Self> {
+        let mut number = 0;
+        // What is left of `written` after a word's beginning, if it has that.
+        let mut left = Some(written);
+        for place in 0..LIST.len() {
+            let character = CHARACTERS.at(place).load();
+            left = match left {
+                Some([]) if character == BAR => return Some(WORDS.at(number).load()),
+                _ if character == BAR => {
+                    number += 1;
+                    Some(written)
+                }
+                Some([first, rest @ ..]) if *first == character => Some(rest),
+                _ => None,
+            };
+        }
+        None
+    }
+
+    /// True for a word that no gait's name may begin with.
+    pub const fn is_reserved(self) -> bool {
+        (self as usize) < RESERVED
+    }
+
+    /// Prints all of them, with bars in between. Those from number `YIELDING` on are left
+    /// out where the robot has a gait of the same name.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub(crate) fn print_all<W, const YIELDING: usize>(
+        out: &mut W,
+        robot: &Robot,
+    ) -> Result<(), W::Error>
+    where
+        W: uWrite + ?Sized,
+    {
+        let mut number = 0;
+        let mut is_printed = true;
+        for place in 0..LIST.len() - 1 {
+            let character = CHARACTERS.at(place).load();
+            // No instruction is spent on it while no word yields.
+            if YIELDING < Self::ALL.len() && character == BAR {
+                number += 1;
+                is_printed = number < YIELDING || !is_gait(place + 1, robot);
+            }
+            if is_printed {
+                out.write_char(char::from(character & 0x7f))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// True if the word that begins at `place` is the whole name of a gait.
+fn is_gait(place: usize, robot: &Robot) -> bool {
+    GaitId::all(robot.gait_count()).any(|id| {
+        let letters = (place..LIST.len()).map(|place| CHARACTERS.at(place).load());
+        letters
+            .take_while(|letter| *letter != BAR)
+            .eq(robot.name(id))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::String;
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::sample::Sample;
+
+    /// The words of the first versions: a promise to the robots of their time.
+    const RESERVED_FOR_EVER: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
+        scale|cal|center|save|load|factory|boot|deadman";
+
+    #[test]
+    fn the_reserved_words_are_those_of_the_first_versions_and_no_other() {
+        let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
+        let reserved: Vec<&str> = reserved.map(|word| word.text()).collect();
+        assert_eq!(reserved.join("|"), RESERVED_FOR_EVER);
+    }
+
+    #[test]
+    fn every_word_that_is_listed_is_found_and_nothing_else_is() {
+        for word in Word::ALL {
+            let text = word.text();
+            assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");
+            let longer = std::format!("{text}s");
+            for other in [&text[1..], &text[..text.len() - 1], &longer] {
+                assert_eq!(Word::find(other.as_bytes()), None, "{other}");
+            }
+        }
+        for other in ["", "|", "help|", "help|?", "sway", "sto", "stoq"] {
+            assert_eq!(Word::find(other.as_bytes()), None, "{other}");
+        }
+    }
+
+    /// All words but those without which they are to be listed.
+    fn listed<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
+        let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
+        let words: Vec<&str> = words.map(|word| word.text()).collect();
+        let mut list = String::new();
+        let Ok(()) = Word::print_all::<_, YIELDING>(&mut list, robot);
+        assert_eq!(list, words.join("|"));
+    }
+
+    #[test]
+    fn a_word_that_yields_is_left_out_where_a_gait_has_its_whole_name() {
+        let robot = Sample::paper();
+        listed::<RESERVED>(&robot, &[]);
+        listed::<1>(&robot, &[]);
+        let mut robot = robot;
+        for name in ["stop", "trim", "deadman", "sav", "loads", "boot on"] {
+            robot = robot.with_gait(name);
+        }
+        let all = [Word::Stop, Word::Trim, Word::Deadman];
+        listed::<RESERVED>(&robot, &[]);
+        listed::<1>(&robot, &all);
+        listed::<3>(&robot, &all[1..]);
+        listed::<9>(&robot, &all[2..]);
+    }
+}

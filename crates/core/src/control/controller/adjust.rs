@@ -1,0 +1,74 @@
+//! How settings of the servos take effect: at once, and only if the robot can still walk
+//! all gaits and keep its present pose and target.
+
+use super::Control;
+use crate::control::order::Setting;
+use crate::control::refusal::Refusal;
+use crate::memory::settings::Settings;
+use crate::numbers::calibration::Calibration;
+use crate::numbers::part::Servo;
+
+impl Control {
+    /// Sets something of a servo.
+    #[inline(never)]
+    pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
+        let mut settings = self.settings;
+        let mut set = settings.servo(servo);
+        match setting {
+            Setting::Trim(trim) => set.trim = trim,
+            Setting::Direct(direct) => set.set_direct(direct),
+            Setting::Scale(scale) => set.set_scale(scale),
+            Setting::Limit(clockwise, counter_clockwise) => {
+                let neutral = self.motion.robot().neutral_of(servo);
+                set.min = neutral.sweep_to(clockwise);
+                set.max = neutral.sweep_to(counter_clockwise);
+            }
+        }
+        settings.set_servo(servo, set);
+        self.replace(&settings)
+    }
+
+    /// Takes other settings.
+    #[inline(never)]
+    pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
+        let mut calibration = *self.motion.calibration();
+        for servo in Servo::all() {
+            let servos = servo.of_mut(&mut calibration);
+            *servos = settings.calibration(servo, self.motion.robot());
+            self.fits(servo, servos)?;
+        }
+        for servo in Servo::all() {
+            self.reaches(servo, servo.of(&calibration))?;
+        }
+        self.settings = *settings;
+        self.motion.calibrate_all(&calibration);
+        self.motion.settle();
+        Ok(())
+    }
+
+    /// An error where a gait leaves a servo's travel.
+    #[inline(never)]
+    fn fits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
+        match self.motion.robot().reach(servo).is_within(calibration) {
+            true => Ok(()),
+            false => Err(Refusal::Unfit(servo)),
+        }
+    }
+
+    /// An error where the robot is beyond a servo's travel, or goes there.
+    #[inline(never)]
+    fn reaches(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
+        match self.motion.goes_beyond(servo, calibration) {
+            false => Ok(()),
+            true => Err(Refusal::Elsewhere(servo)),
+        }
+    }
+
+    /// Gives the motion the calibration that the settings contain.
+    pub(super) fn calibrate(&mut self) {
+        for servo in Servo::all() {
+            let calibration = self.settings.calibration(servo, self.motion.robot());
+            self.motion.calibrate(servo, calibration);
+        }
+    }
+}

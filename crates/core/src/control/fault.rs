@@ -1,0 +1,188 @@
+//! What has gone wrong, as a code, a word and a pattern of the LED.
+//!
+//! Without a cable, the LED on D13 is all that a person sees. It blinks slowly while all
+//! is well. After a fault it flashes as many times as the fault's code, pauses, and
+//! repeats that until the robot is told to move.
+
+/// A fault. Each of them stops the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// The next pose would not have been safe.
+    Guard = 1,
+    /// The supply is too low.
+    Supply,
+    /// No line has come for as long as `deadman` allows.
+    Link,
+    /// The program hung and was restarted.
+    Watchdog,
+    /// An edge of a pulse came late: a rising edge was not made, so its pulse is
+    /// missing; a falling edge made its pulse longer.
+    Late,
+    /// The stack has grown into the data.
+    Stack,
+    /// Several resets in a row by a weak supply or, behind a boot loader, by the button.
+    BrownOut,
+    /// There is no robot in the flash.
+    Robot,
+}
+
+impl Fault {
+    /// Its code: how many times the LED flashes.
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+}
+
+/// Frames that a flash is lit, and dark after it.
+const FLASH: u8 = 8;
+
+/// Frames of the pause after the flashes.
+const PAUSE: u8 = 48;
+
+/// Frames that the beat of a robot without a fault is lit, and dark.
+const BEAT: u8 = 32;
+
+/// The LED.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Led {
+    /// Frames since its pattern began.
+    frames: u8,
+    /// The pattern's code, 0 for the slow beat.
+    code: u8,
+}
+
+impl Led {
+    /// At power-on: the slow beat, lit first.
+    pub const fn new() -> Self {
+        Self { frames: 0, code: 0 }
+    }
+
+    /// One frame on: whether it is lit.
+    pub fn frame(&mut self, fault: Option<Fault>) -> bool {
+        let code = fault.map_or(0, Fault::code);
+        let period = match code {
+            0 => 2 * BEAT,
+            code => 2 * FLASH * code + PAUSE,
+        };
+        if code == self.code {
+            self.frames += 1;
+        }
+        if code != self.code || self.frames >= period {
+            *self = Self { frames: 0, code };
+        }
+        if code == 0 {
+            self.frames < BEAT
+        } else {
+            self.frames < 2 * FLASH * code && self.frames & FLASH == 0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    const ALL: [Fault; 8] = [
+        Fault::Guard,
+        Fault::Supply,
+        Fault::Link,
+        Fault::Watchdog,
+        Fault::Late,
+        Fault::Stack,
+        Fault::BrownOut,
+        Fault::Robot,
+    ];
+
+    /// How long the LED is lit and dark, in turn, for some frames.
+    fn runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
+        let mut runs: Vec<(bool, usize)> = Vec::new();
+        for _ in 0..frames {
+            let lit = led.frame(fault);
+            match runs.last_mut() {
+                Some((last, count)) if *last == lit => *count += 1,
+                _ => runs.push((lit, 1)),
+            }
+        }
+        runs
+    }
+
+    /// What docs/faults.md says of a pattern, this many frames after it began.
+    fn is_lit(fault: Option<Fault>, frame: usize) -> bool {
+        let Some(fault) = fault else {
+            return frame % 64 < 32;
+        };
+        let flashes = 16 * usize::from(fault.code());
+        let at = frame % (flashes + 48);
+        at < flashes && at % 16 < 8
+    }
+
+    #[test]
+    fn without_a_fault_it_beats_slowly() {
+        let runs = runs(&mut Led::default(), None, 1000);
+        assert!(runs[0].0, "lit first");
+        assert!(
+            runs[1..runs.len() - 1]
+                .iter()
+                .all(|(_, frames)| *frames == 32)
+        );
+    }
+
+    #[test]
+    fn a_fault_flashes_as_often_as_its_code_says_and_pauses() {
+        for (place, fault) in ALL.into_iter().enumerate() {
+            assert_eq!(usize::from(fault.code()), place + 1);
+            let mut led = Led::default();
+            runs(&mut led, None, 13 * (place + 1));
+            let runs = runs(&mut led, Some(fault), 1000);
+            // Cut into patterns by the pauses.
+            let mut flashes = 0;
+            let mut patterns = Vec::new();
+            for (lit, frames) in &runs[..runs.len() - 1] {
+                match (lit, frames) {
+                    (true, 8) => flashes += 1,
+                    (false, 8) => {}
+                    (false, 56) => {
+                        patterns.push(flashes);
+                        flashes = 0;
+                    }
+                    other => panic!("{fault:?}: {other:?}"),
+                }
+            }
+            assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
+            assert!(patterns.iter().all(|n| *n == place + 1), "{fault:?}");
+        }
+    }
+
+    /// Whatever the LED shows, and however far it has got with it: a long pattern may
+    /// have come farther than a short one that follows ever gets.
+    #[test]
+    fn any_pattern_begins_at_once_at_any_place_of_any_other_and_goes_on() {
+        let shown: Vec<Option<Fault>> = ALL.into_iter().map(Some).chain([None]).collect();
+        for before in &shown {
+            for after in shown.iter().filter(|after| *after != before) {
+                for frames in 1..300 {
+                    let mut led = Led::default();
+                    runs(&mut led, *before, frames);
+                    for frame in 0..400 {
+                        let lit = led.frame(*after);
+                        assert_eq!(lit, is_lit(*after, frame), "{before:?} {after:?} {frames}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn another_fault_begins_its_pattern_at_once() {
+        let mut led = Led::default();
+        runs(&mut led, Some(Fault::Stack), 100);
+        assert_eq!(
+            runs(&mut led, Some(Fault::Guard), 10),
+            [(true, 8), (false, 2)]
+        );
+        assert_eq!(runs(&mut led, None, 40), [(true, 32), (false, 8)]);
+    }
+}

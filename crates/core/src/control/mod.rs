@@ -1,0 +1,15 @@
+//! The control: it carries out orders, computes a frame fifty times a second, and reacts
+//! to faults.
+//!
+//! It knows no text. [`order`] and [`refusal`] are its language, [`supervisor`] is the table
+//! of its decisions, [`safety`], [`supply`] and [`fault`] watch the hardware.
+
+mod controller;
+pub mod fault;
+pub mod order;
+pub mod refusal;
+pub mod safety;
+pub mod supervisor;
+pub mod supply;
+
+pub use controller::Control;

@@ -1,0 +1,162 @@
+//! The tables as docs/faults.md prints them, and what must hold for all of them.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use super::*;
+
+const DOCS: &str = include_str!("../../../../../docs/faults.md");
+
+const SUPPLIES: [(Option<Level>, &str); 5] = [
+    (Some(Level::Good), "good"),
+    (None, "not measured yet"),
+    (Some(Level::Slow), "low"),
+    (Some(Level::Stop), "too low to move"),
+    (Some(Level::Rest), "too low to hold"),
+];
+
+const fn event_text(event: Event) -> &'static str {
+    match event {
+        Event::Stand => "`stand`",
+        Event::Move => "another motion",
+        Event::Stop => "`stop`",
+        Event::Rest => "`rest`",
+        Event::Save => "`save`",
+        Event::Boot => "the time of `boot` has come",
+        Event::Silence => "no line for as long as `deadman` says",
+        Event::TooLow => "the supply gets too low to move",
+        Event::Empty => "the supply gets too low to hold",
+        Event::LateEdge => "an edge of a pulse is late",
+        Event::Stack => "the stack reaches the data",
+        Event::Unsafe => "the next pose would not be safe",
+    }
+}
+
+fn response_text(response: Response, state: State) -> String {
+    let rests = state == State::Resting;
+    match response {
+        Response::Nothing => "-".into(),
+        Response::Obey => "done".into(),
+        Response::RefuseResting => "refused, 7".into(),
+        Response::RefuseSupply => "refused, 8".into(),
+        Response::Freeze(fault) if rests => format!("fault {}", fault.code()),
+        Response::Freeze(fault) => format!("frozen, fault {}", fault.code()),
+        Response::EndPulses(fault) if rests => format!("fault {}", fault.code()),
+        Response::EndPulses(fault) => format!("pulses end, fault {}", fault.code()),
+    }
+}
+
+/// A row of the first table for each way in which an event is answered.
+fn rows(event: Event) -> Vec<String> {
+    let cells = |supply| {
+        let text = |state| response_text(response(event, supply, state), state);
+        State::ALL.map(text).join(" | ")
+    };
+    let mut ways: Vec<(Vec<&str>, String)> = Vec::new();
+    for (supply, name) in SUPPLIES {
+        let cells = cells(supply);
+        match ways.iter_mut().find(|(_, known)| *known == cells) {
+            Some((names, _)) => names.push(name),
+            None => ways.push((Vec::from([name]), cells)),
+        }
+    }
+    let row = |(names, cells): &(Vec<&str>, String)| {
+        let supply = if names.len() == SUPPLIES.len() {
+            "any".into()
+        } else {
+            names.join(", ")
+        };
+        format!("| {} | {supply} | {cells} |", event_text(event))
+    };
+    ways.iter().map(row).collect()
+}
+
+#[test]
+fn the_docs_print_the_table_of_events() {
+    let rows: Vec<String> = Event::ALL.into_iter().flat_map(rows).collect();
+    let head =
+        "| what happens | supply | resting | standing, holding, moving to a pose | walking |";
+    let table = format!("{head}\n|---|---|---|---|---|\n{}\n", rows.join("\n"));
+    assert!(DOCS.contains(&table), "docs/faults.md wants:\n{table}");
+}
+
+#[test]
+fn the_docs_print_the_table_of_restarts() {
+    let mut rows = Vec::new();
+    for cause in Cause::ALL {
+        for (brown_outs, often) in [(0, "once, twice"), (BROWN_OUTS, "three times in a row")] {
+            let told = |before| beginning(cause, brown_outs, before);
+            if brown_outs > 0
+                && Before::ALL.map(told) == Before::ALL.map(|before| beginning(cause, 0, before))
+            {
+                continue;
+            }
+            let depends = matches!(cause, Cause::External | Cause::BrownOut);
+            let cells = Before::ALL.map(|before| match told(before).0 {
+                Beginning::Wake => "wakes, stands",
+                Beginning::TakeOver => "wakes where it was, stands",
+                Beginning::Hold => "held",
+                Beginning::Rest => "rests",
+            });
+            let fault = told(Before::Held).1;
+            rows.push(format!(
+                "| {} | {} | {} | {} |",
+                match cause {
+                    Cause::Power => "`power`",
+                    Cause::External => "`external`",
+                    Cause::BrownOut => "`brownout`",
+                    Cause::Watchdog => "`watchdog`",
+                },
+                if depends { often } else { "any" },
+                cells.join(" | "),
+                fault.map_or("-".into(), |fault| format!("{}", fault.code())),
+            ));
+        }
+    }
+    let head = "| reset | maybe by the supply | nothing known | rested | held | fault |";
+    let table = format!("{head}\n|---|---|---|---|---|---|\n{}\n", rows.join("\n"));
+    assert!(DOCS.contains(&table), "docs/faults.md wants:\n{table}");
+}
+
+#[test]
+fn only_stand_and_boot_give_a_robot_without_pulses_any() {
+    for event in Event::ALL {
+        for (supply, _) in SUPPLIES {
+            // `save` is done, too, and moves nothing.
+            if response(event, supply, State::Resting) == Response::Obey {
+                assert!(matches!(event, Event::Stand | Event::Boot | Event::Save));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_answered_never_gets_better_as_the_supply_sinks() {
+    for event in [Event::Stand, Event::Move, Event::Save, Event::Boot] {
+        for state in State::ALL {
+            let obeys = |(supply, _)| response(event, supply, state) == Response::Obey;
+            let sinking = [SUPPLIES[0], SUPPLIES[2], SUPPLIES[3], SUPPLIES[4]].map(obeys);
+            assert!(
+                sinking.is_sorted_by(|before, after| before >= after),
+                "{event:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn only_power_and_a_program_that_did_nothing_wake_servos_where_nobody_held_them() {
+    for cause in Cause::ALL {
+        for brown_outs in 0..=BROWN_OUTS {
+            for before in Before::ALL {
+                let (begins, fault) = beginning(cause, brown_outs, before);
+                let wakes = begins == Beginning::Wake;
+                let nothing_known = before == Before::Nothing && fault.is_none();
+                assert_eq!(wakes, cause == Cause::Power || nothing_known);
+                let takes = matches!(begins, Beginning::TakeOver | Beginning::Hold);
+                assert!(!takes || before == Before::Held);
+            }
+        }
+    }
+}

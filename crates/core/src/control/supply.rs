@@ -1,0 +1,225 @@
+//! The supply: measured every frame, and what the robot still does when it is low.
+//!
+//! Four servos that start at once pull a weak supply down; below 2.7 V the chip resets,
+//! and well above that a servo loses its position and an EEPROM write its data. The chip
+//! can measure its own supply without any external part: it compares the supply with a
+//! reference of about 1.1 V on the chip. The servos' own rail can be measured if a
+//! divider connects it to an analogue pin.
+//!
+//! The reference differs by up to a tenth from chip to chip. robot.toml has its measured
+//! value, and the voltages below which the robot reacts.
+
+use lizard_avr::mul_unsigned;
+
+use crate::numbers::root::quotient;
+use crate::numbers::supplies::{Supplies, Thresholds};
+
+/// Steps of the analogue converter.
+const FULL_SCALE: u16 = 1024;
+
+/// What the converter has read, 0..=1023; 0 stands for nothing yet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Reading {
+    /// The reference, in parts of the supply.
+    pub reference: u16,
+    /// The divided rail of the servos, in parts of the supply.
+    pub rail: u16,
+}
+
+/// What the supply allows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Everything.
+    #[default]
+    Good,
+    /// Gaits at half their pace.
+    Slow,
+    /// Standing still.
+    Stop,
+    /// No pulses.
+    Rest,
+}
+
+/// A voltage as a quotient, so that comparing it takes no division.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Voltage {
+    /// mV times `counts`.
+    product: u32,
+    counts: u16,
+}
+
+/// The supply's level over time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Supply {
+    reading: Reading,
+    level: Level,
+    /// Frames for which another level has been measured.
+    frames: u8,
+    /// Of these levels the one that is nearest to the present one.
+    nearest: Level,
+    /// Readings so far, up to as many as a level wants to be believed.
+    readings: u8,
+}
+
+/// A level is left for a worse one that lasts for as many frames: a servo's start pulls
+/// the supply down for a few milliseconds. A reading stands for four frames where the
+/// rail is measured, too, so one that has met such a dip changes nothing.
+const TO_WORSE: u8 = 6;
+
+/// And for a better one that lasts for a second, by a voltage that much above the
+/// threshold.
+const TO_BETTER: u8 = 50;
+const HYSTERESIS: u16 = 150;
+
+impl Voltage {
+    /// The chip's supply.
+    pub fn of_board(reading: Reading, supplies: &Supplies) -> Self {
+        Self {
+            product: mul_unsigned(FULL_SCALE, supplies.reference),
+            counts: reading.reference,
+        }
+    }
+
+    /// The servos' rail.
+    pub fn of_rail(reading: Reading, supplies: &Supplies) -> Self {
+        Self {
+            product: mul_unsigned(reading.rail, supplies.rail_reference),
+            counts: reading.reference,
+        }
+    }
+
+    /// Whether it is below `mv`. An unknown voltage is not.
+    pub fn is_below(self, mv: u16) -> bool {
+        self.product < mul_unsigned(mv, self.counts)
+    }
+
+    /// In hundredths of a volt, rounded down; 0 if unknown.
+    pub fn hundredths(self) -> u16 {
+        if self.counts == 0 {
+            return 0;
+        }
+        let step = mul_unsigned(self.counts, 10) as u16;
+        quotient(self.product, step).min(MOST_HUNDREDTHS)
+    }
+}
+
+/// No reading of a supply that the chip survives gives more.
+const MOST_HUNDREDTHS: u16 = (1 << 13) - 1;
+
+impl Thresholds {
+    /// The level of a voltage, `above` the thresholds.
+    fn level(&self, voltage: Voltage, above: u16) -> Level {
+        if !voltage.is_below(self.slow.wrapping_add(above)) {
+            Level::Good
+        } else if !voltage.is_below(self.stop.wrapping_add(above)) {
+            Level::Slow
+        } else if !voltage.is_below(self.rest.wrapping_add(above)) {
+            Level::Stop
+        } else {
+            Level::Rest
+        }
+    }
+}
+
+impl Supplies {
+    /// The worse level of both supplies.
+    fn level(&self, reading: Reading, above: u16) -> Level {
+        let board = self.board.level(Voltage::of_board(reading, self), above);
+        if self.rail_reference == 0 {
+            return board;
+        }
+        let rail = Voltage::of_rail(reading, self);
+        board.max(self.rail.level(rail, above))
+    }
+}
+
+impl Supply {
+    /// Nothing measured yet.
+    pub const fn new() -> Self {
+        Self {
+            reading: Reading {
+                reference: 0,
+                rail: 0,
+            },
+            level: Level::Good,
+            frames: 0,
+            nearest: Level::Good,
+            readings: 0,
+        }
+    }
+
+    /// What was measured last.
+    pub const fn reading(&self) -> Reading {
+        self.reading
+    }
+
+    /// What the supply allows.
+    pub const fn level(&self) -> Level {
+        self.level
+    }
+
+    /// Whether the last reading is of that level. If not, it may only be a dip.
+    pub const fn is_steady(&self) -> bool {
+        self.frames == 0
+    }
+
+    /// The same, once it has been measured for as long as another one would have had
+    /// to be: until then it is only assumed.
+    pub const fn measured(&self) -> Option<Level> {
+        if self.readings < TO_WORSE {
+            None
+        } else {
+            Some(self.level)
+        }
+    }
+
+    /// The voltage of the supply that allows less.
+    pub fn worst(&self, supplies: &Supplies) -> Voltage {
+        let board = Voltage::of_board(self.reading, supplies);
+        let rail = Voltage::of_rail(self.reading, supplies);
+        let is_worse = supplies.rail.level(rail, 0) > supplies.board.level(board, 0);
+        if supplies.rail_reference != 0 && is_worse {
+            rail
+        } else {
+            board
+        }
+    }
+
+    /// One frame on; true where the level has changed: to what held for all of the
+    /// frames that a change takes, so that one reading decides nothing.
+    pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
+        self.reading = reading;
+        if reading.reference > 0 && self.readings < TO_WORSE {
+            self.readings += 1;
+        }
+        let worse = supplies.level(reading, 0);
+        let (level, frames) = if worse > self.level {
+            (worse, TO_WORSE)
+        } else if self.level > Level::Good {
+            (supplies.level(reading, HYSTERESIS), TO_BETTER)
+        } else {
+            (self.level, 0)
+        };
+        // A voltage between the threshold and the one above it changes nothing.
+        if level == self.level || (frames == TO_BETTER && level > self.level) {
+            self.frames = 0;
+            return false;
+        }
+        let goes_on = self.frames > 0 && (self.nearest > self.level) == (level > self.level);
+        self.nearest = match goes_on {
+            false => level,
+            true if level > self.level => level.min(self.nearest),
+            true => level.max(self.nearest),
+        };
+        self.frames = if goes_on { self.frames + 1 } else { 1 };
+        let changed = self.frames >= frames;
+        if changed {
+            self.frames = 0;
+            self.level = self.nearest;
+        }
+        changed
+    }
+}
+
+#[cfg(test)]
+mod tests;

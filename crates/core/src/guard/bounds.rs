@@ -1,0 +1,404 @@
+//! What the integers may differ from floating point by: proved, not tried.
+//!
+//! Each bound here adds up the roundings on the way of one number, in the order in
+//! which they happen, each at its worst. Nothing in it is measured but the sines of
+//! [`crate::guard::trig`], which a test there compares at every angle. A test that finds an
+//! error beyond its bound has found a mistake in the code or in this derivation; there
+//! is no bad luck.
+//!
+//! Lengths of an end are counted in `U`, two steps of its bars, as the distance of the
+//! crank tips is. `k` is the vector from the left crank tip to the right one, `s = k^2`,
+//! `a` and `b` are the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A stroke, `k'`,
+//! marks the value that the integers have for a true value.
+//!
+//! **1. Crank tips.** Base and cranks are rounded to a step, 1/4 U each. Half the base
+//! loses 1/2 U, the rounded sum of the products 1/2 U, and a direction is off by
+//! [`DIRECTION`] in sine and cosine. So `k'` is within `e` of `k`:
+//!
+//! ```text
+//! e_x = 1/4 + 1/2 + 1/2 + (|cos| + |cos|) / 4 + DIRECTION (c1 + c2)
+//! e_y =             1/2 + (|sin| + |sin|) / 4 + DIRECTION (c1 + c2)
+//! ```
+//!
+//! **2. The triangle.** `c = cos(gamma) = (a^2 + b^2 - s) / 2ab` between the couplers.
+//! With couplers that are off by `x` and `y`, at most 1/4 U each, and `s` by `z`,
+//!
+//! ```text
+//! c' - c = (2x (a - b c) + 2y (b - a c) + x^2 + y^2 - 2xyc - z) / 2a'b'
+//! ```
+//!
+//! where `a - b c` is a part of `k` along the coupler, so at most `|k|`. As
+//! `sin^2 = 1 - cos^2`, a sine of `m` becomes one between the roots of `m^2 - q` and of
+//! `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
+//!
+//! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`: that
+//! is the derivative of the triangle's angle by its sides, taken along a straight way
+//! from the one triangle to the other, on all of which the sine is at least the lower
+//! root. The line `k` itself turns by at most `asin(e / |k|)`.
+//!
+//! **3. The tables**, see [`Lean`].
+//!
+//! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its
+//! step, each shift loses at most one of what it leaves, and each reciprocal less than
+//! one of its own.
+//!
+//! **5. A range.** Of many pairs of angles, all that is left of the angles is how far
+//! the crank tips part, `k` in `[near, far]`; sines and cosines in `e` are at most 1.
+//! Every term above then counts at its worst: `z`, `|k|` and what grows with the
+//! distance at `far`; what has it below the line at `near`. `c` falls as `k` grows, so
+//! the largest `|c|` and with it the smallest sine, for which both roots are the
+//! farthest from it, are at an end of the range; the largest sine is, too, unless `c`
+//! changes its sign in between. One pair of angles is a range without width.
+
+use lizard_kinematics as kinematics;
+use lizard_kinematics::Vector;
+
+use crate::numbers::slider::Slider;
+use crate::numbers::units::Scale;
+
+/// What a sine or a cosine may be off by; see the test of [`crate::guard::trig`].
+pub const DIRECTION: f64 = 4.5e-5;
+
+/// The step of a margin.
+pub const Q15: f64 = 1.0 / 32768.0;
+
+/// The step of what is read from a table.
+const Q10: f64 = 1.0 / 1024.0;
+
+/// Below this type-2 margin the tables may have no value. Where the rise is read over
+/// `R - s`, that is at `R - s = R / 4096`, where the sine is
+/// `sqrt((R - s)(s - N)) / 2ab <= sqrt(R / 4096 . 4ab) / 2ab`, at most .05 with couplers
+/// of a ratio of 8, the largest that their steps allow; over `s - N` at `N / 1024`, where
+/// it is at most .077; over `s` at `R / 1024`, where it is at most .063, because that
+/// table is read there only if `N < R / 2048`. Nor is the rise above 32, the largest that
+/// an entry holds: a step that begins there ends at `17/16 R / 1024`, where the sine is at
+/// most .065. What is read in it is too small. Of couplers that differ by little, the
+/// table over `s` keeps its largest rise below the peak, which is too large there; the
+/// sine that it gives is at most .045, since the peak is below `2 N`.
+///
+/// The true margin is then below a tenth: by 2. it is at most the root of `m'^2 + q`, and
+/// with the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most
+/// `7.3 k / ab`: .0071 for stretched couplers of equal length, where `m'` is .031, and
+/// .0031 for folded ones of a ratio of 8, where it is .077.
+pub const KNOWN: f64 = 0.08;
+
+/// What the tables of a pair of couplers may be off by.
+///
+/// A curve has sixteen steps to an octave. A straight line over a step `d` of a function
+/// `f` is off by at most `d^2 / 8` times its largest second derivative, and `d` is at
+/// most a sixteenth of the argument `t`, so by `|t^2 f''| / 2048`. For a product of
+/// powers `e` of straight lines `p + q t`, with `l = q t / (p + q t)`,
+///
+/// ```text
+/// t^2 f'' = f ((sum of e l)^2 - sum of e l^2)
+/// ```
+///
+/// which `Product::bend` bounds over the step by the ends of each `l`. The function is
+/// constant below its peak, where it has no bend at all. To that come the roundings:
+/// those of the entries and of what is read, 1 together (1.5 for the skew, whose entries
+/// are rounded to nearest and whose value down); a share of the step of 16 bits; and the
+/// quarter that `R` and `N` lose when they are rounded down to whole steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lean {
+    /// Of the rise, as a number.
+    pub rise: f64,
+    /// Of the skew, likewise.
+    pub skew: f64,
+}
+
+impl Lean {
+    /// For couplers of whole steps whose tips' squared distance, U^2, is in a range.
+    pub fn of(left: i16, right: i16, [low, high]: [f64; 2]) -> Self {
+        let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
+        let reach = (a + b).powi(2).floor();
+        let least = (a - b).powi(2).floor();
+        let root = |p: f64, q: f64| Factor { power: 0.5, p, q };
+        let over = |p: f64, q: f64| Factor { power: -1.0, p, q };
+        // A table is read from the whole octave on that has a 1024th of the largest argument.
+        let octaves = 2048.0;
+        let mut rise = 0.0f64;
+        // A range of its argument, where the table is read, where its function begins.
+        let mut read = |product: Product, ends: [f64; 2], within: [f64; 2], first: f64| {
+            let ends = [ends[0].max(within[0]), ends[1].min(within[1])];
+            if ends[0] <= ends[1] {
+                let [bend, top] = product.bend(ends, first);
+                let value = bend / 2048.0 + top / 65536.0 + Q10;
+                // Of R and N rounded down: a relative error, here twice as large as
+                // its first order.
+                let of_ends = [
+                    (reach - high).max(reach / 4.0 / octaves),
+                    (low - least).max(least / octaves).max(1.0),
+                ];
+                let rounded = 0.25 / of_ends[0] + 0.25 / of_ends[1];
+                rise = rise.max(value + top * rounded);
+            }
+        };
+        let peak = 2.0 * reach * least / (reach + least);
+        read(
+            Product([root(reach, -1.0), root(-least, 1.0), over(0.0, 1.0)]),
+            [low, high],
+            [(2.0 * least).max(reach / octaves), 0.75 * reach],
+            peak,
+        );
+        read(
+            Product([root(0.0, 1.0), root(reach - least, -1.0), over(reach, -1.0)]),
+            [reach - high, reach - low],
+            [reach / 4.0 / octaves, reach / 4.0],
+            0.0,
+        );
+        read(
+            Product([root(0.0, 1.0), root(reach - least, -1.0), over(least, 1.0)]),
+            [low - least, high - least],
+            [least / octaves, least],
+            0.0,
+        );
+        let low = low.max(reach / octaves);
+        let skew = (reach * least).sqrt() / low;
+        // The bend of 1 / s is 2; a step begins a sixteenth below at most.
+        let bend = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
+        let skew = if left == right {
+            0.0
+        } else {
+            bend + 1.5 * Q10 + 1.0 / low
+        };
+        Self { rise, skew }
+    }
+}
+
+/// `(p + q t)^power`.
+#[derive(Clone, Copy)]
+struct Factor {
+    power: f64,
+    p: f64,
+    q: f64,
+}
+
+struct Product([Factor; 3]);
+
+impl Product {
+    /// The largest `|t^2 f''|` and the largest value in a range of `t` with a step on
+    /// either side, of which none is below `first`.
+    fn bend(&self, [low, high]: [f64; 2], first: f64) -> [f64; 2] {
+        let ends = [(low * 16.0 / 17.0).max(first), high * 17.0 / 16.0];
+        let (mut sum, mut squares, mut top) = ([0.0; 2], [0.0; 2], 1.0f64);
+        for Factor { power, p, q } in self.0 {
+            // Never 0 or less by a hair at an end of the range.
+            let line = ends.map(|t| (p + q * t).max(1e-9));
+            let mut l = [q * ends[0] / line[0], q * ends[1] / line[1]];
+            l.sort_by(f64::total_cmp);
+            let mut square = l.map(|l| l * l);
+            square.sort_by(f64::total_cmp);
+            let scaled = |ends: [f64; 2]| {
+                let mut scaled = ends.map(|end| power * end);
+                scaled.sort_by(f64::total_cmp);
+                scaled
+            };
+            for (sum, more) in [(&mut sum, scaled(l)), (&mut squares, scaled(square))] {
+                *sum = [sum[0] + more[0], sum[1] + more[1]];
+            }
+            top *= line[0].powf(power).max(line[1].powf(power));
+        }
+        let most = sum[0].abs().max(sum[1].abs()).powi(2);
+        let least = if sum[0] <= 0.0 && sum[1] >= 0.0 {
+            0.0
+        } else {
+            sum[0].abs().min(sum[1].abs()).powi(2)
+        };
+        let bend = (most - squares[0]).abs().max((least - squares[1]).abs());
+        [bend * top, top]
+    }
+}
+
+/// What the roundings of an end depend on besides its true bars.
+#[derive(Clone, Copy, Debug)]
+pub struct Bars {
+    /// Of its lengths.
+    pub scale: Scale,
+    /// The left and the right coupler in whole steps.
+    pub couplers: [i16; 2],
+}
+
+/// What the margins of an end may be off by, at a pair of crank angles or at any of a
+/// range.
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    /// Of the type-2 margin's size, a sine.
+    pub type2: f64,
+    /// Of the left crank's type-1 margin, a sine.
+    pub type1_left: f64,
+    /// Of the right crank's.
+    pub type1_right: f64,
+    /// Of the crank tips' distance along the base, mm.
+    pub along: f64,
+    /// The smallest true type-2 margin of the range, a sine; 0 where a loop of it does
+    /// not close.
+    pub least: f64,
+    /// Above this true type-2 margin the tables have a value.
+    pub known: bool,
+}
+
+impl End {
+    /// For true bars, the integers that were made of them, and crank angles in the
+    /// frame of the end, deg. Where the loop does not close, `type2` is the largest
+    /// that the integers may take the margin for.
+    pub fn of(bars: &kinematics::FiveBar, integers: impl Into<Bars>, angles: [f64; 2]) -> Self {
+        let [left, right] = angles.map(Vector::direction);
+        let tip = |crank: f64, of: Vector| [crank * of.x, crank * of.y];
+        let (l, r) = (tip(bars.crank_left, left), tip(bars.crank_right, right));
+        let apart = (bars.base + r[0] - l[0]).hypot(r[1] - l[1]);
+        let sizes = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
+        Self::at(bars, integers.into(), sizes, [apart; 2])
+    }
+
+    /// The same for all crank angles at which the crank tips part by no less than
+    /// `near` and no more than `far`, mm.
+    pub fn between(
+        bars: &kinematics::FiveBar,
+        integers: impl Into<Bars>,
+        [near, far]: [f64; 2],
+    ) -> Self {
+        Self::at(bars, integers.into(), [2.0; 2], [near, far])
+    }
+
+    /// For the sums of the directions' `|cos|` and `|sin|`.
+    fn at(
+        bars: &kinematics::FiveBar,
+        integers: Bars,
+        [cosines, sines]: [f64; 2],
+        apart: [f64; 2],
+    ) -> Self {
+        let to_u = per_mm(integers.scale) / 2.0;
+        let cranks = to_u * (bars.crank_left + bars.crank_right) + 0.5;
+        let e_x = 1.25 + cosines / 4.0 + DIRECTION * cranks;
+        let e_y = 0.5 + sines / 4.0 + DIRECTION * cranks;
+        let e = e_x.hypot(e_y);
+        let [near, far] = apart.map(|mm| to_u * mm);
+        let [a, b] = [bars.coupler_left, bars.coupler_right].map(|mm| to_u * mm);
+        let z = e * (2.0 * far + e);
+        let around = [(near - e).max(0.0).powi(2), (far + e).powi(2)];
+
+        let cosine = |k: f64| (a * a + b * b - k * k) / (2.0 * a * b);
+        let (first, last) = (cosine(near), cosine(far));
+        let c = first.abs().max(last.abs());
+        let least_area = 2.0 * (a - 0.25) * (b - 0.25);
+        let c_off = (far + 0.25 + z) / least_area;
+        let closes = c <= 1.0;
+        let sine_sq = |c: f64| (1.0 - c * c).max(0.0);
+        let turns = first > 0.0 && last < 0.0;
+        let top_sq = if turns {
+            1.0
+        } else {
+            sine_sq(first.abs().min(last.abs()))
+        };
+        let m_sq = sine_sq(c);
+        let m = m_sq.sqrt();
+        let q = if closes {
+            c_off * (2.0 * c + c_off)
+        } else {
+            2.0 * c_off
+        };
+        let root = |square: f64| square.max(0.0).sqrt().min(1.0);
+        let low = root(m_sq - q);
+        let sine_off = (m - low).max(root(m_sq + q) - m);
+        let high = root(top_sq + q);
+
+        let [left, right] = integers.couplers;
+        let lean = Lean::of(left, right, around);
+        let [left, right] = [left, right].map(f64::from);
+        let half = (left + right) / 2.0;
+        let square = 2f64.powi((half * half).log2().floor() as i32 - 14);
+        let rise = 2.0 * left / 2.0 * right / 2.0 * high / around[0].max(1.0) + lean.rise;
+        let product = (lean.rise * around[1] + rise * square / 2.0) / (left * right / 2.0);
+        let area = left * right / square;
+        let of_area = (1.0 / (area - 1.0) + Q15) * (high + product);
+        let type2 = sine_off + product + 2.0 * Q15 + of_area + Q15;
+
+        let turned = (e / near.max(e)).asin();
+        let type1 = |coupler: f64| {
+            let a = coupler / 2.0;
+            let moved = (0.5 + e) / ((a - 0.25) * low.max(1e-9)) + turned;
+            let (near, far) = (around[0].sqrt().max(1.0), far + e);
+            let part = 0.5 + 2f64.sqrt() * DIRECTION * far;
+            let opened = part * (2f64.sqrt() * 2.0 * a / near + lean.rise + lean.skew)
+                + far * lean.rise.hypot(lean.skew)
+                + 2.0;
+            moved + opened / (2.0 * a) + 1.01 * coupler / 2f64.powi(27) + Q15
+        };
+        Self {
+            type2,
+            type1_left: type1(left),
+            type1_right: type1(right),
+            along: e_x / to_u,
+            least: m,
+            known: closes && low >= KNOWN,
+        }
+    }
+
+    /// Of either type-1 margin, a sine.
+    pub fn type1(&self) -> f64 {
+        self.type1_left.max(self.type1_right)
+    }
+}
+
+/// What the length of a slider may be off by, mm: of either coordinate, the offset or
+/// the base and both arms are rounded to a step, half a step each, the sum of the
+/// products too, and the arms' directions are off by [`DIRECTION`].
+pub fn slider(side: &kinematics::Slider, integers: &Slider) -> f64 {
+    let per_mm = per_mm(integers.scale);
+    let arms = (side.front * per_mm).round() + (side.rear * per_mm).round();
+    2f64.sqrt() * (0.5 + 0.5 + 0.5 + 0.5 + DIRECTION * arms) / per_mm
+}
+
+/// Steps of a scale in a millimetre.
+fn per_mm(scale: Scale) -> f64 {
+    f64::from(1u32 << scale.bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::Sample;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+
+        /// The truth of a single pair is compared in [`crate::guard::clearance`] and
+        /// [`crate::guard::five_bar`].
+        #[test]
+        fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_it(
+            (robot, pose) in Sample::random().prop_flat_map(|robot| {
+                let pose = robot.pose();
+                (Just(robot), pose)
+            }),
+            below in 0.0..1.0f64,
+            above in 0.0..1.0f64,
+            // From a hair to more than a cell's crank tips move.
+            width in -4.0..0.7f64,
+        ) {
+            let [a1, a2, ..] = robot.degrees(&pose);
+            let bars = robot.measures.lizard.end(kinematics::End::Head);
+            let Ok(truth) = bars.forward(a1, a2) else {
+                return Ok(());
+            };
+            let (apart, width) = (truth.gap.length(), 10f64.powf(width));
+            let range = [(apart - below * width).max(0.0), apart + above * width];
+            let here = End::of(&bars, &robot.ends[0], [a1, a2]);
+            let all = End::between(&bars, &robot.ends[0], range);
+            prop_assert!(all.least <= truth.type2 + 1e-12);
+            if !all.known {
+                return Ok(());
+            }
+            prop_assert!(here.known);
+            for (what, here, all) in [
+                ("type-2", here.type2, all.type2),
+                ("type-1 left", here.type1_left, all.type1_left),
+                ("type-1 right", here.type1_right, all.type1_right),
+                ("along", here.along, all.along),
+            ] {
+                prop_assert!(here <= all + 1e-12, "{what}: {here} of {all}");
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The checks of a section behind its CRC: no number of it may harm a servo or the board.
+//!
+//! A section whose CRC is right was sealed by a host, and that host has checked every number
+//! and every sample of every gait. So the device trusts the numbers, but for those that
+//! reach the hardware: a pin that is the serial line's or the LED's, a pulse that a servo
+//! does not bear, a neutral pose in which the linkage would jam as soon as the servos wake. Any
+//! other number can make the robot walk badly, and no worse: every address of flash can be
+//! read, every index is checked where it is used, and each pulse ends at its servo's travel.
+
+use core::mem::offset_of;
+
+use lizard_avr::Region;
+
+use crate::guard::clearance::Clearance;
+use crate::numbers::calibration::Calibration;
+use crate::numbers::part::Servo;
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
+use crate::numbers::section::{self, Damage, NUMBERS, Numbers};
+use crate::numbers::units::{CYCLES_PER_US, Sweep};
+
+/// The shortest and the longest pulse of a hobby servo, cycles, with one of rounding.
+const PULSES: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
+
+/// The place of a field of the numbers, bytes from the section's beginning.
+macro_rules! place {
+    ($($field:tt)*) => {
+        NUMBERS + offset_of!(Numbers, $($field)*) as u16
+    };
+}
+
+impl<'a> Robot<'a> {
+    /// The robot whose section is at the beginning of `flash`.
+    ///
+    /// # Errors
+    /// Why there is none.
+    #[inline(never)]
+    pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
+        let length = section::find(flash)?;
+        let robot = Self::at(flash.first(length));
+        match robot.is_harmless() {
+            true => Ok(robot),
+            false => Err(Damage::Impossible),
+        }
+    }
+
+    /// True if the pins are a servo's, the pulses what a servo bears, and the neutral pose safe.
+    fn is_harmless(&self) -> bool {
+        self.has_pins() && self.has_servos() && {
+            let neutral = Pose::NEUTRAL;
+            Clearance::of(self, &neutral).hazard(self).is_none()
+        }
+    }
+
+    /// The two bytes at a place.
+    #[inline(never)]
+    fn word(&self, at: u16) -> u16 {
+        self.section().read(at)
+    }
+
+    /// Pins of the board that are free, each used once; the rail's measures a voltage.
+    #[inline(always)]
+    fn has_pins(&self) -> bool {
+        let rail = self.word(place!(rail)) as u8;
+        let is_analogue = |pin: u8| pin.wrapping_sub(14) < 6;
+        let mut first = place!(pins);
+        while first < place!(pins) + 4 {
+            let pin = self.word(first) as u8;
+            if pin == rail || !is_analogue(pin) && pin.wrapping_sub(2) > 10 {
+                return false;
+            }
+            let mut second = first + 1;
+            while second < place!(pins) + 4 {
+                if self.word(second) as u8 == pin {
+                    return false;
+                }
+                second += 1;
+            }
+            first += 1;
+        }
+        rail == 0 || is_analogue(rail)
+    }
+
+    /// Servos whose pulses stay within those that servos bear, as far as the gaits need.
+    #[inline(always)]
+    fn has_servos(&self) -> bool {
+        let mut servo = 0;
+        while servo < 4 {
+            let name = Servo::at(servo);
+            let calibration: Calibration = self.servo(name);
+            let [least, most] = PULSES;
+            let fits = |pulse: u16| pulse.wrapping_sub(least) <= most - least;
+            if !calibration.reaches(Sweep(0))
+                || !fits(calibration.pulse(calibration.min))
+                || !fits(calibration.pulse(calibration.max))
+                || !self.reach(name).is_within(&calibration)
+            {
+                return false;
+            }
+            servo += 1;
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,146 @@
+//! Sections that are whole and would harm a servo or the board: a number at a time, each
+//! beside the nearest one that does not.
+
+use std::vec::Vec;
+
+use super::*;
+use crate::numbers::calibration::Reach;
+use crate::numbers::section::seal;
+use crate::sample::Sample;
+
+/// A section of the odd robot, of which numbers are changed.
+struct Changed(Vec<u8>);
+
+impl Changed {
+    fn new() -> Self {
+        Self(Sample::odd().content.section())
+    }
+
+    fn put(mut self, at: u16, word: u16) -> Self {
+        self.0[usize::from(at)..][..2].copy_from_slice(&word.to_le_bytes());
+        self
+    }
+
+    fn put_byte(mut self, at: u16, byte: u8) -> Self {
+        self.0[usize::from(at)] = byte;
+        self
+    }
+
+    /// True if it is a robot's.
+    fn opens(&self) -> bool {
+        let mut section = self.0.clone();
+        seal(&mut section);
+        match Robot::open(Region::new(&section)) {
+            Ok(_) => true,
+            Err(damage) => {
+                assert_eq!(damage, Damage::Impossible);
+                false
+            }
+        }
+    }
+}
+
+/// True if the odd robot's section still opens with this word in that place.
+fn opens_with(at: u16, word: u16) -> bool {
+    Changed::new().put(at, word).opens()
+}
+
+#[test]
+fn a_pin_is_free_used_once_and_not_the_rails() {
+    // D0 and D1 are the serial line, D13 is the LED.
+    let is_free = |pin: u8| (2..=12).contains(&pin) || (14..=19).contains(&pin);
+    let others = |servo: u16| {
+        let pins = Sample::odd().content.pins;
+        (0..4)
+            .filter(move |other| *other != usize::from(servo))
+            .map(move |other| pins[other])
+    };
+    for rail in [0, 14, 19] {
+        for servo in 0..4 {
+            for pin in 0..=u8::MAX {
+                let changed = Changed::new().put(place!(rail), rail);
+                let opens = changed.put_byte(place!(pins) + servo, pin).opens();
+                let used = others(servo).chain([rail as u8]).any(|other| other == pin);
+                let all_free = others(servo).all(|other| u16::from(other) != rail);
+                let wanted = is_free(pin) && !used && all_free;
+                assert_eq!(opens, wanted, "A{} on {pin}, the rail on {rail}", servo + 1);
+            }
+        }
+    }
+    let pins = Sample::odd().content.pins;
+    for rail in 0..=u8::MAX {
+        let measures = (14..=19).contains(&rail) && !pins.contains(&rail);
+        assert_eq!(
+            opens_with(place!(rail), rail.into()),
+            rail == 0 || measures,
+            "{rail}"
+        );
+    }
+}
+
+#[test]
+fn a_servo_bears_the_pulses_of_its_travel_and_the_gaits_do_not_leave_it() {
+    for servo in 0..4 {
+        let opens = |change: &dyn Fn(&mut Calibration)| {
+            let mut content = Sample::odd().content.clone();
+            let calibration = &mut content.calibration[servo];
+            calibration.gain = 11_395;
+            (calibration.min, calibration.max) = (Sweep(-9_000), Sweep(9_000));
+            change(calibration);
+            Changed(content.section()).opens()
+        };
+        assert!(opens(&|_| {}));
+        for least in [7_999, 8_000] {
+            // The shortest pulse is that of the clockwise end.
+            let at_end = |calibration: &mut Calibration| {
+                let short = calibration.neutral.0 - calibration.pulse(calibration.min);
+                calibration.neutral.0 = least + short;
+            };
+            assert!(opens(&at_end), "{servo} {least}");
+        }
+        let too_short = |calibration: &mut Calibration| {
+            let short = calibration.neutral.0 - calibration.pulse(calibration.min);
+            calibration.neutral.0 = 7_998 + short;
+        };
+        assert!(!opens(&too_short), "{servo}");
+        for (most, bears) in [(40_001, true), (40_002, false)] {
+            let at_end = |calibration: &mut Calibration| {
+                let long = calibration.pulse(calibration.max) - calibration.neutral.0;
+                calibration.neutral.0 = most - long;
+            };
+            assert_eq!(opens(&at_end), bears, "{servo} {most}");
+        }
+        // The neutral angle is within the travel, even if no gait needs it.
+        for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
+            let mut content = Sample::odd().content.clone();
+            let [min, max] = travel.map(Sweep);
+            let calibration = &mut content.calibration[servo];
+            (calibration.min, calibration.max) = (min, max);
+            content.reach[servo] = Reach { min, max };
+            assert_eq!(
+                Changed(content.section()).opens(),
+                has_neutral,
+                "{travel:?}"
+            );
+        }
+        let reach = Sample::odd().content.reach[servo];
+        for (beyond, within) in [(0, true), (1, false)] {
+            assert_eq!(opens(&|servo| servo.min.0 = reach.min.0 + beyond), within);
+            assert_eq!(opens(&|servo| servo.max.0 = reach.max.0 - beyond), within);
+        }
+    }
+}
+
+#[test]
+fn the_guard_accepts_the_neutral_pose() {
+    for change in 0..3 {
+        let mut content = Sample::odd().content.clone();
+        assert!(Changed(content.section()).opens());
+        match change {
+            0 => content.limits.leg.0 = i16::MAX,
+            1 => content.limits.type1.0 = i16::MAX,
+            _ => content.limits.type2.0 = i16::MAX,
+        }
+        assert!(!Changed(content.section()).opens(), "{change}");
+    }
+}

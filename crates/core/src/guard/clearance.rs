@@ -1,0 +1,156 @@
+//! The singularity guard: how clear of every hazard a pose is.
+//!
+//! Every frame passes the guard before it reaches a servo, whether it comes from a gait,
+//! a point-to-point move or a typed pose. The guard tests the pose itself, for any pose
+//! within the servos' travel, and does not use a box. It is the same for head and tail,
+//! because in its own frame the tail is built like the head.
+//!
+//! Every condition depends on one servo or on two, so `make prove` can compare all poses
+//! with floating point, by trying every pair of angles.
+
+use lizard_avr::flash;
+
+use crate::guard::hazard::{Hazard, Margin};
+use crate::guard::trig::Direction;
+use crate::numbers::part::{End, Servo, Side};
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
+use crate::numbers::root::root;
+use crate::numbers::units::Sine;
+
+/// The ten margins in the order in which they are checked.
+const MARGINS: usize = 10;
+
+/// Where the type-1 margins begin, and those of the legs.
+const TYPE1: usize = 2;
+const LEGS: usize = 6;
+
+flash! {
+    const ORDER: [Margin; MARGINS] = [
+        Margin::Type2(End::Head),
+        Margin::Type2(End::Tail),
+        Margin::Type1(Servo::A1),
+        Margin::Type1(Servo::A2),
+        Margin::Type1(Servo::A3),
+        Margin::Type1(Servo::A4),
+        Margin::Leg(Servo::A1),
+        Margin::Leg(Servo::A2),
+        Margin::Leg(Servo::A3),
+        Margin::Leg(Servo::A4),
+    ];
+}
+
+/// The first limit that a pose breaks. A pose in certified cells needs no measuring: in
+/// them the measures below break none, which is proved when the section is made.
+#[inline(never)]
+pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
+    if robot.is_certified(pose) {
+        return None;
+    }
+    Clearance::of(robot, pose).hazard(robot)
+}
+
+/// Every margin of one pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clearance {
+    /// Type-2 of head and tail; type-1 of A1 to A4; legs of A1 to A4: sin theta_lg in
+    /// the frame of its end, which is negative beyond a change point (0, 180 deg),
+    /// where the parallelogram may have come out crossed.
+    pub margins: [Sine; MARGINS],
+    /// The sliders' squared lengths, left and right, in their steps.
+    pub sliders_sq: [u32; 2],
+}
+
+impl Clearance {
+    /// Measures a pose.
+    #[inline(never)]
+    pub fn of(robot: &Robot, pose: &Pose) -> Self {
+        let mut cranks = [Direction { sin: 0, cos: 0 }; 4];
+        let mut clearance = Self {
+            margins: [Sine(0); MARGINS],
+            sliders_sq: [0; 2],
+        };
+        #[expect(
+            clippy::needless_range_loop,
+            reason = "an iterator costs 36 bytes of flash here"
+        )]
+        for place in 0..cranks.len() {
+            let servo = Servo::at(place);
+            let mut crank = Direction::of(robot.neutral_of(servo).swept(pose.0[place]));
+            if servo.is_rear() {
+                crank.sin = -crank.sin;
+            }
+            cranks[place] = crank;
+            clearance.margins[LEGS + place] = Sine(crank.sin);
+        }
+        for end in End::ALL {
+            clearance.measure_end(robot, end, &cranks);
+        }
+        for side in Side::ALL {
+            clearance.sliders_sq[side as usize] = length_sq(robot, side, &cranks);
+        }
+        clearance
+    }
+
+    // Out of line, as the next: a loop over two would be copied out.
+    #[inline(never)]
+    fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
+        let [left, right] = end.servos();
+        let margins = robot.end(end).margins(left.of(cranks), right.of(cranks));
+        self.margins[end as usize] = margins.type2;
+        self.margins[TYPE1 + left.index()] = margins.type1_left;
+        self.margins[TYPE1 + right.index()] = margins.type1_right;
+    }
+
+    /// The smallest of the ten margins.
+    pub fn smallest(&self) -> Sine {
+        let mut least = Sine(i16::MAX);
+        for margin in &self.margins {
+            least = least.min(*margin);
+        }
+        least
+    }
+
+    /// The first limit that this pose breaks: margins, then strokes left and right.
+    #[inline(never)]
+    pub fn hazard(&self, robot: &Robot) -> Option<Hazard> {
+        let limits = robot.limits();
+        for (place, value) in self.margins.iter().enumerate() {
+            let least = match place {
+                ..TYPE1 => limits.type2,
+                TYPE1..LEGS => limits.type1,
+                _ => limits.leg,
+            };
+            if *value < least {
+                return Some(Hazard::Margin {
+                    margin: ORDER.at(place).load(),
+                    value: *value,
+                });
+            }
+        }
+        for side in Side::ALL {
+            let length_sq = self.sliders_sq[side as usize];
+            if !robot.side(side).allows(length_sq) {
+                let length = root(length_sq);
+                return Some(Hazard::Stroke { side, length });
+            }
+        }
+        None
+    }
+}
+
+/// The squared length of a side's slider.
+#[inline(never)]
+fn length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
+    let [mut front, mut rear] = side.servos().map(|servo| *servo.of(cranks));
+    let mut slider = robot.side(side);
+    if matches!(side, Side::Right) {
+        slider = slider.mirrored();
+        front = front.mirrored();
+        rear = rear.mirrored();
+    }
+    slider.length_sq(&front, &rear)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,303 @@
+//! The guard's integers against floating point, on random robots at random poses; and what
+//! a hazard is called.
+
+use std::vec::Vec;
+
+use lizard_kinematics as kinematics;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+use super::*;
+use crate::numbers::limits::Limits;
+use crate::numbers::slider::Slider;
+use crate::numbers::units::Sweep;
+use crate::sample::bounds::{self, DIRECTION, Q15};
+use crate::sample::{Measures, Sample, per_mm, sine};
+
+/// Random robots with random poses: a robot takes longer to make than to try.
+fn posed() -> impl Strategy<Value = (Sample, [Pose; 8])> {
+    Sample::random().prop_flat_map(|robot| {
+        let poses = [(); 8].map(|()| robot.pose());
+        (Just(robot), poses)
+    })
+}
+
+/// What the integers may be off by at a pose.
+struct Bounds {
+    ends: [bounds::End; 2],
+    /// Of the sliders, mm.
+    sliders: [f64; 2],
+}
+
+impl Bounds {
+    fn of(robot: &Sample, pose: &Pose) -> Self {
+        let [a1, a2, a3, a4] = robot.degrees(pose);
+        let lizard = robot.measures.lizard;
+        let end = |place: usize, end, angles| {
+            bounds::End::of(&lizard.end(end), &robot.ends[place], angles)
+        };
+        let side =
+            |place: usize, side| bounds::slider(&lizard.side(side), &robot.content.sides[place]);
+        Self {
+            ends: [
+                end(0, kinematics::End::Head, [a1, a2]),
+                // In the tail's own frame.
+                end(1, kinematics::End::Tail, [-a4, -a3]),
+            ],
+            sliders: [
+                side(0, kinematics::Side::Left),
+                side(1, kinematics::Side::Right),
+            ],
+        }
+    }
+
+    fn most(&self, of: impl Fn(&bounds::End) -> f64) -> f64 {
+        of(&self.ends[0]).max(of(&self.ends[1]))
+    }
+}
+
+/// Whether the truth is clear of all its limits by more than the errors, or
+/// beyond one of them; None in between.
+fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
+    let bounds = Bounds::of(robot, pose);
+    let Some(solution) = robot.solve(pose) else {
+        // The integers may take what all but closes for singular.
+        return (bounds.most(|end| end.type2) < robot.measures.limits.type2).then_some(false);
+    };
+    let truths = [&solution.head, &solution.tail];
+    let crossing = |(truth, bound): (&&kinematics::FiveBarPose, &bounds::End)| {
+        truth.gap.x.abs() <= bound.along
+    };
+    if truths.iter().zip(&bounds.ends).any(crossing) {
+        return None;
+    }
+    // Limits are rounded up to a step, strokes inwards.
+    let step = 1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
+    let by = |sign: f64| kinematics::Limits {
+        type2: robot.measures.limits.type2 + sign * (bounds.most(|end| end.type2) + Q15),
+        type1: robot.measures.limits.type1 + sign * (bounds.most(bounds::End::type1) + Q15),
+        leg: robot.measures.limits.leg + sign * (DIRECTION + Q15),
+        stroke_min: robot.measures.limits.stroke_min
+            + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
+        stroke_max: robot.measures.limits.stroke_max
+            - sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
+    };
+    if by(1.0).allow(&solution) {
+        Some(true)
+    } else if !by(-1.0).allow(&solution) {
+        Some(false)
+    } else {
+        None
+    }
+}
+
+/// Every margin and slider of a pose within the bounds of its error.
+fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
+    let got = Clearance::of(robot, pose);
+    let Some(truth) = robot.solve(pose) else {
+        return Ok(());
+    };
+    let bounds = Bounds::of(robot, pose);
+    for (place, (what, exact)) in truth.margins.iter().enumerate() {
+        let end = match place {
+            0 | 1 => place,
+            place => kinematics::End::of_servo((place - 2) % 4) as usize,
+        };
+        let bars = [&truth.head, &truth.tail][end];
+        let bound = &bounds.ends[end];
+        let is_leg = place >= 6;
+        if !is_leg && !bound.known {
+            continue;
+        }
+        if place < 2 && bars.gap.x.abs() <= bound.along {
+            continue;
+        }
+        let exact = if place < 2 && bars.gap.x < 0.0 {
+            -exact
+        } else {
+            exact
+        };
+        let most = match place {
+            0..2 => bound.type2,
+            2 | 5 => bound.type1_left,
+            3 | 4 => bound.type1_right,
+            _ => DIRECTION,
+        };
+        let off = sine(got.margins[place]) - exact;
+        prop_assert!(off.abs() <= most, "{what} is off by {off} of {most}");
+    }
+    for (place, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
+        let length = f64::from(got.sliders_sq[place]).sqrt();
+        let off = length / per_mm(robot.content.sides[place].scale) - exact;
+        let most = bounds.sliders[place];
+        prop_assert!(
+            off.abs() <= most,
+            "slider {place} is off by {off} of {most}"
+        );
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(5_000))]
+
+    #[test]
+    fn every_margin_and_slider_is_measured_with_its_own_bars_and_servos(
+        (robot, poses) in posed(),
+    ) {
+        for pose in &poses {
+            measured(&robot, pose)?;
+        }
+    }
+
+    #[test]
+    fn the_decision_is_that_of_floating_point(
+        (robot, poses) in posed(),
+    ) {
+        for pose in &poses {
+            if let Some(safe) = truth(&robot, pose) {
+                let hazard = Clearance::of(&robot, pose).hazard(&robot);
+                prop_assert_eq!(hazard.is_none(), safe, "{:?}", hazard);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
+    let mut runner = TestRunner::deterministic();
+    let mut decided = 0;
+    for _ in 0..250 {
+        let (robot, poses) = posed().new_tree(&mut runner).expect("a pose").current();
+        let known = poses.iter().filter(|pose| truth(&robot, pose).is_some());
+        decided += known.count();
+        let standing = Bounds::of(&robot, &Pose::NEUTRAL);
+        let (type2, type1) = (
+            standing.most(|end| end.type2),
+            standing.most(bounds::End::type1),
+        );
+        assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
+        assert!(
+            standing.sliders.iter().all(|mm| *mm < 0.05),
+            "{:?}",
+            standing.sliders
+        );
+    }
+    assert!(decided > 1900, "{decided} of 2000");
+}
+
+/// Floating point calls it safe, the integers do not: a stroke that ends where the
+/// slider stands is rounded inwards.
+#[test]
+fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
+    let mut measures = Measures::paper();
+    let standing = Sample::new(measures);
+    assert!(standing.stands_safely());
+    let truth = standing.solve(&Pose::NEUTRAL).expect("it stands");
+    measures.limits.stroke_max = truth.left.s.max(truth.right.s) + 1e-9;
+    assert!(measures.limits.allow(&truth));
+    assert!(!Sample::new(measures).stands_safely());
+}
+
+/// A robot and a clearance that has something to spare at every place.
+fn clear() -> (Sample, Clearance) {
+    let robot = Sample::odd();
+    let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
+    assert_eq!(clearance.hazard(&robot), None);
+    (robot, clearance)
+}
+
+/// The ten margins by name and limit, in the order in which they are checked.
+fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
+    use Servo::{A1, A2, A3, A4};
+    [
+        (Margin::Type2(End::Head), limits.type2),
+        (Margin::Type2(End::Tail), limits.type2),
+        (Margin::Type1(A1), limits.type1),
+        (Margin::Type1(A2), limits.type1),
+        (Margin::Type1(A3), limits.type1),
+        (Margin::Type1(A4), limits.type1),
+        (Margin::Leg(A1), limits.leg),
+        (Margin::Leg(A2), limits.leg),
+        (Margin::Leg(A3), limits.leg),
+        (Margin::Leg(A4), limits.leg),
+    ]
+}
+
+#[test]
+fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
+    let (robot, clear) = clear();
+    for (place, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
+        let mut at = clear;
+        at.margins[place] = limit;
+        assert_eq!(at.hazard(&robot), None, "{margin:?}");
+        let value = Sine(limit.0 - 1);
+        at.margins[place] = value;
+        assert_eq!(at.hazard(&robot), Some(Hazard::Margin { margin, value }));
+    }
+}
+
+#[test]
+fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
+    let (robot, clear) = clear();
+    for (place, side) in Side::ALL.into_iter().enumerate() {
+        let Slider { min, max, .. } = robot.content.sides[place];
+        for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
+            let mut at = clear;
+            at.sliders_sq[place] = u32::from(length) * u32::from(length);
+            let expected = (!allowed).then_some(Hazard::Stroke { side, length });
+            assert_eq!(at.hazard(&robot), expected);
+        }
+    }
+}
+
+#[test]
+fn of_several_hazards_the_first_is_told_margins_before_strokes() {
+    let (robot, mut clearance) = clear();
+    let mut expected: Vec<Hazard> = Vec::new();
+    for (place, side) in Side::ALL.into_iter().enumerate().rev() {
+        clearance.sliders_sq[place] = 100;
+        expected.push(Hazard::Stroke { side, length: 10 });
+        assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
+    }
+    for (place, (margin, _)) in margins(&robot.limits()).into_iter().enumerate().rev() {
+        let value = Sine(-1);
+        clearance.margins[place] = value;
+        expected.push(Hazard::Margin { margin, value });
+        assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
+    }
+}
+
+#[test]
+fn the_smallest_margin_is_found_at_every_place() {
+    let (_, clear) = clear();
+    for place in 0..10 {
+        let mut clearance = clear;
+        clearance.margins[place] = Sine(-20_000 + place as i16);
+        assert_eq!(clearance.smallest(), Sine(-20_000 + place as i16));
+    }
+}
+
+#[test]
+fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
+    let robot = Sample::odd();
+    for servo in 0..4 {
+        // Beyond the x axis of the chassis: where the end's own y is negative.
+        let neutral = f64::from(robot.neutral()[servo].0) * 360.0 / 65536.0;
+        let axis = if (90.0..270.0).contains(&neutral) {
+            180.0
+        } else {
+            360.0
+        };
+        let axis = if neutral < 90.0 { 0.0 } else { axis };
+        for (aside, positive) in [(-2.0f64, false), (2.0, true)] {
+            let towards = (neutral - axis).signum();
+            let turned = axis + aside * towards - neutral;
+            let mut pose = Pose::NEUTRAL;
+            pose.0[servo] = Sweep((turned * 65536.0 / 360.0) as i16);
+            let margin = Clearance::of(&robot, &pose).margins[6 + servo];
+            assert_eq!(margin > Sine(0), positive, "A{} {margin:?}", servo + 1);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The five-bar in integers against the closed form in floating point.
+
+use lizard_kinematics as kinematics;
+use proptest::prelude::*;
+
+use super::*;
+use crate::numbers::units::Angle;
+use crate::sample::{Loop, bounds, degrees, sine};
+
+/// Any bars, mm, whose couplers are long enough for the others.
+fn bars() -> impl Strategy<Value = kinematics::FiveBar> {
+    let crank = || 1.0..100.0f64;
+    let coupler = || 5.0..120.0f64;
+    let unequal = (0.0..100.0f64, crank(), coupler(), coupler(), crank()).prop_map(
+        |(base, crank_left, coupler_left, coupler_right, crank_right)| kinematics::FiveBar {
+            base,
+            crank_left,
+            coupler_left,
+            coupler_right,
+            crank_right,
+        },
+    );
+    (unequal, 0u8..3)
+        .prop_map(|(bars, alike)| {
+            let coupler_right = match alike {
+                0 => bars.coupler_left,
+                1 => bars.coupler_left + bars.base / 500.0,
+                _ => bars.coupler_right,
+            };
+            kinematics::FiveBar {
+                coupler_right,
+                ..bars
+            }
+        })
+        .prop_filter("long couplers", |bars| Loop::new(bars).is_some())
+}
+
+fn margins(bars: &Loop, left: Angle, right: Angle) -> EndMargins {
+    let [left, right] = [left, right].map(Direction::of);
+    bars.five_bar().margins(&left, &right)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    #[test]
+    fn the_margins_are_those_of_the_real_linkage_whatever_its_bars(
+        bars in bars(),
+        left: u16,
+        right: u16,
+    ) {
+        let [left, right] = [left, right].map(Angle);
+        let integers = Loop::new(&bars).expect("fits");
+        let got = margins(&integers, left, right);
+        let angles = [left, right].map(degrees);
+        let bound = bounds::End::of(&bars, &integers, angles);
+        let Ok(pose) = bars.forward(angles[0], angles[1]) else {
+            // Couplers that almost meet may do so in whole steps.
+            prop_assert!(sine(got.type2).abs() <= bound.type2, "{got:?}");
+            return Ok(());
+        };
+        let off = sine(got.type2).abs() - pose.type2;
+        prop_assert!(off <= bound.type2, "type-2 off by {off}: {bound:?}");
+        if got == EndMargins::default() {
+            // What a refusal says then.
+            prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
+        }
+        if !bound.known {
+            // It may be told as less, or as nothing.
+            return Ok(());
+        }
+        prop_assert_ne!(got, EndMargins::default());
+        prop_assert!(-off <= bound.type2, "type-2 off by {off}: {bound:?}");
+        if pose.gap.x.abs() > bound.along && pose.type2 > bound.type2 {
+            prop_assert_eq!(got.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", got, pose);
+        }
+        for (what, got, exact, bound) in [
+            ("left", got.type1_left, pose.type1_left(), bound.type1_left),
+            ("right", got.type1_right, pose.type1_right(), bound.type1_right),
+        ] {
+            let off = sine(got) - exact;
+            prop_assert!(off.abs() <= bound, "type-1, {what}, off by {off} of {bound}");
+        }
+    }
+}
+
+/// Bars of short couplers with a small type-2 margin, where a step turns them most:
+/// found among random bars, where a bound that was only tried did not hold.
+#[test]
+fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
+    for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, found) in [
+        (
+            [
+                85.13013589423028,
+                55.8942949166095,
+                59.23188086336843,
+                32.53652686467961,
+                49.608614531886445,
+            ],
+            [33_517, 32_153],
+            0.009,
+        ),
+        (
+            [
+                67.09941045998794,
+                22.824664415709368,
+                20.674382303104537,
+                20.674382303104537,
+                7.276714999964176,
+            ],
+            [64_009, 22_963],
+            0.0089,
+        ),
+    ] {
+        let bars = kinematics::FiveBar {
+            base,
+            crank_left,
+            coupler_left,
+            coupler_right,
+            crank_right,
+        };
+        let integers = Loop::new(&bars).expect("fits");
+        let angles = angles.map(Angle);
+        let got = margins(&integers, angles[0], angles[1]);
+        let angles = angles.map(degrees);
+        let bound = bounds::End::of(&bars, &integers, angles);
+        let pose = bars.forward(angles[0], angles[1]).expect("closes");
+        let off = (sine(got.type2).abs() - pose.type2).abs();
+        // The case is still the one that was found.
+        assert!(off > found && pose.type2 > 0.1, "{off}");
+        assert!(
+            off <= bound.type2 && bound.type2 < 2.5 * off,
+            "{off}: {bound:?}"
+        );
+    }
+}
+
+#[test]
+fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
+    // Close crank tips and long couplers: a small square of a great step.
+    let bars = kinematics::FiveBar {
+        base: 20.0,
+        crank_left: 30.0,
+        coupler_left: 126.0,
+        coupler_right: 126.0,
+        crank_right: 30.0,
+    };
+    let integers = Loop::new(&bars).expect("fits");
+    let (mut sum, mut count) = (0.0, 0.0);
+    for left in (13_000..18_000).step_by(7) {
+        let [left, right] = [Angle(left), Angle(0x8000 - left)];
+        let pose = bars.forward(degrees(left), degrees(right)).expect("closes");
+        let got = sine(margins(&integers, left, right).type2);
+        if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
+            sum += got - pose.type2;
+            count += 1.0;
+        }
+    }
+    assert!(count > 100.0);
+    assert!(f64::abs(sum / count) < 3e-4, "{}", sum / count);
+}
+
+#[test]
+fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
+    let bars = kinematics::FiveBar {
+        base: 20.0,
+        crank_left: 30.0,
+        coupler_left: 40.0,
+        coupler_right: 35.0,
+        crank_right: 30.0,
+    };
+    let bars = Loop::new(&bars).expect("fits");
+    let at = |left, right| {
+        let [left, right] = [left, right].map(Angle::from_centideg);
+        margins(&bars, left, right)
+    };
+    // Both cranks outwards: 80 mm apart, more than the couplers reach.
+    assert_eq!(at(18_000, 0), EndMargins::default());
+    // Leaning over each other: the couplers close the loop upside down.
+    assert!(at(6_000, 12_000).type2 < Sine(0));
+}

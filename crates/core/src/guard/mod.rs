@@ -1,0 +1,13 @@
+//! The guard: the geometry that tells safe poses from those that could break a linkage.
+//!
+//! [`clearance`] measures a pose: the singularity margins of each [five-bar](five_bar), the
+//! strokes of the [sliders](slider). [`hazard`] names the first limit that a pose breaks.
+
+#[cfg(any(test, feature = "host"))]
+pub mod bounds;
+mod check;
+pub mod clearance;
+pub mod five_bar;
+pub mod hazard;
+pub mod slider;
+pub mod trig;

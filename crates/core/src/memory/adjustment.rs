@@ -1,0 +1,248 @@
+//! What a person may set of a servo while the robot runs.
+//!
+//! A horn goes on its spline every 14 degrees, servos of one type differ in their gain,
+//! and some are mounted upside down. So a person finds the four numbers here by looking
+//! at the robot, and the robot keeps them in its EEPROM.
+
+use lizard_avr::mul_unsigned;
+
+use crate::numbers::calibration::Calibration;
+use crate::numbers::root::quotient;
+use crate::numbers::units::{ONE_Q14, Sweep, Width};
+
+/// The numbers of one servo that a person may set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Adjustment {
+    /// By how much the horn sits clockwise of where it should, so by how much
+    /// the servo has to turn counter-clockwise to stand at its neutral angle.
+    pub trim: Sweep,
+    /// As [`Calibration::gain`].
+    pub gain: i16,
+    /// The travel's clockwise end.
+    pub min: Sweep,
+    /// The travel's counter-clockwise end.
+    pub max: Sweep,
+}
+
+impl Adjustment {
+    /// The servo as robot.toml has it.
+    pub const fn of(factory: &Calibration) -> Self {
+        Self {
+            trim: Sweep(0),
+            gain: factory.gain,
+            min: factory.min,
+            max: factory.max,
+        }
+    }
+
+    /// The servo of robot.toml, `factory`, with this adjustment. Its travel ends
+    /// where the pulses would leave those that `factory` allows.
+    pub fn apply(&self, factory: &Calibration) -> Calibration {
+        let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
+        let pulses = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let mut servo = Calibration {
+            neutral: factory.neutral,
+            gain: self.gain,
+            // Without even the neutral angle the travel is empty.
+            min: Sweep(1),
+            max: Sweep(-1),
+        };
+        let neutral = servo.pulse(self.trim);
+        servo.neutral = Width(neutral);
+        if pulses[0] <= neutral && neutral <= pulses[1] {
+            servo.min = farthest(&servo, self.min, pulses);
+            servo.max = farthest(&servo, self.max, pulses);
+        }
+        servo
+    }
+
+    /// The scale, in hundredths of a microsecond per degree.
+    pub fn scale(&self) -> u16 {
+        ((mul_unsigned(self.gain.unsigned_abs(), 4551) + 0x8000) >> 16) as u16
+    }
+
+    /// Sets the scale, in hundredths of a microsecond per degree, at most 2000. The
+    /// sense of turning stays.
+    pub fn set_scale(&mut self, scale: u16) {
+        // 16 cycles * 360 deg / 65536 * 2^14 / 100 is 14.4.
+        let gain = ((mul_unsigned(scale, 58_982) + 0x800) >> 12) as i16;
+        self.gain = if self.gain < 0 {
+            gain.wrapping_neg()
+        } else {
+            gain
+        };
+    }
+
+    /// Whether a longer pulse turns the servo counter-clockwise.
+    pub const fn is_direct(&self) -> bool {
+        self.gain > 0
+    }
+
+    /// Sets the sense of turning.
+    pub fn set_direct(&mut self, direct: bool) {
+        if self.is_direct() != direct {
+            self.gain = self.gain.wrapping_neg();
+        }
+    }
+}
+
+/// The end of a travel towards `end`: that sweep, or the last one before it whose
+/// pulse is within two, which those at the neutral angle are.
+#[inline(never)]
+fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
+    let neutral = servo.neutral.0;
+    // A pulse is the neutral one and n times the gain, to the nearest cycle; this many
+    // times the gain is still within.
+    let most = if (servo.gain < 0) == (end.0 < 0) {
+        mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
+    } else {
+        mul_unsigned(neutral - shortest, ONE_Q14 as u16) + HALF_Q14
+    };
+    let steps = quotient(most, servo.gain.unsigned_abs());
+    let within = end.0.unsigned_abs().min(steps) as i16;
+    Sweep(if end.0 < 0 {
+        within.wrapping_neg()
+    } else {
+        within
+    })
+}
+
+/// Half of 1.0 in Q14.
+const HALF_Q14: u32 = (ONE_Q14 / 2) as u32;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{STEPS_PER_DEGREE, Sample};
+
+    /// Any adjustment that the console takes.
+    fn adjusted() -> impl Strategy<Value = Adjustment> {
+        let sweep = -3641i16..=3641;
+        (
+            sweep,
+            500u16..=2000,
+            any::<bool>(),
+            -30_000i16..0,
+            0i16..30_000,
+        )
+            .prop_map(|(trim, scale, direct, min, max)| {
+                let mut set = Adjustment {
+                    trim: Sweep(trim),
+                    gain: 1,
+                    min: Sweep(min),
+                    max: Sweep(max),
+                };
+                set.set_scale(scale);
+                set.set_direct(direct);
+                set
+            })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(500))]
+
+        #[test]
+        fn an_untouched_servo_is_that_of_robot_toml(robot in Sample::random()) {
+            for servo in &robot.calibration() {
+                prop_assert_eq!(&Adjustment::of(servo).apply(servo), servo);
+            }
+        }
+
+        #[test]
+        fn no_sweep_within_the_travel_leaves_the_pulses_of_robot_toml(
+            robot in Sample::random(),
+            set in adjusted(),
+        ) {
+            for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
+                let servo = set.apply(factory);
+                for sweep in servo.min.0..=servo.max.0 {
+                    let us = f64::from(servo.width(Sweep(sweep)).0) / 16.0;
+                    // Two cycles of rounding: the ends of the travel, and this width.
+                    let slack = 2.0 / 16.0;
+                    prop_assert!(us >= float.min_us - slack && us <= float.max_us + slack);
+                }
+            }
+        }
+
+        #[test]
+        fn a_travel_ends_at_its_limit_or_where_the_next_step_would_leave_the_pulses(
+            robot in Sample::random(),
+            set in adjusted(),
+        ) {
+            for factory in &robot.calibration() {
+                let servo = set.apply(factory);
+                let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
+                let pulses = ends[0].min(ends[1])..=ends[0].max(ends[1]);
+                if !pulses.contains(&servo.pulse(Sweep(0))) {
+                    prop_assert!(servo.min > Sweep(0) && servo.max < Sweep(0), "empty");
+                    continue;
+                }
+                prop_assert!(set.min <= servo.min && servo.max <= set.max);
+                if servo.max < set.max {
+                    prop_assert!(!pulses.contains(&servo.pulse(Sweep(servo.max.0 + 1))));
+                }
+                if servo.min > set.min {
+                    prop_assert!(!pulses.contains(&servo.pulse(Sweep(servo.min.0 - 1))));
+                }
+            }
+        }
+
+        #[test]
+        fn a_servo_turns_by_its_trim_and_its_scale(
+            robot in Sample::random(),
+            set in adjusted(),
+            scale in 500u16..=2000,
+            sweep in -8000i16..8000,
+        ) {
+            let mut set = set;
+            set.set_scale(scale);
+            for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
+                let servo = set.apply(factory);
+                let turned = (f64::from(set.trim.0) + f64::from(sweep)) / STEPS_PER_DEGREE;
+                let sense = if set.is_direct() { 1.0 } else { -1.0 };
+                let us = float.neutral_us + sense * f64::from(scale) / 100.0 * turned;
+                let off = f64::from(servo.pulse(Sweep(sweep))) - 16.0 * us;
+                // Half a cycle each of the neutral width, the trim, the sweep; and the
+                // gain's rounding over a sixth of a turn.
+                prop_assert!(off.abs() <= 2.5, "{off}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_trim_of_one_degree_at_ten_microseconds_is_160_cycles() {
+        let mut set = Adjustment::default();
+        set.set_scale(1000);
+        set.trim = Sweep(182);
+        let factory = Calibration {
+            neutral: Width(24_000),
+            gain: set.gain,
+            min: Sweep(-16_384),
+            max: Sweep(16_384),
+        };
+        assert_eq!(set.apply(&factory).neutral, Width(24_160));
+    }
+
+    #[test]
+    fn every_scale_comes_back_as_it_was_set_and_keeps_the_sense() {
+        for gain in [1, -1] {
+            for scale in 500..=2000 {
+                let mut set = Adjustment {
+                    gain,
+                    ..Adjustment::default()
+                };
+                set.set_scale(scale);
+                assert_eq!(set.scale(), scale);
+                assert_eq!(set.gain > 0, gain > 0);
+                let exact = f64::from(scale) / 100.0 * 16.0 * 360.0 / 65536.0 * 16384.0;
+                assert!((f64::from(set.gain.abs()) - exact).abs() < 0.71, "{scale}");
+                set.set_direct(false);
+                assert!(set.gain < 0);
+                set.set_direct(true);
+                assert!(set.gain > 0 && set.is_direct());
+            }
+        }
+    }
+}

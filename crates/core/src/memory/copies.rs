@@ -1,0 +1,140 @@
+//! What the robot keeps in its EEPROM: two copies of the settings, and where it
+//! rested last.
+//!
+//! The two copies are written alternately, so that one is complete while the other is
+//! being written; the newer one counts. A copy that is not completely
+//! right is not used. If neither is, robot.toml's numbers are.
+//!
+//! | address | what |
+//! |---|---|
+//! | 0 | settings, first copy |
+//! | 64 | settings, second copy |
+//! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
+
+use crate::memory::record::{Address, CONTENT, Found, Memory, Writing};
+use crate::memory::settings::{Settings, TURN};
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
+
+/// The two copies of the settings.
+pub const COPIES: [Address; 2] = [copy(0), copy(1)];
+
+/// The first copy for an even number, the second for an odd one.
+const fn copy(number: usize) -> Address {
+    Address((number as u16 & 1) * 64)
+}
+
+/// The pose.
+pub const RESTED: Address = Address(128);
+
+/// What was found in the memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The settings saved last.
+    Latest,
+    /// Nothing: nothing was ever saved.
+    Blank,
+    /// Settings, but the other copy is damaged; it may have been the later one.
+    Other,
+    /// Nothing that is whole.
+    Damaged,
+    /// Settings for other servos, or of another firmware.
+    Foreign,
+    /// Settings with which some gait would leave a servo's travel.
+    Unfit,
+}
+
+/// What the memory holds of settings.
+struct Copies {
+    /// What was found of each.
+    found: [Found; 2],
+    /// The number of the one that was saved last, if any is whole.
+    latest: usize,
+}
+
+impl Copies {
+    #[inline(never)]
+    fn check<M: Memory>(memory: &M) -> Self {
+        let found = [copy(0).check(memory), copy(1).check(memory)];
+        let turn = |copy: usize| self::copy(copy).byte(memory, TURN as u16);
+        let latest = match found {
+            [Found::Whole, Found::Whole] => usize::from(turn(1).wrapping_sub(turn(0)) < 0x80),
+            [Found::Whole, _] => 0,
+            _ => 1,
+        };
+        Self { found, latest }
+    }
+
+    fn none_is_whole(&self) -> bool {
+        self.found[self.latest & 1] != Found::Whole
+    }
+
+    fn address(&self) -> Address {
+        copy(self.latest)
+    }
+}
+
+/// Reads the settings saved last into `settings`, where they are for this robot.
+#[inline(never)]
+pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
+    let copies = Copies::check(memory);
+    if copies.none_is_whole() {
+        return match copies.found {
+            [Found::Blank, Found::Blank] => Outcome::Blank,
+            _ => Outcome::Damaged,
+        };
+    }
+    copies.address().fetch(memory, settings.bytes_mut());
+    if !settings.are_for(robot) {
+        Outcome::Foreign
+    } else if copies.found.contains(&Found::Damaged) {
+        Outcome::Other
+    } else {
+        Outcome::Latest
+    }
+}
+
+/// Reads the settings to use into `settings`: those saved last, if the gaits can be
+/// walked with them. If not, robot.toml's.
+#[inline(never)]
+pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
+    let mut outcome = read(robot, memory, settings);
+    if matches!(outcome, Outcome::Latest | Outcome::Other) {
+        if settings.unfit(robot).is_none() {
+            return outcome;
+        }
+        outcome = Outcome::Unfit;
+    }
+    *settings = Settings::of(robot);
+    outcome
+}
+
+/// Begins to save settings over the older copy, and gives them their turn. None where
+/// they are what the latest copy holds.
+pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
+    let copies = Copies::check(memory);
+    if copies.none_is_whole() {
+        settings.set_turn(1);
+        return Some(copy(0).write());
+    }
+    let latest = copies.address();
+    let turn = latest.byte(memory, TURN as u16);
+    settings.set_turn(turn);
+    let kept = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;
+    if settings.bytes().iter().enumerate().all(kept) {
+        return None;
+    }
+    settings.set_turn(turn.wrapping_add(1));
+    Some(copy(copies.latest ^ 1).write())
+}
+
+/// Where the robot rested last, if it has not moved since.
+pub fn rested<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
+    let mut bytes = [0; CONTENT];
+    RESTED.fetch(memory, &mut bytes);
+    let kept = Settings::from_bytes(bytes);
+    (RESTED.check(memory) == Found::Whole && kept.are_for(robot)).then(|| kept.pose())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,300 @@
+//! Saved settings, cut off, torn and flipped.
+
+use std::vec::Vec;
+
+use super::*;
+use crate::memory::record::{ERASED, LENGTH, Progress};
+use crate::memory::settings::Boot;
+use crate::numbers::gaits::GaitId;
+use crate::numbers::part::Servo;
+use crate::numbers::units::Sweep;
+use crate::sample::Sample;
+use crate::virtual_board::Eeprom;
+
+fn robot() -> Sample {
+    Sample::odd()
+}
+
+/// Settings that differ in everything, the `n`-th of them.
+fn settings(robot: &Sample, n: i16) -> Settings {
+    let mut settings = Settings::of(robot);
+    for servo in Servo::ALL {
+        let mut set = settings.servo(servo);
+        set.trim = Sweep(37 * n - 5 * servo as i16);
+        set.min.0 += n;
+        set.max.0 -= 2 * n;
+        settings.set_servo(servo, set);
+    }
+    settings.set_deadman(1000 + n as u16);
+    settings.set_boot(Boot::Gait(robot.id("sway left")), robot);
+    assert_eq!(settings.unfit(robot), None);
+    settings
+}
+
+/// Saves, as the console does.
+fn save_all(settings: &Settings, chip: &mut Eeprom) -> Settings {
+    let mut kept = *settings;
+    if let Some(mut writing) = save(&mut kept, chip) {
+        loop {
+            match writing.step(kept.bytes(), chip) {
+                Progress::Going => {}
+                Progress::Done => break,
+                Progress::Failed => panic!("worn"),
+            }
+        }
+    }
+    kept
+}
+
+fn loaded(robot: &Sample, chip: &Eeprom) -> (Settings, Outcome) {
+    let mut settings = Settings::of(robot);
+    let outcome = load(robot, chip, &mut settings);
+    (settings, outcome)
+}
+
+/// All that settings say but for their turn.
+fn said(settings: &Settings) -> Settings {
+    let mut said = *settings;
+    said.set_turn(0);
+    said
+}
+
+#[test]
+fn what_is_saved_is_loaded_again_the_last_one_of_a_thousand() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    assert_eq!(
+        loaded(&robot, &chip),
+        (Settings::of(&robot), Outcome::Blank)
+    );
+    for n in 0..1000 {
+        let new = settings(&robot, n % 70);
+        let kept = save_all(&new, &mut chip);
+        assert_eq!(said(&kept), said(&new));
+        assert_eq!(loaded(&robot, &chip), (kept, Outcome::Latest), "{n}");
+    }
+}
+
+#[test]
+fn what_is_there_already_is_not_written_again() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    save_all(&settings(&robot, 3), &mut chip);
+    chip.log.clear();
+    save_all(&settings(&robot, 3), &mut chip);
+    assert!(chip.log.is_empty());
+    // And only bytes that differ from the copy before the last one.
+    save_all(&settings(&robot, 4), &mut chip);
+    chip.log.clear();
+    save_all(&settings(&robot, 5), &mut chip);
+    assert!(chip.log.len() < usize::from(LENGTH));
+    assert!(chip.log.iter().all(|(_, old, new)| old != new));
+}
+
+/// What a byte may hold when power fails while it is written: the erase has raised
+/// some of its bits, or the write lowered some of the erased ones.
+fn torn(old: u8, new: u8) -> impl Iterator<Item = u8> {
+    (0..=255u8).flat_map(move |ones| [old | ones, new | ones])
+}
+
+#[test]
+fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new_whole() {
+    let robot = robot();
+    for saved_before in 0..4 {
+        let mut chip = Eeprom::blank();
+        let mut old = (Settings::of(&robot), Outcome::Blank);
+        for n in 0..saved_before {
+            save_all(&settings(&robot, 10 + n), &mut chip);
+            old = loaded(&robot, &chip);
+        }
+        let before = *chip.bytes();
+        chip.log.clear();
+        let new = save_all(&settings(&robot, 60), &mut chip);
+        assert!(chip.log.len() > 10);
+        let mut olds = 0;
+        for (count, (address, from, to)) in chip.log.iter().enumerate() {
+            let mut bytes = before;
+            for (address, _, byte) in &chip.log[..count] {
+                bytes[usize::from(*address)] = *byte;
+            }
+            for byte in torn(*from, *to) {
+                bytes[usize::from(*address)] = byte;
+                let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
+                if settings == old.0 {
+                    olds += 1;
+                } else {
+                    assert_eq!(settings, new, "cut in write {count}: {outcome:?}");
+                }
+            }
+        }
+        assert!(olds > 4000);
+    }
+}
+
+#[test]
+fn a_save_after_a_power_cut_is_whole_whatever_the_cut_has_left() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    save_all(&settings(&robot, 1), &mut chip);
+    save_all(&settings(&robot, 2), &mut chip);
+    let before = *chip.bytes();
+    chip.log.clear();
+    save_all(&settings(&robot, 3), &mut chip);
+    for count in 0..chip.log.len() {
+        let mut cut = Eeprom::with(before);
+        for (address, _, byte) in &chip.log[..count] {
+            cut.bytes_mut()[usize::from(*address)] = *byte;
+        }
+        let new = save_all(&settings(&robot, 4), &mut cut);
+        assert_eq!(loaded(&robot, &cut).0, new);
+    }
+}
+
+#[test]
+fn any_bit_flipped_leaves_the_last_settings_the_ones_before_or_robot_tomls() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    let before = save_all(&settings(&robot, 1), &mut chip);
+    let last = save_all(&settings(&robot, 2), &mut chip);
+    let (mut lasts, mut befores) = (0, 0);
+    for bit in 0..8 * 1024 {
+        let mut bytes = *chip.bytes();
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
+        if settings == last {
+            lasts += 1;
+        } else {
+            assert_eq!((settings, outcome), (before, Outcome::Other), "bit {bit}");
+            befores += 1;
+        }
+    }
+    // The bits of the last copy, and all others.
+    assert_eq!((befores, lasts), (45 * 8, 8 * (1024 - 45)));
+}
+
+#[test]
+fn any_bit_flipped_of_the_only_copy_leaves_it_or_robot_tomls() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    let only = save_all(&settings(&robot, 1), &mut chip);
+    for bit in 0..8 * 1024 {
+        let mut bytes = *chip.bytes();
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        let found = loaded(&robot, &Eeprom::with(bytes));
+        let own = bit / 8 < 45;
+        let other = (64..109).contains(&(bit / 8));
+        let expected = match (own, other) {
+            (true, _) => (Settings::of(&robot), Outcome::Damaged),
+            (_, true) => (only, Outcome::Other),
+            _ => (only, Outcome::Latest),
+        };
+        assert_eq!(found, expected, "bit {bit}");
+    }
+}
+
+#[test]
+fn settings_for_other_servos_or_of_another_format_are_not_used() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    save_all(&settings(&robot, 1), &mut chip);
+    let other = robot
+        .clone()
+        .with(|content| content.servo_hash ^= 0x0001_0000);
+    let found = loaded(&other, &chip);
+    assert_eq!(found, (Settings::of(&other), Outcome::Foreign));
+    let mut format = *settings(&robot, 1).bytes();
+    format[0] = 2;
+    save_all(&Settings::from_bytes(format), &mut chip);
+    assert_eq!(loaded(&robot, &chip).1, Outcome::Foreign);
+    // What is saved then counts.
+    let own = save_all(&settings(&other, 5), &mut chip);
+    let (now, _) = loaded(&other, &chip);
+    assert_eq!(now, own);
+}
+
+#[test]
+fn every_bit_of_the_servos_hash_tells_other_servos() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    save_all(&settings(&robot, 1), &mut chip);
+    for bit in 0..32 {
+        let other = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
+        assert_eq!(loaded(&other, &chip).1, Outcome::Foreign, "bit {bit}");
+    }
+    assert_eq!(loaded(&robot, &chip).1, Outcome::Latest);
+}
+
+#[test]
+fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    let mut narrow = settings(&robot, 1);
+    let mut set = narrow.servo(Servo::A3);
+    set.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
+    narrow.set_servo(Servo::A3, set);
+    save_all(&narrow, &mut chip);
+    let found = loaded(&robot, &chip);
+    assert_eq!(found, (Settings::of(&robot), Outcome::Unfit));
+}
+
+#[test]
+fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    let kept = save_all(&settings(&robot, 1), &mut chip);
+    assert_eq!(kept.boot(&robot), Boot::Gait(robot.id("sway left")));
+    let fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
+    assert_eq!(kept.boot(&fewer), Boot::Gait(fewer.id("sway left")));
+    let fewer = fewer.with(|content| _ = content.gaits.remove(1));
+    assert_eq!(kept.boot(&fewer), Boot::Gait(GaitId::STAND));
+    let mut rests = kept;
+    rests.set_boot(Boot::Rest, &robot);
+    assert_eq!(rests.boot(&robot), Boot::Rest);
+}
+
+#[test]
+fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
+    let robot = robot();
+    let mut chip = Eeprom::blank();
+    assert_eq!(rested(&robot, &chip), None);
+    for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
+        let there = Pose(sweeps.map(Sweep));
+        let kept = Settings::of_pose(&there, &robot);
+        let mut writing = RESTED.write();
+        while writing.step(kept.bytes(), &mut chip) == Progress::Going {}
+        assert_eq!(rested(&robot, &chip), Some(there));
+        let other = robot.clone().with(|content| content.servo_hash = 7);
+        assert_eq!(rested(&other, &chip), None);
+    }
+    let mut writing = RESTED.forget();
+    while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
+    assert_eq!(rested(&robot, &chip), None);
+    let outside = |at: &u16| !(128..128 + LENGTH).contains(at);
+    let touched: Vec<u16> = chip
+        .log
+        .iter()
+        .map(|(at, ..)| *at)
+        .filter(outside)
+        .collect();
+    assert!(touched.is_empty());
+    assert_eq!(chip.bytes()[128], ERASED);
+}
+
+#[test]
+fn random_bytes_in_the_memory_are_no_settings() {
+    let robot = robot();
+    let mut state = 1u32;
+    for _ in 0..2000 {
+        let bytes: [u8; 1024] = core::array::from_fn(|at| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            // With the marks in place, so that the CRC alone is left to tell.
+            if at % 64 == 0 {
+                0xa5
+            } else {
+                (state >> 24) as u8
+            }
+        });
+        let found = loaded(&robot, &Eeprom::with(bytes));
+        assert_eq!(found, (Settings::of(&robot), Outcome::Damaged));
+    }
+}

@@ -1,0 +1,201 @@
+//! What a reset of the processor leaves: a few bytes of RAM that the start of the program
+//! does not clear.
+//!
+//! RAM keeps its contents as long as there is power. The boot loader of the UNO clears
+//! the register that says why the chip was reset, and does not pass its value on. So
+//! these bytes tell the next program, by a mark and checksums, that power was not lost,
+//! whether the program hung, and what the servos were doing. Of random bytes one in 32
+//! 768 passes for a mark, and of these one in 256 for a stance.
+//!
+//! A reset may come between any two stores, and nothing is lost. There are two copies of
+//! the stance, which are written alternately. One byte says which of them is complete,
+//! and it is stored last.
+//!
+//! | cell | what |
+//! |---|---|
+//! | 0 | a mark: power was not lost |
+//! | 1 | the program runs, or hung |
+//! | 2 | restarts since power came on |
+//! | 3 | the copy that is whole, in the last bit |
+//! | 4 | first copy: state, brown-outs in a row, pose (8), pulses (8), check |
+//! | 23 | second copy |
+
+use crate::memory::restart::{Cause, Restart, Stance};
+
+/// How many cells there are.
+pub const CELLS: usize = COPIES + 2 * COPY;
+
+/// Bytes that a reset leaves alone. At first each may hold anything.
+pub trait Cells {
+    /// The byte in a cell below [`CELLS`].
+    fn get(&self, at: usize) -> u8;
+
+    /// Stores a byte, in one instruction and in the order of the calls.
+    fn set(&self, at: usize, byte: u8);
+}
+
+/// What the chip itself knows of the reset. None of these where a boot loader has
+/// cleared them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flags {
+    /// Power came on.
+    pub power_on: bool,
+    /// The reset pin.
+    pub external: bool,
+    /// The supply was too low.
+    pub brown_out: bool,
+    /// The watchdog.
+    pub watchdog: bool,
+}
+
+const MARK: usize = 0;
+const STATE: usize = 1;
+const COUNT: usize = 2;
+const WHOLE: usize = 3;
+const COPIES: usize = 4;
+
+/// Cells of a copy.
+const COPY: usize = 19;
+
+/// Stands in the first cell as long as there is power.
+const ALIVE: u8 = 0x96;
+
+/// A program that runs, and one that hung.
+const RUNNING: u8 = 0x5c;
+const HUNG: u8 = 0xa3;
+
+/// In a copy's first byte, beside the frames since pulses began: there are none.
+const RESTING: u8 = 0x80;
+
+/// That byte where nothing is kept.
+const NOTHING: u8 = 0x7f;
+
+/// Why the program begins, and what it did until then; from now on it runs. Once,
+/// before the watchdog starts.
+#[inline(never)]
+pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
+    let (state, count) = (cells.get(STATE), cells.get(COUNT));
+    let survived = cells.get(MARK) == ALIVE && matches!(state, RUNNING | HUNG);
+    let hidden = flags == Flags::default();
+    let cause = if flags.power_on || hidden && !survived {
+        Cause::Power
+    } else if flags.watchdog || hidden && state == HUNG {
+        Cause::Watchdog
+    } else if flags.brown_out {
+        Cause::BrownOut
+    } else {
+        Cause::External
+    };
+    let mut restart = Restart {
+        cause,
+        count: 0,
+        may_be_supply: cause == Cause::BrownOut || cause == Cause::External && hidden,
+        brown_outs: 0,
+        before: None,
+    };
+    if survived && cause != Cause::Power {
+        restart.count = count.saturating_add(1);
+        take(cells, &mut restart);
+    } else {
+        // RAM may hold anything that looks right; after the next reset it must not.
+        cells.set(COPIES, NOTHING);
+        cells.set(COPIES + COPY, NOTHING);
+    }
+    cells.set(COUNT, restart.count);
+    cells.set(STATE, RUNNING);
+    cells.set(MARK, ALIVE);
+    restart
+}
+
+/// Keeps what the servos do, and how many restarts in a row a weak supply may have
+/// made. What was kept before stays whole until all of this is there.
+#[inline(never)]
+pub fn keep<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
+    let turn = !cells.get(WHOLE) & 1;
+    let mut copy = Copy::of(cells, turn);
+    copy.put(stance.awake | if stance.resting { RESTING } else { 0 });
+    copy.put(brown_outs);
+    for sweep in &stance.pose.0 {
+        copy.put_word(sweep.0 as u16);
+    }
+    for width in &stance.sent.0 {
+        copy.put_word(width.0);
+    }
+    copy.put(!copy.sum);
+    cells.set(WHOLE, turn);
+}
+
+/// From the watchdog's interrupt: the program has hung.
+pub fn mark_hung<C: Cells>(cells: &C) {
+    cells.set(STATE, HUNG);
+}
+
+/// Takes over what is kept, if it is whole.
+#[inline(never)]
+fn take<C: Cells>(cells: &C, restart: &mut Restart) {
+    let mut copy = Copy::of(cells, cells.get(WHOLE) & 1);
+    let state = copy.take();
+    let brown_outs = copy.take();
+    let mut stance = Stance {
+        resting: state & RESTING != 0,
+        awake: state & !RESTING,
+        ..Stance::RESTING
+    };
+    for sweep in &mut stance.pose.0 {
+        sweep.0 = copy.take_word() as i16;
+    }
+    for width in &mut stance.sent.0 {
+        width.0 = copy.take_word();
+    }
+    let check = !copy.sum;
+    if copy.take() == check && state != NOTHING {
+        restart.brown_outs = brown_outs;
+        restart.before = Some(stance);
+    }
+}
+
+/// A copy that is being written or read, cell by cell.
+struct Copy<'a, C> {
+    cells: &'a C,
+    at: usize,
+    /// The sum of all bytes so far.
+    sum: u8,
+}
+
+impl<'a, C: Cells> Copy<'a, C> {
+    const fn of(cells: &'a C, turn: u8) -> Self {
+        let at = if turn == 0 { COPIES } else { COPIES + COPY };
+        Self { cells, at, sum: 0 }
+    }
+
+    fn put(&mut self, byte: u8) {
+        self.cells.set(self.at, byte);
+        self.count(byte);
+    }
+
+    fn put_word(&mut self, word: u16) {
+        let [low, high] = word.to_le_bytes();
+        self.put(low);
+        self.put(high);
+    }
+
+    fn take(&mut self) -> u8 {
+        let byte = self.cells.get(self.at);
+        self.count(byte);
+        byte
+    }
+
+    #[inline(never)]
+    fn take_word(&mut self) -> u16 {
+        let low = self.take();
+        u16::from_le_bytes([low, self.take()])
+    }
+
+    fn count(&mut self, byte: u8) {
+        self.sum = self.sum.wrapping_add(byte);
+        self.at += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,212 @@
+//! Resets between any two stores, memories of any content, and every cause.
+
+use std::cell::{Cell, RefCell};
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::numbers::pose::{Pose, Pulses};
+use crate::numbers::units::{Sweep, Width};
+
+/// RAM that keeps what it holds, and a reset after this many stores.
+struct Ram {
+    bytes: RefCell<Vec<u8>>,
+    /// Stores until the reset, after which none comes to pass.
+    left: Cell<usize>,
+    stores: Cell<usize>,
+}
+
+impl Ram {
+    fn of(bytes: Vec<u8>) -> Self {
+        Self {
+            bytes: RefCell::new(bytes),
+            left: Cell::new(usize::MAX),
+            stores: Cell::new(0),
+        }
+    }
+
+    /// As power-on leaves it.
+    fn powered() -> Self {
+        let ram = Self::of(std::vec![0; CELLS]);
+        let restart = begin(&ram, POWER);
+        assert_eq!(restart, Restart::NONE);
+        ram
+    }
+
+    /// The same memory, its stores lost after `stores` of them.
+    fn with_reset_after(&self, stores: usize) -> Self {
+        let ram = Self::of(self.bytes.borrow().clone());
+        ram.left.set(stores);
+        ram
+    }
+
+    /// What the next program finds.
+    fn after_the_reset(&self) -> Self {
+        Self::of(self.bytes.borrow().clone())
+    }
+}
+
+impl Cells for Ram {
+    fn get(&self, at: usize) -> u8 {
+        self.bytes.borrow()[at]
+    }
+
+    fn set(&self, at: usize, byte: u8) {
+        self.stores.set(self.stores.get() + 1);
+        if self.left.get() > 0 {
+            self.left.set(self.left.get() - 1);
+            self.bytes.borrow_mut()[at] = byte;
+        }
+    }
+}
+
+const HIDDEN: Flags = Flags {
+    power_on: false,
+    external: false,
+    brown_out: false,
+    watchdog: false,
+};
+const POWER: Flags = Flags {
+    power_on: true,
+    ..HIDDEN
+};
+const EXTERNAL: Flags = Flags {
+    external: true,
+    ..HIDDEN
+};
+const BROWN_OUT: Flags = Flags {
+    brown_out: true,
+    ..HIDDEN
+};
+const WATCHDOG: Flags = Flags {
+    watchdog: true,
+    ..HIDDEN
+};
+
+fn stance(n: i16) -> Stance {
+    Stance {
+        resting: n % 3 == 0,
+        awake: (n % 21) as u8,
+        pose: Pose([n, -n, 7 * n, -32_768 + n].map(Sweep)),
+        sent: Pulses([24_000, 1 + n as u16, 65_535 - n as u16, 0].map(Width)),
+    }
+}
+
+#[test]
+fn what_is_kept_is_there_after_a_reset_and_gone_after_a_loss_of_power() {
+    let ram = Ram::powered();
+    for n in 1..100 {
+        keep(&ram, &stance(n), n as u8);
+        for flags in [EXTERNAL, BROWN_OUT, WATCHDOG, HIDDEN] {
+            let again = ram.after_the_reset();
+            let restart = begin(&again, flags);
+            assert_eq!(restart.before, Some(stance(n)));
+            assert_eq!(restart.brown_outs, n as u8);
+            // A second reset, before the program has kept anything.
+            assert_eq!(begin(&again, flags).before, Some(stance(n)));
+        }
+        let off = ram.after_the_reset();
+        assert_eq!(begin(&off, POWER), Restart::NONE);
+        assert_eq!(begin(&off, EXTERNAL).before, None, "nothing was kept since");
+    }
+}
+
+#[test]
+fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
+    let ram = Ram::powered();
+    keep(&ram, &stance(1), 1);
+    let mut seen = [0; 2];
+    for n in 2..9 {
+        let whole = ram.with_reset_after(usize::MAX);
+        keep(&whole, &stance(n), n as u8);
+        for stores in 0..=whole.stores.get() {
+            let torn = ram.with_reset_after(stores);
+            keep(&torn, &stance(n), n as u8);
+            let found = begin(&torn.after_the_reset(), HIDDEN).before;
+            let place = usize::from(found == Some(stance(n)));
+            assert!(place == 1 || found == Some(stance(n - 1)), "{n} {stores}");
+            seen[place] += 1;
+        }
+        keep(&ram, &stance(n), n as u8);
+    }
+    assert!(seen[0] > 100 && seen[1] == 7, "{seen:?}");
+}
+
+#[test]
+fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
+    let ram = Ram::powered();
+    keep(&ram, &stance(5), 5);
+    mark_hung(&ram);
+    let whole = ram.with_reset_after(usize::MAX);
+    begin(&whole, HIDDEN);
+    assert!(whole.stores.get() >= 3);
+    for stores in 0..=whole.stores.get() {
+        let torn = ram.with_reset_after(stores);
+        begin(&torn, HIDDEN);
+        let found = begin(&torn.after_the_reset(), HIDDEN);
+        assert_eq!(found.before, Some(stance(5)), "{stores}");
+        assert!((1..=2).contains(&found.count));
+        assert!(matches!(found.cause, Cause::Watchdog | Cause::External));
+    }
+}
+
+#[test]
+fn every_cause_is_told_by_its_flag_or_by_what_ram_still_knows() {
+    for (flags, hung, cause, may_be_supply) in [
+        (EXTERNAL, false, Cause::External, false),
+        (BROWN_OUT, false, Cause::BrownOut, true),
+        (WATCHDOG, false, Cause::Watchdog, false),
+        (POWER, false, Cause::Power, false),
+        (HIDDEN, false, Cause::External, true),
+        (HIDDEN, true, Cause::Watchdog, false),
+        (EXTERNAL, true, Cause::External, false),
+    ] {
+        let ram = Ram::powered();
+        if hung {
+            mark_hung(&ram);
+        }
+        let restart = begin(&ram, flags);
+        assert_eq!(
+            (restart.cause, restart.may_be_supply),
+            (cause, may_be_supply)
+        );
+    }
+}
+
+#[test]
+fn restarts_are_counted_up_to_255() {
+    let ram = Ram::powered();
+    for n in 1..=600u32 {
+        assert_eq!(u32::from(begin(&ram, EXTERNAL).count), n.min(255));
+    }
+    assert_eq!(begin(&ram, POWER).count, 0);
+}
+
+proptest! {
+    #[test]
+    fn what_ram_holds_after_power_on_is_not_believed(
+        bytes in prop::collection::vec(any::<u8>(), CELLS),
+        flags in prop_oneof![Just(HIDDEN), Just(EXTERNAL), Just(BROWN_OUT), Just(WATCHDOG)],
+    ) {
+        let mut bytes = bytes;
+        // The one mark in 65 536 that passes.
+        prop_assume!(bytes[MARK] != ALIVE);
+        let ram = Ram::of(bytes.clone());
+        let restart = begin(&ram, flags);
+        prop_assert_eq!((restart.count, restart.before), (0, None));
+        prop_assert_eq!(begin(&ram, EXTERNAL).before, None);
+        bytes[MARK] = ALIVE;
+        bytes[STATE] = 0x5b;
+        prop_assert_eq!(begin(&Ram::of(bytes), flags).before, None);
+    }
+
+    #[test]
+    fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY, n in 1i16..100) {
+        let ram = Ram::powered();
+        keep(&ram, &stance(n), n as u8);
+        let copy = COPIES + COPY * usize::from(ram.get(WHOLE) & 1);
+        ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
+        prop_assert_eq!(begin(&ram, HIDDEN).before, None);
+    }
+}

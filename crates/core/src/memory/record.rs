@@ -1,0 +1,296 @@
+//! A memory that keeps its bytes without power, and may lose power at any time.
+//!
+//! An EEPROM writes one byte in 3.4 ms. If power fails meanwhile, that byte may hold
+//! anything. So a record has a mark that is removed before its first byte changes and
+//! written again after the last one; without the mark the record does not count. A CRC
+//! finds other damage, such as bits that change over the years.
+
+use crate::numbers::checksum::Checksum;
+
+/// Bytes that outlast power.
+pub trait Memory {
+    /// Whether the last write has ended; only then the memory may be used.
+    fn is_ready(&self) -> bool;
+
+    /// The byte at an address below 1024.
+    fn read(&self, address: u16) -> u8;
+
+    /// Begins to write a byte.
+    fn write(&mut self, address: u16, byte: u8);
+}
+
+/// Bytes of a memory.
+pub const SIZE: usize = 1024;
+
+/// Bytes of what a record says.
+pub const CONTENT: usize = 42;
+
+// Whether the step is even distinguishes the CRC's two bytes.
+const _: () = assert!(CONTENT.is_multiple_of(2));
+
+/// What a record says.
+pub type Content = [u8; CONTENT];
+
+/// Bytes of a record: the mark, the content, the CRC.
+pub const LENGTH: u16 = CONTENT as u16 + 3;
+
+/// A record's first byte while it is whole.
+pub const WHOLE: u8 = 0xa5;
+
+/// That byte while it is not; also what an erased memory holds.
+pub const ERASED: u8 = 0xff;
+
+/// The address of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Address(pub u16);
+
+/// What is at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// Nothing was ever written there.
+    Blank,
+    /// A record that was not written to its end, or has changed since.
+    Damaged,
+    /// A record.
+    Whole,
+}
+
+/// How a step of writing a record has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// There is more to write, or the memory is not ready.
+    Going,
+    /// The memory holds what it should.
+    Done,
+    /// The memory does not keep what is written.
+    Failed,
+}
+
+/// The byte of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
+#[repr(u8)]
+enum Byte {
+    /// To be written, if the memory does not have it yet.
+    Due = 1,
+    /// Written: the memory has to have it.
+    Written,
+}
+
+/// A record on its way into the memory, a byte at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Writing {
+    address: Address,
+    /// The step: 0 takes the mark away, each of the next writes a byte, and the last
+    /// one puts the mark back.
+    step: u8,
+    /// The step to end with.
+    last: u8,
+    byte: Byte,
+}
+
+impl Address {
+    /// Finds out what is there.
+    #[inline(never)]
+    pub fn check<M: Memory>(self, memory: &M) -> Found {
+        let mut content = [0; CONTENT];
+        self.fetch(memory, &mut content);
+        let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT as u16 + n));
+        let mark = memory.read(self.0);
+        if mark == WHOLE && crc == Checksum::of(&content).0.to_le_bytes() {
+            Found::Whole
+        } else if mark == ERASED && content.iter().chain(&crc).all(|byte| *byte == ERASED) {
+            Found::Blank
+        } else {
+            Found::Damaged
+        }
+    }
+
+    /// Reads the content, whole or not.
+    #[inline(never)]
+    pub fn fetch<M: Memory>(self, memory: &M, content: &mut Content) {
+        let mut at = self.0;
+        for byte in content {
+            at += 1;
+            *byte = memory.read(at);
+        }
+    }
+
+    /// A byte of the content.
+    pub fn byte<M: Memory>(self, memory: &M, n: u16) -> u8 {
+        memory.read(self.0 + 1 + n)
+    }
+
+    /// Begins to write a record.
+    pub const fn write(self) -> Writing {
+        Writing {
+            address: self,
+            step: 0,
+            last: LENGTH as u8,
+            byte: Byte::Due,
+        }
+    }
+
+    /// Begins to take a record away.
+    pub const fn forget(self) -> Writing {
+        Writing {
+            last: 0,
+            ..self.write()
+        }
+    }
+}
+
+impl Writing {
+    /// One step on: writes a byte at most, and none that is there already.
+    /// `content` must be the same in every step.
+    #[inline(never)]
+    pub fn step<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
+        if !memory.is_ready() {
+            return Progress::Going;
+        }
+        let step = u16::from(self.step);
+        let (offset, byte) = if step == 0 {
+            (0, ERASED)
+        } else if step == LENGTH {
+            (0, WHOLE)
+        } else {
+            let crc = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
+            let byte = content.get(usize::from(self.step - 1));
+            (step, byte.copied().unwrap_or_else(crc))
+        };
+        let at = self.address.0 + offset;
+        if memory.read(at) != byte {
+            if self.byte == Byte::Written {
+                return Progress::Failed;
+            }
+            self.byte = Byte::Written;
+            memory.write(at, byte);
+        } else if self.step == self.last {
+            return Progress::Done;
+        } else {
+            self.step += 1;
+            self.byte = Byte::Due;
+        }
+        Progress::Going
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::virtual_board::Eeprom;
+
+    const PLACE: Address = Address(64);
+
+    fn content() -> impl Strategy<Value = Content> {
+        any::<u64>().prop_map(|seed| {
+            let mut state = seed;
+            core::array::from_fn(|_| {
+                state = state
+                    .wrapping_mul(6364136223846793005)
+                    .wrapping_add(1442695040888963407);
+                (state >> 56) as u8
+            })
+        })
+    }
+
+    /// Writes to the end.
+    fn write(chip: &mut Eeprom, content: &Content) -> Progress {
+        let mut writing = PLACE.write();
+        for _ in 0..10_000 {
+            match writing.step(content, chip) {
+                Progress::Going => {}
+                ended => return ended,
+            }
+        }
+        panic!("it never ends");
+    }
+
+    fn read(chip: &Eeprom) -> (Found, Content) {
+        let mut content = [0; CONTENT];
+        PLACE.fetch(chip, &mut content);
+        (PLACE.check(chip), content)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn what_is_written_is_read_again_and_nothing_else_is_touched(
+            first in content(),
+            second in content(),
+            slowness in 0u16..4,
+        ) {
+            let mut chip = Eeprom::blank();
+            chip.slowness = slowness;
+            prop_assert_eq!(read(&Eeprom::blank()).0, Found::Blank);
+            for content in [first, second] {
+                prop_assert_eq!(write(&mut chip, &content), Progress::Done);
+                chip.slowness = 0;
+                let chip = Eeprom::with(*chip.bytes());
+                prop_assert_eq!(read(&chip), (Found::Whole, content));
+            }
+            let beside = |at: &usize| !(64..64 + usize::from(LENGTH)).contains(at);
+            prop_assert!((0..1024).filter(beside).all(|at| chip.bytes()[at] == ERASED));
+        }
+
+        #[test]
+        fn the_crc_is_that_of_the_catalogue(content in content()) {
+            let mut chip = Eeprom::blank();
+            write(&mut chip, &content);
+            // CRC-16/IBM-3740, bit by bit.
+            let mut crc = 0xffffu16;
+            for byte in content {
+                crc ^= u16::from(byte) << 8;
+                for _ in 0..8 {
+                    crc = if crc & 0x8000 == 0 { crc << 1 } else { (crc << 1) ^ 0x1021 };
+                }
+            }
+            prop_assert_eq!(&chip.bytes()[64 + 43..][..2], &crc.to_le_bytes());
+        }
+    }
+
+    #[test]
+    fn writing_the_same_again_touches_the_mark_alone_and_other_bytes_only_where_they_differ() {
+        let mut chip = Eeprom::blank();
+        let mut content = [7; CONTENT];
+        write(&mut chip, &content);
+        chip.log.clear();
+        write(&mut chip, &content);
+        assert_eq!(chip.log, [(64, WHOLE, ERASED), (64, ERASED, WHOLE)]);
+        chip.log.clear();
+        content[5] = 8;
+        write(&mut chip, &content);
+        let addresses: Vec<u16> = chip.log.iter().map(|(address, ..)| *address).collect();
+        assert_eq!(addresses[0], 64);
+        assert_eq!(addresses[1], 64 + 6);
+        assert_eq!(addresses.last(), Some(&64));
+        assert!(
+            (4..=5).contains(&addresses.len()),
+            "byte 5, the CRC, the mark twice"
+        );
+    }
+
+    #[test]
+    fn a_memory_that_keeps_nothing_is_found_out() {
+        let mut chip = Eeprom::blank();
+        chip.worn = true;
+        assert_eq!(write(&mut chip, &[1; CONTENT]), Progress::Failed);
+    }
+
+    #[test]
+    fn a_record_that_is_taken_away_is_no_record_and_its_bytes_stay() {
+        let mut chip = Eeprom::blank();
+        write(&mut chip, &[3; CONTENT]);
+        let before = *chip.bytes();
+        let mut writing = PLACE.forget();
+        while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
+        assert_eq!(read(&chip).0, Found::Damaged);
+        assert_eq!(chip.bytes()[64], ERASED);
+        assert_eq!(chip.bytes()[65..], before[65..]);
+    }
+}

@@ -1,0 +1,223 @@
+//! All settings that a person may change and the robot keeps: the servos' adjustments,
+//! what the robot does after power-on, and how long it walks without a line.
+//!
+//! In RAM the settings have the same bytes as in the EEPROM, so neither saving nor
+//! loading converts anything.
+//!
+//! | byte | what |
+//! |---|---|
+//! | 0 | [`FORMAT`] |
+//! | 1 | the turn: one more with every `save` |
+//! | 2 | hash of the servos that they are for, 4 bytes |
+//! | 6 | for each servo trim, gain, clockwise and counter-clockwise end, 2 bytes each |
+//! | 38 | `boot`: 0 for `rest`, else the [`key`] of a gait |
+//! | 40 | `deadman`, ms |
+
+use crate::memory::adjustment::Adjustment;
+use crate::memory::record::{CONTENT, Content};
+use crate::numbers::calibration::Calibration;
+use crate::numbers::gaits::GaitId;
+use crate::numbers::part::Servo;
+use crate::numbers::pose::Pose;
+use crate::numbers::robot::Robot;
+use crate::numbers::units::Sweep;
+
+/// Raised when the meaning of the bytes changes.
+pub const FORMAT: u8 = 1;
+
+/// Where the turn is.
+pub const TURN: usize = 1;
+const HASH: usize = 2;
+const SERVOS: usize = 6;
+const BOOT: usize = 38;
+const DEADMAN: usize = 40;
+
+/// What the robot does three seconds after power-on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Boot {
+    /// A gait; `stand` is one.
+    Gait(GaitId),
+    /// No pulses.
+    Rest,
+}
+
+/// Everything that `save` keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    bytes: Content,
+}
+
+impl Settings {
+    /// Of no robot.
+    pub const NONE: Self = Self {
+        bytes: [0; CONTENT],
+    };
+
+    /// Those of robot.toml.
+    #[inline(never)]
+    pub fn of(robot: &Robot) -> Self {
+        let mut settings = Self::NONE;
+        settings.set_head(robot);
+        for servo in Servo::all() {
+            settings.set_servo(servo, Adjustment::of(&robot.servo(servo)));
+        }
+        settings.set_boot(Boot::Gait(GaitId::STAND), robot);
+        settings
+    }
+
+    /// Makes them a record for the servos of a robot.
+    fn set_head(&mut self, robot: &Robot) {
+        self.bytes[0] = FORMAT;
+        let hash = robot.servo_hash();
+        self.put(HASH, hash as u16);
+        self.put(HASH + 2, (hash >> 16) as u16);
+    }
+
+    /// A record that keeps a pose instead of settings: each servo's sweep is where its
+    /// trim would be.
+    #[inline(never)]
+    pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
+        let mut kept = Self::NONE;
+        kept.set_head(robot);
+        let mut at = SERVOS;
+        for sweep in &pose.0 {
+            kept.put(at, sweep.0 as u16);
+            at += 8;
+        }
+        kept
+    }
+
+    /// The pose of [`Settings::of_pose`].
+    #[inline(never)]
+    pub fn pose(&self) -> Pose {
+        let mut pose = Pose::NEUTRAL;
+        let mut at = SERVOS;
+        for sweep in &mut pose.0 {
+            sweep.0 = self.get(at) as i16;
+            at += 8;
+        }
+        pose
+    }
+
+    /// Bytes that a memory has kept.
+    pub const fn from_bytes(bytes: Content) -> Self {
+        Self { bytes }
+    }
+
+    /// What a memory keeps.
+    pub const fn bytes(&self) -> &Content {
+        &self.bytes
+    }
+
+    /// The same, to be filled.
+    pub const fn bytes_mut(&mut self) -> &mut Content {
+        &mut self.bytes
+    }
+
+    /// Whether they are of this format and for the servos of this robot.
+    pub fn are_for(&self, robot: &Robot) -> bool {
+        let hash = robot.servo_hash();
+        self.bytes[0] == FORMAT
+            && self.get(HASH) == hash as u16
+            && self.get(HASH + 2) == (hash >> 16) as u16
+    }
+
+    /// How many times settings had been saved when these were.
+    pub const fn turn(&self) -> u8 {
+        self.bytes[TURN]
+    }
+
+    /// Sets the turn.
+    pub const fn set_turn(&mut self, turn: u8) {
+        self.bytes[TURN] = turn;
+    }
+
+    /// A servo's adjustment.
+    pub fn servo(&self, servo: Servo) -> Adjustment {
+        let number = |n: usize| self.get(SERVOS + 8 * servo.index() + 2 * n) as i16;
+        Adjustment {
+            trim: Sweep(number(0)),
+            gain: number(1),
+            min: Sweep(number(2)),
+            max: Sweep(number(3)),
+        }
+    }
+
+    /// Sets a servo's adjustment.
+    pub fn set_servo(&mut self, servo: Servo, set: Adjustment) {
+        let numbers = [set.trim.0, set.gain, set.min.0, set.max.0];
+        let mut at = SERVOS + 8 * servo.index();
+        for number in numbers {
+            self.put(at, number as u16);
+            at += 2;
+        }
+    }
+
+    /// What is done after power-on; `stand` for a gait that is no more.
+    pub fn boot(&self, robot: &Robot) -> Boot {
+        let kept = self.get(BOOT);
+        if kept == 0 {
+            return Boot::Rest;
+        }
+        let gait = GaitId::all(robot.gait_count()).find(|id| key(robot.name(*id)) == kept);
+        Boot::Gait(gait.unwrap_or(GaitId::STAND))
+    }
+
+    /// Sets what is done after power-on.
+    pub fn set_boot(&mut self, boot: Boot, robot: &Robot) {
+        let kept = match boot {
+            Boot::Rest => 0,
+            Boot::Gait(id) => key(robot.name(id)),
+        };
+        self.put(BOOT, kept);
+    }
+
+    /// A gait ends when no line has come for this many milliseconds; 0 for never.
+    pub fn deadman(&self) -> u16 {
+        self.get(DEADMAN)
+    }
+
+    /// Sets how long a gait continues without a line.
+    pub fn set_deadman(&mut self, ms: u16) {
+        self.put(DEADMAN, ms);
+    }
+
+    /// A servo's calibration.
+    #[inline(never)]
+    pub fn calibration(&self, servo: Servo, robot: &Robot) -> Calibration {
+        self.servo(servo).apply(&robot.servo(servo))
+    }
+
+    /// The first servo whose travel ends short of the neutral angle or of a gait.
+    #[inline(never)]
+    pub fn unfit(&self, robot: &Robot) -> Option<Servo> {
+        Servo::all().find(|servo| {
+            let calibration = self.calibration(*servo, robot);
+            !robot.reach(*servo).is_within(&calibration)
+        })
+    }
+
+    fn get(&self, at: usize) -> u16 {
+        match self.bytes.get(at..) {
+            Some([low, high, ..]) => u16::from_le_bytes([*low, *high]),
+            _ => 0,
+        }
+    }
+
+    fn put(&mut self, at: usize, number: u16) {
+        if let Some([low, high, ..]) = self.bytes.get_mut(at..) {
+            [*low, *high] = number.to_le_bytes();
+        }
+    }
+}
+
+/// What a gait is kept by: a number made of its name, so that it is found again
+/// when robot.toml has other gaits. Never 0. The host that makes a robot has checked that
+/// no two of its gaits have the same.
+pub fn key(name: impl Iterator<Item = u8>) -> u16 {
+    let mut key = 0u16;
+    for byte in name {
+        key = (key << 5).wrapping_sub(key).wrapping_add(byte.into());
+    }
+    key.max(1)
+}

@@ -1,0 +1,483 @@
+//! From commands to frames: one pose every 20 ms, whatever happens.
+//!
+//! A servo that gets a distant angle turns as fast as it can. If all four do, the supply
+//! sags. So nothing here ever jumps. A change from any motion to any other has three
+//! parts, each continuous in speed:
+//!
+//! 1. the old motion brakes along its own path (a gait within its cycle, a move within
+//!    its line), so that it passes only poses that have been checked;
+//! 2. one point-to-point move, at most at the slew limit, leads to where the new
+//!    motion begins, all servos arriving together;
+//! 3. the new gait reaches its pace gradually.
+//!
+//! `stop` alone skips the braking: it freezes the pose in the next frame.
+//!
+//! # States
+//! What the robot does and what it is to do next, and what a frame makes of that.
+//! "Standing still" is a pace of 0.
+//!
+//! | state | command | frame |
+//! |---|---|---|
+//! | `Resting`: no pulses | a gait or a pose: `Holding`, that next, and servos wake; `rest`, `stop`: - | stays |
+//! | `Holding` a pose | a gait or a pose: that next | with a next: `Moving` towards it |
+//! | `Moving` to a pose | a gait or a pose: that next; the gait it leads to: - | brakes if there is a next, and once it stands still is `Moving` towards that; arrived, it is `Holding`, or `Cycling` from phase 0 |
+//! | `Cycling` through a gait | another gait or a pose: that next; the same gait: - | brakes if there is a next, and once it stands still is `Moving` towards that |
+//! | any but `Resting` | `stop`: `Holding`; `rest`: `Resting`; nothing next | an unsafe pose: `Holding` the last one, nothing next, with the reason |
+//!
+//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every
+//! state, while the pulses change at the slew limit to the new ones of this pose. After
+//! that a motion starts again gradually.
+//!
+//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that
+//! has not passed is never sent; the last safe pose is held instead, and the reason is
+//! kept for the console. Time is a call: the 50 Hz tick is the only clock, so the pace
+//! cannot depend on how busy the processor is.
+
+use lizard_avr::Region;
+
+use crate::guard::clearance;
+use crate::guard::hazard::Hazard;
+use crate::memory::restart::Stance;
+use crate::motion::pace;
+use crate::motion::point_to_point::PointToPoint;
+use crate::motion::state::{Activity, State, Target};
+use crate::numbers::calibration::Calibration;
+use crate::numbers::gaits::GaitId;
+use crate::numbers::part::Servo;
+use crate::numbers::pose::{Pose, Pulses};
+use crate::numbers::robot::Robot;
+use crate::numbers::section::Damage;
+
+/// Servos wake one after the other, 0.1 s apart, to spare the supply.
+const WAKE_APART: u8 = 5;
+
+/// The gaits' own pace, percent.
+const FULL: u8 = 100;
+
+/// The most that a weak supply allows, percent of the gaits' own pace.
+const SLOW: u8 = 50;
+
+/// Frames from the first pulse until all four are awake and motion may begin.
+pub const AWAKE: u8 = 4 * WAKE_APART;
+
+/// The robot's motion.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    robot: Robot<'static>,
+    calibration: [Calibration; 4],
+    state: State,
+    /// What follows once the present motion stands still. None while it rests.
+    next: Option<Target>,
+    /// Percent of the gaits' own pace.
+    speed: u8,
+    /// Whether the supply allows no more than [`SLOW`].
+    slow: bool,
+    /// Whether they are on their way to those of another calibration.
+    settling: bool,
+    /// What the servos do; they rest in [`State::Resting`] alone.
+    stance: Stance,
+    hazard: Option<Hazard>,
+    frames: u32,
+}
+
+impl Motion {
+    /// The robot at power-on: waking, then standing.
+    pub fn new(robot: Robot<'static>) -> Self {
+        let mut motion = Self::unbegun(robot);
+        motion.speed = FULL;
+        motion.begin();
+        for servo in Servo::all() {
+            motion.calibrate(servo, motion.robot.servo(servo));
+        }
+        motion
+    }
+
+    /// Nothing: no robot, and every bit zero, so that it needs no copy in flash.
+    /// [`Motion::take_robot`] or [`Motion::begin`] has to follow, and the calibration of every
+    /// servo.
+    pub const fn unbegun(robot: Robot<'static>) -> Self {
+        Self {
+            calibration: [Calibration::NONE; 4],
+            state: State::Resting,
+            robot,
+            next: None,
+            speed: 0,
+            slow: false,
+            settling: false,
+            stance: Stance {
+                resting: false,
+                ..Stance::RESTING
+            },
+            hazard: None,
+            frames: 0,
+        }
+    }
+
+    /// Takes the robot at the beginning of `flash` in place of none; the calibration
+    /// of every servo has to follow.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
+        self.speed = FULL;
+        self.stance.resting = true;
+        self.robot = Robot::open(flash)?;
+        Ok(())
+    }
+
+    /// Wakes the servos, to stand.
+    pub fn begin(&mut self) {
+        self.stance.resting = false;
+        self.state = State::cycling(&self.robot, GaitId::STAND);
+    }
+
+    /// The robot that moves.
+    pub const fn robot(&self) -> &Robot<'static> {
+        &self.robot
+    }
+
+    /// Its servos' pulses and travel.
+    pub const fn calibration(&self) -> &[Calibration; 4] {
+        &self.calibration
+    }
+
+    /// Takes another calibration of a servo; [`Motion::settle`] has to follow.
+    pub fn calibrate(&mut self, servo: Servo, calibration: Calibration) {
+        *servo.of_mut(&mut self.calibration) = calibration;
+    }
+
+    /// Takes another calibration of all servos; [`Motion::settle`] has to follow.
+    pub fn calibrate_all(&mut self, calibration: &[Calibration; 4]) {
+        self.calibration = *calibration;
+    }
+
+    /// Lets the pulses go over to the new calibration, at the slew limit. Nothing
+    /// else moves meanwhile.
+    pub fn settle(&mut self) {
+        if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
+            *pace = 0;
+        }
+        self.settling = true;
+    }
+
+    /// True where a servo would have to leave the travel of another calibration, where
+    /// the robot is or where it goes.
+    pub fn goes_beyond(&self, servo: Servo, calibration: &Calibration) -> bool {
+        let beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
+        let moves_beyond = match &self.state {
+            State::Moving { path, .. } => beyond(path.target()),
+            _ => false,
+        };
+        let next_beyond = match &self.next {
+            Some(Target::Pose(pose)) => beyond(pose),
+            _ => false,
+        };
+        beyond(&self.stance.pose) || moves_beyond || next_beyond
+    }
+
+    /// Stands: the servos wake one after the other in the pose that the robot rested
+    /// in, if it is safe and within the travel; else in the neutral one.
+    #[inline(never)]
+    pub fn wake(&mut self, rested: Option<&Pose>) {
+        self.begin();
+        if let Some(pose) = rested
+            && self.may_hold(pose)
+        {
+            self.stance.pose = *pose;
+            self.state = State::Holding { asked: false };
+            self.next = Some(Target::Gait(GaitId::STAND));
+        }
+    }
+
+    /// Takes over a robot without pulses: it stays so, and wakes in that pose.
+    #[inline(never)]
+    pub fn resume_rest(&mut self, stance: Option<&Stance>) {
+        self.freeze(State::Resting);
+        if let Some(stance) = stance
+            && self.may_hold(&stance.pose)
+        {
+            self.stance.pose = stance.pose;
+            self.stance.sent = stance.sent;
+        }
+    }
+
+    /// Takes over servos that were held until a reset, with the pulses that they had;
+    /// says whether it may: within the travel and safe. All that had pulses get them
+    /// at once. If the robot is to `stand`, the servos wake one after the other, to
+    /// spare the supply, and then it stands.
+    #[inline(never)]
+    pub fn resume(&mut self, stance: &Stance, stand: bool) -> bool {
+        if !self.may_hold(&stance.pose) {
+            return false;
+        }
+        self.stance.pose = stance.pose;
+        self.stance.sent = stance.sent;
+        self.freeze(State::Holding { asked: false });
+        if stand {
+            self.next = Some(Target::Gait(GaitId::STAND));
+        } else {
+            // The next servo to wake waits as long as after any other.
+            let awake = stance.awake.min(AWAKE);
+            self.stance.awake = awake - awake % WAKE_APART;
+        }
+        self.settle();
+        true
+    }
+
+    /// What the servos do, for the program after a reset.
+    pub const fn stance(&self) -> &Stance {
+        &self.stance
+    }
+
+    fn may_hold(&self, pose: &Pose) -> bool {
+        self.hazard_of(pose).is_none()
+    }
+
+    /// Begins a gait, by way of its first pose. The gait that is already under
+    /// way just goes on.
+    #[inline(never)]
+    pub fn start_gait(&mut self, id: GaitId) {
+        if self.activity() != Activity::Gait(id) {
+            self.head_for(Target::Gait(id));
+        }
+    }
+
+    /// Goes to a pose within the servos' travel.
+    ///
+    /// # Errors
+    /// What is wrong with the pose; then nothing has changed.
+    pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
+        match self.hazard_of(pose) {
+            Some(hazard) => Err(hazard),
+            None => {
+                self.head_for(Target::Pose(*pose));
+                Ok(())
+            }
+        }
+    }
+
+    /// Freezes the pose in the next frame.
+    pub fn stop(&mut self) {
+        if !matches!(self.state, State::Resting) {
+            self.freeze(State::Holding { asked: false });
+        }
+    }
+
+    /// Ends the pulses with the next frame.
+    pub fn rest(&mut self) {
+        self.freeze(State::Resting);
+    }
+
+    /// Sets the pace of gaits, in percent of their own, 10..=100.
+    pub fn set_speed(&mut self, percent: u8) {
+        self.speed = percent;
+    }
+
+    /// Keeps gaits at half their pace, or no longer.
+    pub fn set_slow(&mut self, slow: bool) {
+        self.slow = slow;
+    }
+
+    /// One frame on: the pulses to send in it.
+    pub fn tick(&mut self) -> Pulses {
+        self.frames = self.frames.wrapping_add(1);
+        let mut pulses = Pulses::default();
+        if matches!(self.state, State::Resting) {
+            return pulses;
+        }
+        let before = self.stance.awake;
+        if before < AWAKE {
+            self.stance.awake = before + 1;
+        } else if !self.settling {
+            self.proceed();
+        }
+        // While they settle, they keep within a frame's way of the last ones.
+        let per_frame = self.robot.slew().per_frame;
+        let mut under_way = false;
+        let mut wakes_at = WAKE_APART;
+        for (place, pulse) in pulses.0.iter_mut().enumerate() {
+            let servo = &self.calibration[place];
+            let sent = &mut self.stance.sent.0[place];
+            let sleeps = self.stance.awake < wakes_at;
+            let mut width = servo.width(self.stance.pose.0[place]);
+            if self.settling && sent.0 != 0 {
+                // A servo's first pulse is the last one that it had, in a program before
+                // this one, too: that may have been on its way when a reset came.
+                let slept = before < wakes_at;
+                let way = if slept { 0 } else { servo.slew(per_frame) };
+                let wanted = width.0;
+                width.0 = wanted
+                    .max(sent.0.saturating_sub(way))
+                    .min(sent.0.saturating_add(way));
+                under_way |= width.0 != wanted;
+            }
+            *sent = width;
+            if !sleeps {
+                *pulse = width;
+            }
+            wakes_at += WAKE_APART;
+        }
+        self.settling = under_way;
+        pulses
+    }
+
+    /// What the robot is doing, or on its way to do.
+    pub const fn activity(&self) -> Activity {
+        match (self.next, self.state) {
+            (Some(Target::Gait(id)), _) => Activity::Gait(id),
+            (Some(Target::Pose(_)), _) => Activity::Pose,
+            (None, State::Resting) => Activity::Rest,
+            (None, State::Holding { asked: true }) => Activity::Pose,
+            (None, State::Holding { asked: false }) => Activity::Stop,
+            (None, State::Moving { gait: None, .. }) => Activity::Pose,
+            (None, State::Moving { gait: Some(id), .. } | State::Cycling { id, .. }) => {
+                Activity::Gait(id)
+            }
+        }
+    }
+
+    /// Phase of the gait, 1/2^24 cycle; 0 outside of one.
+    pub const fn phase(&self) -> u32 {
+        match self.state {
+            State::Cycling { phase, .. } => phase,
+            _ => 0,
+        }
+    }
+
+    /// The pose of the last frame.
+    pub const fn pose(&self) -> &Pose {
+        &self.stance.pose
+    }
+
+    /// Whether there are no pulses.
+    pub const fn is_resting(&self) -> bool {
+        matches!(self.state, State::Resting)
+    }
+
+    /// The pulses of the last frame, of servos that sleep, too.
+    pub const fn sent(&self) -> &Pulses {
+        &self.stance.sent
+    }
+
+    /// Speed of gaits in percent.
+    pub const fn speed(&self) -> u8 {
+        self.speed
+    }
+
+    /// Frames since power-on.
+    pub const fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// Why the guard stopped the robot, until the next motion begins.
+    pub const fn hazard(&self) -> Option<Hazard> {
+        self.hazard
+    }
+
+    /// What is wrong with a pose.
+    fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
+        match pose.beyond(&self.calibration) {
+            Some(servo) => Some(Hazard::Travel(servo)),
+            None => clearance::hazard(&self.robot, pose),
+        }
+    }
+
+    fn head_for(&mut self, target: Target) {
+        if matches!(self.state, State::Resting) {
+            self.state = State::Holding { asked: false };
+            self.stance.resting = false;
+            self.stance.awake = 0;
+            // They were let go of where their last pulses put them, if they ever had any;
+            // what was set since must not throw them elsewhere.
+            self.settling = true;
+        }
+        self.next = Some(target);
+    }
+
+    fn freeze(&mut self, state: State) {
+        self.stance.resting = matches!(state, State::Resting);
+        self.state = state;
+        self.next = None;
+    }
+
+    // Out of line: in `tick` it costs more registers than it saves calls.
+    #[inline(never)]
+    fn proceed(&mut self) {
+        self.turn_to_next();
+        let braking = self.next.is_some();
+        let pose = match &mut self.state {
+            State::Resting | State::Holding { .. } => return,
+            State::Moving { path, pace, .. } => {
+                *pace = pace::toward(*pace, if braking { 0 } else { pace::FULL });
+                path.advance(*pace);
+                path.pose()
+            }
+            State::Cycling {
+                gait, phase, pace, ..
+            } => {
+                let percent = if self.slow {
+                    self.speed.min(SLOW)
+                } else {
+                    self.speed
+                };
+                *pace = pace::toward(
+                    *pace,
+                    if braking {
+                        0
+                    } else {
+                        pace::of_percent(percent)
+                    },
+                );
+                *phase = gait.advance(*phase, *pace);
+                gait.pose(self.robot.waves(), *phase)
+            }
+        };
+        let hazard = self.hazard_of(&pose);
+        if hazard.is_some() {
+            self.freeze(State::Holding { asked: false });
+            self.hazard = hazard;
+            return;
+        }
+        self.stance.pose = pose;
+        if let State::Moving { path, gait, .. } = &self.state
+            && path.arrived()
+        {
+            self.state = match gait {
+                None => State::Holding { asked: true },
+                Some(id) => State::cycling(&self.robot, *id),
+            };
+        }
+    }
+
+    /// Begins the move towards what comes next, once the old motion has no pace.
+    #[inline(always)]
+    fn turn_to_next(&mut self) {
+        if let Some(target) = self.next
+            && !matches!(
+                self.state,
+                State::Moving { pace: 1.., .. } | State::Cycling { pace: 1.., .. }
+            )
+        {
+            self.next = None;
+            self.move_to(target);
+        }
+    }
+
+    // Out of line: most frames do not need it.
+    #[inline(never)]
+    fn move_to(&mut self, target: Target) {
+        let (to, gait) = match target {
+            Target::Pose(pose) => (pose, None),
+            Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
+        };
+        self.state = State::Moving {
+            path: PointToPoint::new(&self.stance.pose, &to, self.robot.slew()),
+            pace: pace::FULL,
+            gait,
+        };
+        self.hazard = None;
+    }
+}
+
+#[cfg(test)]
+mod tests;

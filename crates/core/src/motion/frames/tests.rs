@@ -1,0 +1,364 @@
+//! The transition table of the module, row by row, and what no frame may do.
+
+use std::vec::Vec;
+
+use super::*;
+use crate::guard::clearance::Clearance;
+use crate::numbers::units::Width;
+use crate::numbers::units::{CYCLE, Sweep};
+use crate::sample::{GAITS, Sample};
+
+mod any_order;
+mod guarded;
+mod settling;
+mod waking;
+
+/// Frames until all servos are awake.
+const WAKING: u32 = 20;
+
+/// Braking, the longest move of these tests, gathering pace.
+const LONG_ENOUGH: u32 = 150;
+
+impl Motion {
+    /// Awake, standing, for as long as it takes to have all its pace.
+    fn standing() -> Self {
+        Self::awake(Sample::odd())
+    }
+
+    fn awake(robot: Sample) -> Self {
+        let mut motion = Self::new(*robot);
+        motion.run(WAKING + 7);
+        motion
+    }
+
+    /// In a gait, some frames after it was asked for.
+    fn in_gait(name: &str, frames: u32) -> Self {
+        let mut motion = Self::standing();
+        motion.start(name);
+        motion.run(frames);
+        motion
+    }
+
+    fn run(&mut self, frames: u32) {
+        for _ in 0..frames {
+            self.tick();
+        }
+    }
+
+    fn start(&mut self, name: &str) {
+        self.start_gait(self.robot.id(name));
+    }
+
+    fn head_for_pose(&mut self, sweeps: [i16; 4]) {
+        let pose = Pose(sweeps.map(Sweep));
+        self.go_to(&pose).expect("a safe pose");
+    }
+
+    fn is_moving(&self) -> bool {
+        matches!(self.state, State::Moving { .. })
+    }
+
+    fn is_cycling(&self) -> bool {
+        matches!(self.state, State::Cycling { .. })
+    }
+
+    fn gait(&self) -> Option<&'static str> {
+        match self.activity() {
+            Activity::Gait(id) => Some(GAITS[id.index()]),
+            _ => None,
+        }
+    }
+
+    fn pace(&self) -> u16 {
+        match self.state {
+            State::Moving { pace, .. } | State::Cycling { pace, .. } => pace,
+            _ => 0,
+        }
+    }
+
+    /// The pulses of the pose that is held.
+    fn held(&self) -> Pulses {
+        self.stance.pose.pulses(&self.calibration)
+    }
+}
+
+const THERE: [i16; 4] = [900, -700, 800, -1100];
+const BACK: [i16; 4] = [-600, 500, -800, 700];
+
+/// Two motions that have nothing to tell them apart for some frames.
+fn assert_same(mut one: Motion, mut other: Motion) {
+    for _ in 0..100 {
+        assert_eq!(one.tick(), other.tick());
+        assert_eq!(one.activity(), other.activity());
+        assert_eq!(one.phase(), other.phase());
+        assert_eq!(one.hazard(), other.hazard());
+    }
+}
+
+// Resting.
+
+fn resting() -> Motion {
+    let mut motion = Motion::in_gait("sway", 90);
+    motion.rest();
+    motion.run(10);
+    motion
+}
+
+#[test]
+fn a_held_pose_stays_and_says_whether_it_was_asked_for() {
+    let mut stopped = Motion::in_gait("sway", 90);
+    stopped.stop();
+    let mut posed = Motion::standing();
+    posed.head_for_pose(THERE);
+    posed.run(LONG_ENOUGH);
+    for (mut motion, activity) in [(stopped, Activity::Stop), (posed, Activity::Pose)] {
+        let held = motion.held();
+        for _ in 0..50 {
+            assert_eq!(motion.tick(), held);
+            assert_eq!(motion.activity(), activity);
+        }
+    }
+}
+
+#[test]
+fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
+    for gait in [false, true] {
+        let mut motion = Motion::in_gait("sway", 90);
+        motion.stop();
+        motion.run(5);
+        let held = *motion.pose();
+        if gait {
+            motion.start("sway");
+        } else {
+            motion.head_for_pose(THERE);
+        }
+        motion.tick();
+        assert!(motion.is_moving());
+        assert_ne!(motion.pose(), &held);
+    }
+}
+
+// Moving.
+
+#[test]
+fn a_move_that_arrives_at_a_pose_holds_it() {
+    let mut motion = Motion::standing();
+    motion.head_for_pose(THERE);
+    motion.run(LONG_ENOUGH);
+    assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
+    assert_eq!(motion.state, State::Holding { asked: true });
+}
+
+#[test]
+fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gathers_pace() {
+    for name in GAITS {
+        let mut motion = Motion::in_gait("swing", 90);
+        motion.stop();
+        motion.start(name);
+        let id = motion.robot.id(name);
+        let gait = motion.robot.gait(id);
+        motion.tick();
+        while motion.is_moving() {
+            assert_eq!(motion.phase(), 0);
+            motion.tick();
+        }
+        assert_eq!(motion.state, State::cycling(&motion.robot, id));
+        assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), 0));
+        let mut phase = 0;
+        for pace in [147, 294, 441, 588, 735, 882, 1024, 1024] {
+            motion.tick();
+            phase = gait.advance(phase, pace);
+            assert_eq!((motion.pace(), motion.phase()), (pace, phase));
+            assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
+        }
+    }
+}
+
+#[test]
+fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
+    // Stand brakes for seven frames; the move takes 24, and braking at most seven.
+    const FAR: [i16; 4] = [2900, -2400, 2600, -3300];
+    for frames in 8..24 {
+        let mut motion = Motion::standing();
+        motion.head_for_pose(FAR);
+        motion.run(frames);
+        motion.head_for_pose(BACK);
+        assert_eq!(motion.activity(), Activity::Pose);
+        let mut pace = motion.pace();
+        while pace > 0 {
+            motion.tick();
+            pace = pace.saturating_sub(147);
+            assert!(motion.is_moving() && motion.next.is_some());
+            assert_eq!(motion.pace(), pace);
+            // Still on the line: every servo has the same share behind it.
+            let share = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
+            assert!((share(0) - share(3)).abs() < 0.002);
+        }
+        motion.tick();
+        assert!(motion.next.is_none());
+        motion.run(LONG_ENOUGH);
+        assert_eq!(motion.pose(), &Pose(BACK.map(Sweep)));
+    }
+}
+
+#[test]
+fn the_gait_that_a_move_leads_to_just_goes_on_when_it_is_asked_for_again() {
+    let build = || {
+        let mut motion = Motion::standing();
+        motion.head_for_pose(THERE);
+        motion.run(LONG_ENOUGH);
+        motion.start("sway");
+        motion.run(4);
+        assert!(motion.is_moving());
+        motion
+    };
+    let mut asked = build();
+    asked.start("sway");
+    assert_same(asked, build());
+}
+
+// Cycling.
+
+#[test]
+fn the_same_gait_asked_for_again_goes_on_in_the_middle_of_its_cycle() {
+    for name in GAITS.into_iter().filter(|name| *name != "stray") {
+        let build = || Motion::in_gait(name, 60);
+        let mut asked = build();
+        asked.start(name);
+        assert_same(asked, build());
+    }
+}
+
+#[test]
+fn another_gait_lets_the_old_one_brake_along_its_cycle_first() {
+    let mut motion = Motion::in_gait("sway", 90);
+    let gait = motion.robot.gait(motion.robot.id("sway"));
+    motion.start("swing");
+    let mut phase = motion.phase();
+    for pace in [877, 730, 583, 436, 289, 142, 0] {
+        motion.tick();
+        phase = gait.advance(phase, pace);
+        assert_eq!((motion.pace(), motion.phase()), (pace, phase));
+        assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
+        assert_eq!(motion.gait(), Some("swing"), "where it is heading");
+    }
+    motion.tick();
+    assert!(motion.is_moving());
+    motion.run(LONG_ENOUGH);
+    assert!(motion.is_cycling());
+    assert_eq!(motion.gait(), Some("swing"));
+}
+
+#[test]
+fn the_last_of_several_commands_counts() {
+    let mut motion = Motion::in_gait("sway", 90);
+    motion.start("swing");
+    motion.run(2);
+    motion.head_for_pose(THERE);
+    motion.run(2);
+    motion.start("back");
+    motion.run(LONG_ENOUGH);
+    assert_eq!(motion.gait(), Some("back"));
+    assert!(motion.is_cycling());
+}
+
+#[test]
+fn a_gait_that_is_left_and_asked_for_again_before_it_stands_still_begins_anew() {
+    let mut motion = Motion::in_gait("sway", 90);
+    motion.head_for_pose(THERE);
+    motion.run(2);
+    motion.start("sway");
+    motion.run(6);
+    assert!(motion.is_moving());
+    motion.run(LONG_ENOUGH);
+    assert_eq!(motion.gait(), Some("sway"));
+}
+
+#[test]
+fn a_speed_is_gathered_and_lost_as_pace() {
+    let mut motion = Motion::in_gait("sway", 90);
+    motion.set_speed(50);
+    assert_eq!(motion.speed(), 50);
+    let mut paces = Vec::new();
+    for _ in 0..5 {
+        motion.tick();
+        paces.push(motion.pace());
+    }
+    assert_eq!(paces, [877, 730, 583, 512, 512]);
+    motion.set_speed(100);
+    motion.run(10);
+    assert_eq!(motion.pace(), pace::FULL);
+}
+
+// stop, rest and the guard, from anywhere.
+
+#[test]
+fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_every_move() {
+    for name in GAITS {
+        let mut moving = Motion::standing();
+        moving.start(name);
+        for frames in 0..140 {
+            let mut motion = Motion::in_gait(name, frames);
+            let pose = *motion.pose();
+            motion.stop();
+            assert_eq!(motion.phase(), 0, "a frozen robot is in no cycle");
+            motion.run(20);
+            assert_eq!(motion.activity(), Activity::Stop);
+            assert_eq!(motion.pose(), &pose, "{name}, frame {frames}");
+            assert_eq!(motion.tick(), motion.held());
+        }
+    }
+}
+
+#[test]
+fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
+    for name in GAITS {
+        for frames in 0..140 {
+            let mut motion = Motion::in_gait(name, frames);
+            let pose = *motion.pose();
+            motion.rest();
+            assert_eq!(motion.tick(), Pulses::default());
+            assert_eq!((motion.pose(), motion.phase()), (&pose, 0));
+        }
+    }
+}
+
+#[test]
+fn stop_and_rest_forget_what_was_to_come_next() {
+    for ask in [Motion::stop, Motion::rest] {
+        let mut motion = Motion::in_gait("sway", 90);
+        motion.head_for_pose(THERE);
+        motion.run(3);
+        let pose = *motion.pose();
+        ask(&mut motion);
+        motion.run(LONG_ENOUGH);
+        assert_eq!(motion.pose(), &pose);
+    }
+}
+
+#[test]
+fn a_stopped_gait_begins_anew_at_its_first_pose() {
+    let mut motion = Motion::in_gait("sway", 90);
+    motion.stop();
+    motion.run(5);
+    motion.start("sway");
+    motion.tick();
+    assert!(motion.is_moving());
+    while motion.is_moving() {
+        motion.tick();
+    }
+    let first = motion
+        .robot
+        .gait(motion.robot.id("sway"))
+        .pose(motion.robot.waves(), 0);
+    assert_eq!((motion.pose(), motion.phase()), (&first, 0));
+}
+
+#[test]
+fn frames_are_counted_from_power_on_also_while_it_rests() {
+    let mut motion = Motion::new(*Sample::odd());
+    motion.run(30);
+    motion.rest();
+    motion.run(12);
+    assert_eq!(motion.frames(), 42);
+}

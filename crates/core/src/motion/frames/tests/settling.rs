@@ -1,0 +1,37 @@
+//! Pulses that go over to another calibration.
+
+use super::*;
+use crate::numbers::units::Width;
+
+#[test]
+fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
+    // The gains of this robot differ from servo to servo.
+    let mut motion = Motion::standing();
+    let before = motion.sent().0;
+    let per_frame = f64::from(motion.robot.slew().per_frame);
+    let ways = motion.calibration.map(|servo| {
+        // Cycles for a frame's turn, rounded down.
+        (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
+    });
+    for (place, way) in ways.iter().enumerate() {
+        assert!(ways[..place].iter().all(|other| other != way), "{ways:?}");
+    }
+    for place in 0..4 {
+        let mut servo = motion.calibration[place];
+        servo.neutral = Width(servo.neutral.0 + 1000);
+        motion.calibrate(Servo::at(place), servo);
+    }
+    motion.settle();
+    for frame in 1..=1000u16 {
+        motion.tick();
+        for (place, sent) in motion.sent().0.iter().enumerate() {
+            let gone = sent.0 - before[place].0;
+            assert_eq!(
+                gone,
+                1000.min(frame.saturating_mul(ways[place])),
+                "A{}",
+                place + 1
+            );
+        }
+    }
+}

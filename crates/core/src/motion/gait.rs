@@ -1,0 +1,186 @@
+//! A gait: four sweeps as a function of one phase.
+//!
+//! Feet are never lifted; each leg swings and drags its pad. The shape of the swing and
+//! the order of the legs make the robot go, so a gait is a waveform read at four offsets
+//! with four gains. Waveforms are tables of 64 samples in flash; between samples a
+//! straight line is within half a degree of the real curve, less than a hobby servo resolves. The host that makes the tables
+//! checks that.
+
+use lizard_avr::{Flash, mul};
+
+use crate::numbers::gaits::{Channel, Gait, Wave};
+use crate::numbers::pose::Pose;
+use crate::numbers::units::{CYCLE, Sweep, phase16};
+
+impl Gait {
+    /// Where the servos stand at `phase` (1/2^24 cycle), by a robot's waveforms.
+    pub fn pose(&self, waves: Flash<[Wave]>, phase: u32) -> Pose {
+        let mut pose = Pose::NEUTRAL;
+        for (sweep, channel) in pose.0.iter_mut().zip(&self.channels) {
+            if let Some(wave) = waves.get(usize::from(channel.wave)) {
+                *sweep = channel.sweep(wave, phase16(phase));
+            }
+        }
+        pose
+    }
+
+    /// The phase one frame later, at `pace` (1024 is the gait's own).
+    pub const fn advance(&self, phase: u32, pace: u16) -> u32 {
+        let step = self.increment.wrapping_mul(pace as i32) >> 10;
+        phase.wrapping_add(step as u32) & (CYCLE - 1)
+    }
+}
+
+impl Channel {
+    /// The sweep at a phase of 1/65536 cycle.
+    pub fn sweep(&self, wave: Flash<Wave>, phase: u16) -> Sweep {
+        if self.gain == 0 {
+            return Sweep(0);
+        }
+        let at = phase.wrapping_add(self.offset);
+        let (index, fraction) = ((at >> 10) as u8, (at >> 2) as u8);
+        let here = wave.at(usize::from(index)).load();
+        let next = wave.at(usize::from((index + 1) & 0x3f)).load();
+        let rise = (mul(next.wrapping_sub(here), i16::from(fraction)) + 128) >> 8;
+        let value = here.wrapping_add(rise as i16);
+        Sweep((mul(value, self.gain).wrapping_add(1 << 13) >> 14) as i16)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::numbers::gaits::SAMPLES;
+    use crate::sample::Sample;
+
+    const FULL: u16 = 1024;
+
+    fn wave(samples: impl Fn(usize) -> i16) -> Wave {
+        core::array::from_fn(samples)
+    }
+
+    /// A channel that reads a waveform as it is.
+    const PLAIN: Channel = Channel {
+        wave: 0,
+        offset: 0,
+        gain: 1 << 14,
+    };
+
+    proptest! {
+        #[test]
+        fn between_two_samples_a_sweep_is_on_the_straight_line(
+            samples in prop::collection::vec(-16_000i16..16_000, SAMPLES),
+            channel in (any::<u16>(), any::<i16>()),
+            phase: u16,
+        ) {
+            let (offset, gain) = channel;
+            let channel = Channel { wave: 0, offset, gain };
+            let table = wave(|n| samples[n]);
+            let got = f64::from(channel.sweep(Flash::from(&table), phase).0);
+            let at = f64::from(phase.wrapping_add(offset)) / 1024.0;
+            let (here, next) = (samples[at as usize], samples[(at as usize + 1) % SAMPLES]);
+            let rise = f64::from(next) - f64::from(here);
+            let factor = f64::from(gain) / 16384.0;
+            let exact = factor * (f64::from(here) + rise * at.fract());
+            // Half a step before the gain, half after it, and the phase's last two bits.
+            let most = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
+            prop_assume!(exact.abs() < 32_000.0);
+            prop_assert!((got - exact).abs() <= most, "{got} for {exact}");
+        }
+
+        #[test]
+        fn a_cycle_at_any_pace_is_one_way_and_within_the_cycle(
+            increment in -400_000i32..400_000,
+            pace in 0..=FULL,
+            phase in 0..CYCLE,
+        ) {
+            let gait = Gait { increment, ..Gait::STILL };
+            let next = gait.advance(phase, pace);
+            prop_assert!(next < CYCLE);
+            let exact = f64::from(increment) * f64::from(pace) / 1024.0;
+            let gone = (i64::from(next) - i64::from(phase)).rem_euclid(CYCLE.into());
+            let off = (gone as f64 - exact).rem_euclid(f64::from(CYCLE));
+            prop_assert!(off < 1e-6 || off > f64::from(CYCLE) - 1.0, "{off}");
+        }
+    }
+
+    #[test]
+    fn every_sample_is_met_in_its_turn_and_the_first_follows_the_last() {
+        let table = wave(|n| 100 * n as i16 - 3000);
+        for n in 0..SAMPLES {
+            let sweep = PLAIN.sweep(Flash::from(&table), (n << 10) as u16);
+            assert_eq!(sweep, Sweep(table[n]));
+        }
+        let half_past_the_last = PLAIN.sweep(Flash::from(&table), 0xfe00);
+        assert_eq!(half_past_the_last.0, (table[63] + table[0]) / 2);
+    }
+
+    #[test]
+    fn halves_round_up_between_samples_and_in_the_gain() {
+        let table = wave(|n| [0, 1, 0, -1][n % 4]);
+        let at = |phase, gain| {
+            Channel { gain, ..PLAIN }
+                .sweep(Flash::from(&table), phase)
+                .0
+        };
+        assert_eq!([at(0x01fc, 1 << 14), at(0x0200, 1 << 14)], [0, 1]);
+        assert_eq!([at(0x0a00, 1 << 14), at(0x0a04, 1 << 14)], [0, -1]);
+        assert_eq!([at(0x0400, 8191), at(0x0400, 8192)], [0, 1]);
+        assert_eq!([at(0x0c00, 8192), at(0x0c00, 8193)], [0, -1]);
+    }
+
+    #[test]
+    fn an_offset_reads_ahead_and_a_negative_gain_turns_the_sense() {
+        let robot = Sample::odd();
+        let table = Flash::from(&robot.content.waves[1]);
+        for phase in (0..=u16::MAX).step_by(97) {
+            let ahead = Channel {
+                offset: 0x1800,
+                ..PLAIN
+            };
+            let plain = PLAIN.sweep(table, phase.wrapping_add(0x1800));
+            assert_eq!(ahead.sweep(table, phase), plain);
+            let other = Channel {
+                gain: -(1 << 14),
+                ..ahead
+            };
+            assert_eq!(other.sweep(table, phase), Sweep(-plain.0));
+            let still = Channel { gain: 0, ..ahead };
+            assert_eq!(still.sweep(table, phase), Sweep(0));
+        }
+    }
+
+    #[test]
+    fn a_pose_reads_every_servos_own_channel_of_its_own_waveform() {
+        let robot = Sample::odd();
+        for gait in &robot.content.gaits {
+            for phase in (0..CYCLE).step_by(99_991) {
+                let pose = gait.pose(robot.waves(), phase);
+                for (sweep, channel) in pose.0.iter().zip(&gait.channels) {
+                    let table = Flash::from(&robot.content.waves[usize::from(channel.wave)]);
+                    assert_eq!(*sweep, channel.sweep(table, (phase >> 8) as u16));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_gait_with_a_negative_increment_is_read_backwards() {
+        let robot = Sample::odd();
+        let [there, back] = ["sway", "back"].map(|name| robot.gait(robot.id(name)));
+        let mut phases = Vec::from([0]);
+        for frame in 0..50 {
+            phases.push(there.advance(phases[frame], FULL));
+        }
+        let mut phase = phases[50];
+        for before in phases.iter().rev() {
+            assert_eq!(phase, *before);
+            phase = back.advance(phase, FULL);
+        }
+        assert_eq!(back.advance(0, FULL), CYCLE - there.advance(0, FULL));
+    }
+}

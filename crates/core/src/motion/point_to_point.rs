@@ -1,0 +1,245 @@
+//! A point-to-point move: straight from one pose to another.
+//!
+//! All four servos start together, follow one smoothstep and arrive together;
+//! the longest way sets the time, so that no servo exceeds the slew limit. A
+//! smoothstep is at most one and a half times as fast as a steady move.
+
+use lizard_avr::{mul, mul_unsigned};
+
+use crate::numbers::pose::Pose;
+use crate::numbers::slew::Slew;
+
+/// The shortest move, in frames: even a small correction is not a jerk. With
+/// eight, no move changes a servo's speed faster than the gaits do.
+const SHORTEST: u16 = 8;
+
+/// All of a move's time, Q15.
+const END: u16 = 1 << 15;
+
+/// A move under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointToPoint {
+    from: Pose,
+    to: Pose,
+    /// Share of the time that goes by in each frame at full pace, Q15.
+    step: u16,
+    /// Share of the time gone by, Q15.
+    gone: u16,
+}
+
+impl PointToPoint {
+    /// A move between two poses.
+    pub fn new(from: &Pose, to: &Pose, slew: Slew) -> Self {
+        let way = from.farthest(to);
+        let frames = (mul_unsigned(way, slew.frames_per_way) >> 16) as u16 + 1;
+        Self {
+            from: *from,
+            to: *to,
+            step: END / frames.max(SHORTEST),
+            gone: 0,
+        }
+    }
+
+    /// Where it leads.
+    pub const fn target(&self) -> &Pose {
+        &self.to
+    }
+
+    /// One frame on, at `pace` (1024 is full).
+    pub fn advance(&mut self, pace: u16) {
+        let step = (mul_unsigned(self.step, pace) >> 10) as u16;
+        self.gone = (self.gone + step).min(END);
+    }
+
+    /// True where the move has arrived.
+    pub const fn arrived(&self) -> bool {
+        self.gone == END
+    }
+
+    /// Where the servos stand now.
+    pub fn pose(&self) -> Pose {
+        if self.arrived() {
+            return self.to;
+        }
+        let share = smoothstep(self.gone) as i16;
+        let mut pose = self.from;
+        for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
+            // Twice half the way, because a way may be more than half a turn.
+            let half = (to.0 >> 1) - (sweep.0 >> 1);
+            let way = (mul(half, share) + (1 << 13)) >> 14;
+            sweep.0 = sweep.0.wrapping_add(way as i16);
+        }
+        pose
+    }
+}
+
+/// `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
+fn smoothstep(u: u16) -> u16 {
+    let squared = (mul_unsigned(u, u) >> 15) as u16;
+    (mul_unsigned(squared, 3 * (END / 2) - u) >> 14) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::numbers::units::Sweep;
+
+    const FULL: u16 = 1024;
+
+    fn pose(sweeps: [i16; 4]) -> Pose {
+        Pose(sweeps.map(Sweep))
+    }
+
+    /// The poses of a move at full pace, its start first.
+    fn course(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
+        let mut path = PointToPoint::new(from, to, slew);
+        let mut poses = Vec::from([*from]);
+        while !path.arrived() {
+            path.advance(FULL);
+            poses.push(path.pose());
+            assert!(poses.len() < 4000, "{from:?} to {to:?} never ends");
+        }
+        poses
+    }
+
+    /// A move of one servo.
+    fn way(from: i16, to: i16, slew: Slew) -> Vec<i16> {
+        let [from, to] = [from, to].map(|sweep| pose([0, 0, sweep, 0]));
+        let course = course(&from, &to, slew);
+        course.iter().map(|pose| pose.0[2].0).collect()
+    }
+
+    /// Any limit between 10 and 1000 deg/s.
+    fn slews() -> impl Strategy<Value = Slew> {
+        (Slew::SLOWEST..=3640).prop_map(Slew::new)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3000))]
+
+        #[test]
+        fn a_move_keeps_the_slew_limit_wastes_no_time_and_arrives(
+            from: i16,
+            to: i16,
+            slew in slews(),
+        ) {
+            let sweeps = way(from, to, slew);
+            prop_assert_eq!(sweeps.last(), Some(&to));
+            let most = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
+            prop_assert!(most <= Some(slew.per_frame), "{most:?} of {slew:?}");
+            // A smoothstep needs half as long again as a steady move, and a frame
+            // is a whole number of 1/32768 of the time.
+            let frames = 1.5 * f64::from(from.abs_diff(to)) / f64::from(slew.per_frame - 6);
+            let least = frames.ceil().max(8.0) + 1.0;
+            let most = 32_768.0 / (32_768.0 / least).floor() + 1.0;
+            prop_assert!((sweeps.len() - 1) as f64 <= most, "{} of {most}", sweeps.len() - 1);
+            prop_assert!(sweeps.len() > 8, "a jerk");
+        }
+
+        #[test]
+        fn a_move_goes_straight_there_along_a_smoothstep(from: i16, to: i16, slew in slews()) {
+            let mut path = PointToPoint::new(&pose([from; 4]), &pose([to; 4]), slew);
+            let mut frame = 0.0;
+            let way = f64::from(to) - f64::from(from);
+            let mut before = f64::from(from);
+            while !path.arrived() {
+                path.advance(FULL);
+                frame += f64::from(path.step) / 32_768.0;
+                let u = f64::min(frame, 1.0);
+                let exact = f64::from(from) + way * u * u * (3.0 - 2.0 * u);
+                let here = f64::from(path.pose().0[0].0);
+                // Q15 of the way, twice, and halves of odd sweeps.
+                let rounding = 2.0 + way.abs() / 8000.0;
+                prop_assert!((here - exact).abs() <= rounding, "{here}, {exact}");
+                prop_assert!((here - before) * way.signum() >= -rounding, "{here} after {before}");
+                before = here;
+            }
+        }
+
+        #[test]
+        fn all_servos_have_the_same_share_of_their_way_behind_them(
+            from: [i16; 4],
+            to: [i16; 4],
+            slew in slews(),
+        ) {
+            let ways: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
+            let [from, to] = [from, to].map(pose);
+            let mut path = PointToPoint::new(&from, &to, slew);
+            while !path.arrived() {
+                path.advance(FULL);
+                let here = path.pose();
+                let share = f64::from(path.gone) / 32_768.0;
+                let share = share * share * (3.0 - 2.0 * share);
+                for (n, way) in ways.iter().enumerate() {
+                    let gone = f64::from(here.0[n].0) - f64::from(from.0[n].0);
+                    let off = gone - share * way;
+                    prop_assert!(off.abs() <= 2.0 + way.abs() / 8000.0, "A{}: {off}", n + 1);
+                }
+            }
+            prop_assert_eq!(path.pose(), to);
+        }
+
+        #[test]
+        fn a_move_at_any_pace_keeps_the_limit_and_stays_on_its_line(
+            from: [i16; 4],
+            to: [i16; 4],
+            slew in slews(),
+            paces in prop::collection::vec(0..=FULL, 1..60),
+        ) {
+            let (start, end) = (pose(from), pose(to));
+            let mut path = PointToPoint::new(&start, &end, slew);
+            let mut last = start;
+            for pace in paces {
+                path.advance(pace);
+                let here = path.pose();
+                prop_assert!(last.farthest(&here) <= slew.per_frame);
+                for n in 0..4 {
+                    let (low, high) = (from[n].min(to[n]), from[n].max(to[n]));
+                    let within = i32::from(low) - 1..=i32::from(high) + 1;
+                    prop_assert!(within.contains(&i32::from(here.0[n].0)));
+                }
+                last = here;
+            }
+        }
+    }
+
+    #[test]
+    fn the_longest_way_of_all_is_kept_within_the_slowest_and_the_fastest_limit() {
+        for slew in [Slew::SLOWEST, 100, 1092, 3640].map(Slew::new) {
+            for length in (0..=u16::MAX).step_by(251).chain([u16::MAX]) {
+                let to = i16::MIN.wrapping_add(length as i16);
+                let sweeps = way(i16::MIN, to, slew);
+                let most = sweeps
+                    .windows(2)
+                    .map(|pair| pair[1].abs_diff(pair[0]))
+                    .max();
+                assert!(
+                    most <= Some(slew.per_frame),
+                    "{length}: {most:?} of {slew:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_move_to_where_the_robot_is_stays_there_for_eight_frames() {
+        let sweeps = way(77, 77, Slew::new(1000));
+        assert_eq!(sweeps, [77; 9]);
+        let path = PointToPoint::new(&pose([0; 4]), &pose([9; 4]), Slew::new(1000));
+        assert_eq!(path.step, 32_768 / 8, "an equal share in each");
+    }
+
+    #[test]
+    fn a_standing_pace_holds_a_move() {
+        let mut path = PointToPoint::new(&pose([0; 4]), &pose([900; 4]), Slew::new(1000));
+        path.advance(FULL);
+        let here = path.pose();
+        path.advance(0);
+        assert_eq!(path.pose(), here);
+        assert!(!path.arrived());
+    }
+}

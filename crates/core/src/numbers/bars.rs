@@ -1,0 +1,98 @@
+//! The bars of a five-bar linkage, and the factors that the guard needs of them.
+//!
+//! A host computes the factors once, so that the device divides by nothing.
+
+use crate::numbers::couplers::Coupling;
+use crate::numbers::units::Scale;
+
+/// The longest that a loop's bars may be, in steps: l0 + l1 + l4, and each coupler.
+pub const LONGEST: f64 = 127.0 * 256.0;
+
+/// The shortest coupler, in steps.
+pub const SHORTEST_COUPLER: i16 = 4097;
+
+lizard_avr::plain! {
+    /// The bars of one loop, and what follows from them. A length is counted in steps of
+    /// which `scale` says how many are a millimetre; margins do not depend on it.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Bars {
+        pub(crate) couplers: Coupling,
+        pub(crate) base: i16,
+        pub(crate) left: i16,
+        pub(crate) right: i16,
+        /// One over `4 a b`, in the scale that the shifts leave.
+        pub(crate) per_area: u16,
+        /// `2^27` over each coupler.
+        pub(crate) per_left: i16,
+        pub(crate) per_right: i16,
+        /// Takes a squared distance of the crank tips to fifteen bits.
+        pub(crate) square_shift: u16,
+        /// Takes rise times that to sixteen bits.
+        pub(crate) area_shift: u16,
+        pub(crate) scale: Scale,
+        /// Nothing: it fills up what the fields above leave of four bytes.
+        pub(crate) rest: u16,
+    }
+}
+
+impl Bars {
+    /// No loop: it never closes.
+    pub const NONE: Self = Self {
+        base: 0,
+        left: 0,
+        right: 0,
+        couplers: Coupling::NONE,
+        square_shift: 1,
+        area_shift: 0,
+        per_area: 0,
+        per_left: 0,
+        per_right: 0,
+        scale: Scale { bits: 0 },
+        rest: 0,
+    };
+
+    /// A loop with these bars, in steps: the distance between the shafts, the left
+    /// and the right crank, which are at most [`LONGEST`] together; and two
+    /// couplers.
+    ///
+    /// # Panics
+    /// Where a coupler is shorter than [`SHORTEST_COUPLER`].
+    pub const fn new([base, left, right]: [i16; 3], [a, b]: [i16; 2], scale: Scale) -> Self {
+        assert!(a >= SHORTEST_COUPLER && b >= SHORTEST_COUPLER);
+        let half_sum = (a as u32 + b as u32) / 2;
+        let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u16;
+        let mut area = (a as u64 * b as u64) >> square_shift;
+        let mut area_shift = 9;
+        while area < 1 << 14 {
+            area <<= 1;
+            area_shift -= 1;
+        }
+        Self {
+            base,
+            left,
+            right,
+            couplers: Coupling::new(a, b),
+            square_shift,
+            area_shift,
+            per_area: if area > 1 << 14 {
+                ((1u64 << 30) / area) as u16
+            } else {
+                u16::MAX
+            },
+            per_left: ((1 << 27) / a as i32) as i16,
+            per_right: ((1 << 27) / b as i32) as i16,
+            scale,
+            rest: 0,
+        }
+    }
+
+    /// The step of the lengths.
+    pub const fn scale(&self) -> Scale {
+        self.scale
+    }
+
+    /// The couplers.
+    pub const fn couplers(&self) -> Coupling {
+        self.couplers
+    }
+}

@@ -1,0 +1,134 @@
+//! How one servo turns a pulse into an angle.
+//!
+//! Servos of one type differ, and a horn goes on its spline only every 14 degrees. So
+//! this is not a constant of the robot. It is a value in the motion, made from
+//! robot.toml's numbers and from what a person has set ([`crate::memory::adjustment`]).
+
+use lizard_avr::{mul, mul_unsigned};
+
+use crate::numbers::units::{Sweep, Width};
+
+lizard_avr::plain! {
+    /// One servo's pulses and travel.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Calibration {
+        /// The pulse width at the neutral angle.
+        pub neutral: Width,
+        /// CPU cycles for each 1/65536 turn, Q14; negative for a servo whose
+        /// longer pulse turns it clockwise.
+        pub gain: i16,
+        /// The travel's clockwise end.
+        pub min: Sweep,
+        /// The travel's counter-clockwise end.
+        pub max: Sweep,
+    }
+}
+
+impl Calibration {
+    /// No servo: without travel.
+    pub const NONE: Self = Self {
+        neutral: Width(0),
+        gain: 0,
+        min: Sweep(0),
+        max: Sweep(0),
+    };
+
+    /// The pulse width that turns the servo to `sweep`.
+    pub fn width(&self, sweep: Sweep) -> Width {
+        Width(self.neutral.0.wrapping_add(self.turned(sweep) as u16))
+    }
+
+    /// The same for sweeps beyond the travel: 0 for less, 65535 for more than that.
+    #[inline(never)]
+    pub fn pulse(&self, sweep: Sweep) -> u16 {
+        let pulse = i32::from(self.neutral.0) + self.turned(sweep);
+        pulse.clamp(0, i32::from(u16::MAX)) as u16
+    }
+
+    fn turned(&self, sweep: Sweep) -> i32 {
+        (mul(sweep.0, self.gain) + (1 << 13)) >> 14
+    }
+
+    /// How far the pulse may change in a frame, for a turn of `per_frame`, 1/65536
+    /// turn; at least one cycle.
+    pub fn slew(&self, per_frame: u16) -> u16 {
+        let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
+        cycles.max(1)
+    }
+
+    /// True where the travel of the servo reaches `sweep`.
+    pub const fn reaches(&self, sweep: Sweep) -> bool {
+        self.min.0 <= sweep.0 && sweep.0 <= self.max.0
+    }
+}
+
+lizard_avr::plain! {
+    /// The sweeps that a robot's gaits need of a servo; the neutral angle, 0, is
+    /// among them.
+    #[derive(Debug, Default, PartialEq, Eq)]
+    pub struct Reach {
+        /// The farthest clockwise.
+        pub min: Sweep,
+        /// The farthest counter-clockwise.
+        pub max: Sweep,
+    }
+}
+
+impl Reach {
+    /// Whether a servo's travel reaches all of it.
+    pub fn is_within(&self, servo: &Calibration) -> bool {
+        servo.min <= self.min && self.max <= servo.max
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{STEPS_PER_DEGREE, Sample};
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn a_pulse_is_within_a_cycle_of_the_line_in_all_of_the_travel(robot in Sample::random()) {
+            for (servo, float) in robot.calibration().iter().zip(robot.measures.servos) {
+                for sweep in servo.min.0..=servo.max.0 {
+                    let turned = f64::from(sweep) / STEPS_PER_DEGREE;
+                    let us = float.neutral_us + float.us_per_degree * turned;
+                    let width = f64::from(servo.width(Sweep(sweep)).0);
+                    // Half a cycle each of the neutral width and of this one; the
+                    // gain's rounding over half a turn.
+                    prop_assert!((width - 16.0 * us).abs() <= 2.0, "{float:?} at {sweep}: {width}");
+                }
+                prop_assert_eq!(servo.width(Sweep(0)), servo.neutral);
+            }
+        }
+
+        #[test]
+        fn a_servo_reaches_both_ends_of_its_travel_and_not_a_step_more(robot in Sample::random()) {
+            for servo in &robot.calibration() {
+                for sweep in i16::MIN..=i16::MAX {
+                    let within = (servo.min.0..=servo.max.0).contains(&sweep);
+                    prop_assert_eq!(servo.reaches(Sweep(sweep)), within);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn half_a_cycle_rounds_up_for_either_sense_of_a_servo() {
+        let servo = |gain| Calibration {
+            neutral: Width(20_000),
+            gain,
+            min: Sweep(-9000),
+            max: Sweep(9000),
+        };
+        // Gains of a half and of one and a half cycle a step.
+        assert_eq!(servo(8192).width(Sweep(3)), Width(20_002));
+        assert_eq!(servo(8192).width(Sweep(-3)), Width(19_999));
+        assert_eq!(servo(-24_576).width(Sweep(1)), Width(19_999));
+        assert_eq!(servo(-24_576).width(Sweep(-1)), Width(20_002));
+    }
+}

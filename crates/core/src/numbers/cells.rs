@@ -1,0 +1,205 @@
+//! Poses that need no measuring: cells of two servos' sweeps in which the guard is
+//! known to accept every pose.
+//!
+//! Measuring all margins of a pose takes most of a frame's time, and far from all limits
+//! the result is always "safe". Every condition of the guard depends on one servo or on
+//! two, so four small maps over pairs of servos can say where that is. The host makes
+//! these maps with the numbers of a robot, and proves that the integers of
+//! [`crate::guard::clearance`] accept every pose of every cell. A pose outside of the cells is not
+//! unsafe; the device measures it.
+
+use lizard_avr::{Flash, flash};
+
+use crate::numbers::units::Sweep;
+
+/// The most rows that a map may have.
+pub const MOST_ROWS: usize = 64;
+
+/// Binary logarithm of the steps of a sweep (1/65536 turn) that a row is wide: 1.4 deg.
+pub const ROW_BITS: u32 = 8;
+
+/// The same of a column: 0.7 deg.
+pub const COLUMN_BITS: u32 = 7;
+
+flash! {
+    const NO_ROWS: [[i8; 2]; 0] = [];
+}
+
+/// The cells of one pair of servos in which everything is safe that depends on the two:
+/// rows among those of several maps.
+#[derive(Clone, Copy)]
+pub struct Cells<'a> {
+    first: i8,
+    /// Where its rows begin, and how many they are.
+    begin: u16,
+    count: u8,
+    rows: Flash<'a, [[i8; 2]]>,
+}
+
+impl Cells<'static> {
+    /// No cell at all: every pose is measured.
+    pub const NONE: Self = Self::among(0, 0, 0, NO_ROWS.as_slice());
+}
+
+impl<'a> Cells<'a> {
+    /// The map whose `count` rows begin at `begin` among `rows`. They follow one another
+    /// from row `first` on, around the turn. Each has its first and its last column, both
+    /// of which belong to it; a row whose first column is the greater one has none. A row
+    /// or column is a sweep divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded
+    /// down.
+    #[inline(always)]
+    pub const fn among(first: i8, begin: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+        Self {
+            first,
+            begin,
+            count,
+            rows,
+        }
+    }
+
+    /// A map of all of these rows, at most 255.
+    pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+        Self::among(first, 0, rows.len() as u8, rows)
+    }
+
+    /// True where a cell holds this pair of sweeps. A column that is no `i8`, a
+    /// quarter of a turn from neutral, is in no cell.
+    #[inline(always)]
+    pub fn hold(&self, row: Sweep, column: Sweep) -> bool {
+        let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first) as u8;
+        if row >= self.count {
+            return false;
+        }
+        let Some(columns) = self.rows.get(usize::from(self.begin) + usize::from(row)) else {
+            return false;
+        };
+        let [first, last] = columns.load();
+        let column = column.0 >> COLUMN_BITS;
+        column >= i16::from(first) && column <= i16::from(last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What a map says, by division and without a shortcut.
+    fn held(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
+        let row = f64::from(row).div_euclid(256.0) as i32;
+        // A turn has 256 rows, and the one behind the last is the first.
+        let row = if row < i32::from(first) {
+            row + 256
+        } else {
+            row
+        };
+        let column = f64::from(column).div_euclid(128.0) as i32;
+        rows.iter().enumerate().any(|(place, [low, high])| {
+            i32::from(first) + place as i32 == row
+                && (i32::from(*low)..=i32::from(*high)).contains(&column)
+        })
+    }
+
+    /// Columns at and beside every border that rows here have, and a quarter of a turn
+    /// from neutral, where columns end.
+    const COLUMNS: [i16; 17] = [
+        i16::MIN,
+        -16_385,
+        -16_384,
+        -16_257,
+        -16_256,
+        -1281,
+        -1280,
+        -129,
+        -1,
+        0,
+        127,
+        128,
+        1407,
+        1408,
+        16_383,
+        16_384,
+        i16::MAX,
+    ];
+
+    fn agrees(first: i8, rows: &[[i8; 2]]) {
+        let cells = Cells::new(first, Flash::from(rows));
+        for row in i16::MIN..=i16::MAX {
+            for column in COLUMNS {
+                assert_eq!(
+                    cells.hold(Sweep(row), Sweep(column)),
+                    held(first, rows, row, column),
+                    "{row} {column} in {rows:?} from {first}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_pair_is_held_by_the_row_and_the_columns_that_it_is_in_at_every_sweep() {
+        let rows = [
+            [-10, 10],
+            [1, 0],
+            [-128, 127],
+            [0, 0],
+            [-127, -2],
+            [127, -128],
+        ];
+        // About neutral, at either end of the turn, and with rows beyond its end.
+        for first in [-3, 0, -128, 122, 125] {
+            agrees(first, &rows);
+        }
+        let most: Vec<[i8; 2]> = (0..MOST_ROWS as i8).map(|n| [n - 40, n]).collect();
+        agrees(-32, &most);
+    }
+
+    #[test]
+    fn a_map_without_rows_holds_nothing() {
+        for row in i16::MIN..=i16::MAX {
+            for column in COLUMNS {
+                assert!(!Cells::NONE.hold(Sweep(row), Sweep(column)));
+            }
+        }
+        agrees(-5, &[]);
+    }
+
+    proptest! {
+        #[test]
+        fn maps_whose_rows_are_together_have_their_own_each(
+            firsts: [i8; 2],
+            maps in prop::array::uniform2(prop::collection::vec(any::<[i8; 2]>(), 0..100)),
+            pairs in prop::collection::vec(any::<[i16; 2]>(), 300),
+        ) {
+            let rows = maps.concat();
+            let rows = Flash::from(rows.as_slice());
+            let begins = [0, maps[0].len() as u16];
+            for map in 0..2 {
+                let cells = Cells::among(firsts[map], begins[map], maps[map].len() as u8, rows);
+                for [row, column] in &pairs {
+                    prop_assert_eq!(
+                        cells.hold(Sweep(*row), Sweep(*column)),
+                        held(firsts[map], &maps[map], *row, *column)
+                    );
+                }
+            }
+        }
+
+        #[test]
+        fn any_map_holds_what_its_rows_say(
+            first: i8,
+            rows in prop::collection::vec(any::<[i8; 2]>(), 0..256),
+            pairs in prop::collection::vec(any::<[i16; 2]>(), 1000),
+        ) {
+            let cells = Cells::new(first, Flash::from(rows.as_slice()));
+            for [row, column] in pairs {
+                prop_assert_eq!(
+                    cells.hold(Sweep(row), Sweep(column)),
+                    held(first, &rows, row, column)
+                );
+            }
+        }
+    }
+}

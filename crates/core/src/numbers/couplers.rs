@@ -1,0 +1,278 @@
+//! The triangle of the two couplers over the line between the crank tips.
+//!
+//! Couplers of lengths `a` (left) and `b` (right) meet in the end point, the head or the
+//! tail. How they lean depends only on the squared distance `s` of the crank tips. The
+//! margins need just two functions of `s`:
+//!
+//! ```text
+//! rise = 2 height / distance    = sqrt((R - s) (s - N)) / s    R = (a + b)^2, N = (a - b)^2
+//! skew = 2 foot / distance - 1  = (a^2 - b^2) / s              0 for equal couplers
+//! ```
+//!
+//! (height and foot of the end point over the line, the foot counted from the left crank
+//! tip; Heron's formula gives the height.) Both are read from a [`Curve`]. At either end
+//! of its range the rise falls to zero like a square root, too steeply for a table over
+//! `s`. There it is a function of the distance from that end, `R - s` or `s - N`, with
+//! its own table. A robot that cannot reach that end does not have this table. The rise
+//! is largest at `s = 2 R N / (R + N)`, below `2 N`; the table over `s` is read from
+//! there on, where it falls, and stays at the largest rise below.
+
+use lizard_avr::Flash;
+
+use crate::numbers::curve::{Curve, ENTRIES, OCTAVES, Table, argument};
+
+/// The tables of a pair of couplers. Q10.
+#[derive(Clone, Copy, Debug)]
+pub struct Tables<'a> {
+    /// The rise over `s`, made by [`rise`].
+    pub rise: Option<Flash<'a, Table>>,
+    /// The rise over `R - s`, made by [`stretched`]; for a loop whose crank tips
+    /// part so far that [`Couplers::is_near_stretched`].
+    pub stretched: Option<Flash<'a, Table>>,
+    /// The rise over `s - N`, made by [`folded`]; for couplers that
+    /// [`Couplers::differ_much`].
+    pub folded: Option<Flash<'a, Table>>,
+    /// The skew over `s`, made by [`skew`]; for unequal couplers.
+    pub skew: Option<Flash<'a, Table>>,
+}
+
+impl Tables<'_> {
+    /// None at all: nothing is known of such couplers.
+    pub const NONE: Self = Self {
+        rise: None,
+        stretched: None,
+        folded: None,
+        skew: None,
+    };
+}
+
+lizard_avr::plain! {
+    /// The lengths of two couplers of one loop, in its steps, and what follows from them.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Coupling {
+        left: i16,
+        right: i16,
+        /// `R` in steps of `s`, a quarter of the bars' squared ones.
+        reach_sq: u32,
+        /// `N`, likewise.
+        least_sq: u32,
+        /// Leading zeros of both.
+        reach_zeros: u16,
+        least_zeros: u16,
+    }
+}
+
+impl Coupling {
+    /// None: they never meet.
+    pub const NONE: Self = Self {
+        left: 0,
+        right: 0,
+        reach_sq: 0,
+        least_sq: 0,
+        reach_zeros: 32,
+        least_zeros: 32,
+    };
+
+    /// Couplers of these lengths.
+    pub const fn new(left: i16, right: i16) -> Self {
+        Self {
+            left,
+            right,
+            reach_sq: reach_sq(left, right),
+            least_sq: least_sq(left, right),
+            reach_zeros: reach_sq(left, right).leading_zeros() as u16,
+            least_zeros: least_sq(left, right).leading_zeros() as u16,
+        }
+    }
+
+    /// Length of the left coupler.
+    pub const fn left(&self) -> i16 {
+        self.left
+    }
+
+    /// Length of the right coupler.
+    pub const fn right(&self) -> i16 {
+        self.right
+    }
+
+    /// See [`Couplers::differ_much`].
+    pub const fn differs_much(&self) -> bool {
+        2 * self.least_sq > self.reach_sq >> OCTAVES
+    }
+}
+
+/// Two couplers of one loop, and the tables that belong to them.
+#[derive(Clone, Copy)]
+pub struct Couplers<'a> {
+    lengths: Coupling,
+    tables: Tables<'a>,
+}
+
+/// How the couplers lean at one distance of the crank tips, Q10.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lean {
+    /// Twice the height of the end point over the distance of the crank tips.
+    pub rise: i16,
+    /// Twice the foot of that height over the distance, less one.
+    pub skew: i16,
+}
+
+impl<'a> Couplers<'a> {
+    /// Couplers of these lengths, in the steps of their loop, with the tables that
+    /// belong to them; of what a table that is not there would tell, nothing is known.
+    pub const fn new(lengths: Coupling, tables: Tables<'a>) -> Self {
+        Self { lengths, tables }
+    }
+
+    /// True for couplers whose difference alone keeps the crank tips so far apart
+    /// that the margins are known next to it: there the rise is read from the table
+    /// of folded couplers. Of others, [`Couplers::at`] knows nothing so near.
+    pub const fn differ_much(left: i16, right: i16) -> bool {
+        Coupling::new(left, right).differs_much()
+    }
+
+    /// True where the squared distance of the crank tips is beyond three quarters
+    /// of `R`: there the rise is read from the table of stretched couplers.
+    pub const fn is_near_stretched(left: i16, right: i16, tips_sq: u32) -> bool {
+        is_near_stretched(reach_sq(left, right), tips_sq)
+    }
+
+    /// The lean at a squared distance of the crank tips in steps of 1/4 of the
+    /// bars' squared ones. None where the couplers do not close the loop, or so
+    /// near to that, or to coinciding crank tips, that the type-2 margin is below
+    /// a tenth, the least limit that a robot may have.
+    #[inline(always)]
+    pub fn at(&self, tips_sq: u32) -> Option<Lean> {
+        let Self { lengths, tables } = self;
+        let (reach_sq, least_sq) = (lengths.reach_sq, lengths.least_sq);
+        if tips_sq >= reach_sq {
+            return None;
+        }
+        let rise = match (tables.stretched, tables.folded) {
+            (Some(stretched), _) if is_near_stretched(reach_sq, tips_sq) => {
+                Curve::of_octave(stretched, lengths.reach_zeros + 2).at(reach_sq - tips_sq)?
+            }
+            (_, Some(folded)) if tips_sq < 2 * least_sq => {
+                Curve::of_octave(folded, lengths.least_zeros).at(tips_sq.checked_sub(least_sq)?)?
+            }
+            _ => Curve::of_octave(tables.rise?, lengths.reach_zeros).falling(tips_sq)?,
+        };
+        let skew = match tables.skew {
+            Some(skew) => {
+                let size = Curve::of_octave(skew, lengths.reach_zeros).falling(tips_sq)?;
+                if lengths.left < lengths.right {
+                    size.wrapping_neg()
+                } else {
+                    size
+                }
+            }
+            None => 0,
+        };
+        Some(Lean { rise, skew })
+    }
+}
+
+/// See [`Couplers::is_near_stretched`].
+const fn is_near_stretched(reach_sq: u32, tips_sq: u32) -> bool {
+    tips_sq > reach_sq - reach_sq / 4
+}
+
+/// The rise over `s` for couplers of these lengths; made by a host.
+pub const fn rise(left: i16, right: i16) -> Table {
+    let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
+    let mut table = [0; ENTRIES];
+    let mut index = 0;
+    while index < ENTRIES {
+        // Rounded down, because a straight line between two points of this curve
+        // lies above it.
+        let mut tips_sq = argument(reach_sq, index);
+        if tips_sq < peak_sq(left, right) as u64 {
+            tips_sq = peak_sq(left, right) as u64;
+        }
+        table[index] = rise_q10(reach_sq, least_sq, tips_sq, 0);
+        index += 1;
+    }
+    table
+}
+
+/// The rise over `R - s`; made by a host.
+pub const fn stretched(left: i16, right: i16) -> Table {
+    let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
+    let mut table = [0; ENTRIES];
+    let mut index = 0;
+    while index < ENTRIES {
+        let short = argument(reach_sq / 4, index);
+        if short < reach_sq as u64 {
+            table[index] = rise_q10(reach_sq, least_sq, reach_sq as u64 - short, 1);
+        }
+        index += 1;
+    }
+    table
+}
+
+/// The rise over `s - N`; made by a host.
+pub const fn folded(left: i16, right: i16) -> Table {
+    let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
+    let mut table = [0; ENTRIES];
+    let mut index = 0;
+    while index < ENTRIES {
+        let above = argument(least_sq, index);
+        table[index] = rise_q10(reach_sq, least_sq, least_sq as u64 + above, 1);
+        index += 1;
+    }
+    table
+}
+
+/// The size of the skew over `s`; made by a host.
+pub const fn skew(left: i16, right: i16) -> Table {
+    let reach_sq = reach_sq(left, right);
+    // a^2 - b^2 in the steps of `s`, a quarter of the bars' squared ones.
+    let difference = (left as i64 * left as i64 - right as i64 * right as i64).unsigned_abs() / 4;
+    let mut table = [0; ENTRIES];
+    let mut index = 0;
+    while index < ENTRIES {
+        let tips_sq = argument(reach_sq, index);
+        let skew = ((difference << 10) + tips_sq / 2) / tips_sq;
+        table[index] = if skew < 0x7fff { skew as i16 } else { 0x7fff };
+        index += 1;
+    }
+    table
+}
+
+/// `sqrt((R - s)(s - N)) / s` in Q10, to nearest where `round` is 1, down where
+/// it is 0; 0 outside of N..R.
+const fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
+    let (reach_sq, least_sq) = (reach_sq as u64, least_sq as u64);
+    if tips_sq >= reach_sq || tips_sq <= least_sq {
+        return 0;
+    }
+    let product = (reach_sq - tips_sq) as u128 * (tips_sq - least_sq) as u128;
+    // One bit more than Q10 for the rounding.
+    let twice = ((product << 22) / (tips_sq as u128 * tips_sq as u128)).isqrt();
+    let rise = (twice + round) >> 1;
+    if rise < 0x7fff { rise as i16 } else { 0x7fff }
+}
+
+/// `R` in steps of `s`, a quarter of the bars' squared ones.
+const fn reach_sq(left: i16, right: i16) -> u32 {
+    let sum = left as u32 + right as u32;
+    // Half of the sum squared; of equal couplers exactly the coupler squared.
+    sum / 2 * (sum / 2) + if sum % 2 == 1 { sum / 2 } else { 0 }
+}
+
+/// `N` in steps of `s`.
+const fn least_sq(left: i16, right: i16) -> u32 {
+    let difference = left.abs_diff(right) as u32;
+    difference * difference / 4
+}
+
+/// Where the rise is largest, in steps of `s`.
+const fn peak_sq(left: i16, right: i16) -> u32 {
+    let (reach_sq, least_sq) = (reach_sq(left, right) as u64, least_sq(left, right) as u64);
+    (2 * reach_sq * least_sq / (reach_sq + least_sq)) as u32
+}
+
+const _: () = assert!(OCTAVES == 10, "1/1024 of R is a type-2 margin of .06");
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! The tables of the couplers against triangles in floating point.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::numbers::bars::SHORTEST_COUPLER;
+use crate::sample::Bars;
+use crate::sample::bounds::{self, KNOWN};
+
+/// The longest coupler that a loop's step allows.
+const LONGEST: i16 = 32_511;
+
+/// Rise and skew of couplers of these lengths with their crank tips at the
+/// distance whose quarter square is `tips_sq`, straight from the triangle.
+fn truth(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
+    let distance = 2.0 * f64::from(tips_sq).sqrt();
+    let foot = (distance * distance + left * left - right * right) / (2.0 * distance);
+    let height_sq = left * left - foot * foot;
+    (height_sq >= 0.0).then(|| {
+        let rise = 2.0 * height_sq.sqrt() / distance;
+        [rise, 2.0 * foot / distance - 1.0]
+    })
+}
+
+/// The type-2 margin: 2 a b sin = rise s.
+fn type2(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
+    2.0 * rise * f64::from(tips_sq) / (left * right)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6000))]
+
+    #[test]
+    fn the_lean_is_the_triangles_from_folded_to_stretched_couplers(
+        shorter in SHORTEST_COUPLER..=LONGEST,
+        longer in SHORTEST_COUPLER..=LONGEST,
+        alike in 0u8..4,
+        exchanged: bool,
+        share in (0.0..1.0f64, 0u8..3),
+    ) {
+        // Equal, nearly equal, and any.
+        let longer = match alike {
+            0 => shorter,
+            1 => shorter + (longer % 100).min(LONGEST - shorter),
+            _ => longer,
+        };
+        let (left, right) = if exchanged { (longer, shorter) } else { (shorter, longer) };
+        // Even over the range, and dense at either end.
+        let share = match share {
+            (share, 0) => share,
+            (share, 1) => share.powi(4),
+            (share, _) => 1.0 - share.powi(4),
+        };
+        let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+        let tips_sq = least + (f64::from(reach - least) * share) as u32;
+        let bars = Bars::new(left, right);
+        let lean = bars.couplers().at(tips_sq);
+        let bound = bounds::Lean::of(left, right, [f64::from(tips_sq); 2]);
+        let (left, right) = (f64::from(left), f64::from(right));
+        // Rounded lengths may close a loop that the true ones leave open by a hair.
+        let [rise, skew] = truth(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
+        let Some(lean) = lean else {
+            prop_assert!(type2(left, right, tips_sq, rise) < KNOWN, "a lean for {rise}");
+            return Ok(());
+        };
+        let off = [
+            f64::from(lean.rise) / 1024.0 - rise,
+            f64::from(lean.skew) / 1024.0 - skew,
+        ];
+        if type2(left, right, tips_sq, rise) < KNOWN {
+            // An entry beyond the table's numbers is less than it should be, and below its
+            // peak the table keeps the largest rise: nothing there is read as known.
+            let read = f64::from(lean.rise) / 1024.0 - bound.rise;
+            prop_assert!(type2(left, right, tips_sq, read) < KNOWN, "rise {off:?}, {bound:?}");
+            return Ok(());
+        }
+        prop_assert!(off[0].abs() <= bound.rise, "rise {off:?}, {bound:?}");
+        // What floating point is off by.
+        let hair = 1e-9;
+        prop_assert!(skew.is_nan() || off[1].abs() <= bound.skew + hair, "skew {off:?}, {bound:?}");
+        // Rounding alone never calls a skew the other way.
+        prop_assert!(lean.skew == 0 || (lean.skew > 0) == (left > right));
+    }
+
+    #[test]
+    fn couplers_that_do_not_meet_have_no_lean(
+        left in SHORTEST_COUPLER..=LONGEST,
+        right in SHORTEST_COUPLER..=LONGEST,
+        beyond in 0u32..1 << 28,
+    ) {
+        let bars = Bars::new(left, right);
+        let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+        prop_assert_eq!(bars.couplers().at(reach + beyond), None);
+        prop_assert_eq!(bars.couplers().at(least.saturating_sub(beyond)), None);
+    }
+}
+
+#[test]
+fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
+    for (left, right) in [(12_800, 12_800), (13_000, 11_000), (9_000, 20_001)] {
+        let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+        let tables = [
+            rise(left, right),
+            stretched(left, right),
+            folded(left, right),
+            skew(left, right),
+        ];
+        let exact = |tips_sq: u64| {
+            let [r, n, s] = [reach.into(), least.into(), tips_sq].map(|sq: u64| sq as f64);
+            (1024.0 * ((r - s) * (s - n)).sqrt() / s).min(32_767.0)
+        };
+        let within = |tips_sq: u64| (u64::from(least) + 1..u64::from(reach)).contains(&tips_sq);
+        for index in 0..ENTRIES {
+            let [falling, stretched, folded, skew] = tables.map(|table| f64::from(table[index]));
+            let tips_sq = argument(reach, index);
+            if within(tips_sq) && tips_sq >= peak_sq(left, right).into() {
+                assert!(
+                    (0.0..1.0).contains(&(exact(tips_sq) - falling)),
+                    "rise {index}"
+                );
+            }
+            let difference = (f64::from(left).powi(2) - f64::from(right).powi(2)) / 4.0;
+            let exact_skew = 1024.0 * difference.abs() / tips_sq as f64;
+            assert!(
+                (skew - exact_skew.min(32_767.0)).abs() <= 0.51,
+                "skew {index}"
+            );
+            let tips_sq = u64::from(reach).saturating_sub(argument(reach / 4, index));
+            if within(tips_sq) {
+                assert!(
+                    (stretched - exact(tips_sq)).abs() <= 0.51,
+                    "stretched {index}"
+                );
+            }
+            let tips_sq = u64::from(least) + argument(least, index);
+            if within(tips_sq) {
+                assert!((folded - exact(tips_sq)).abs() <= 0.51, "folded {index}");
+            }
+        }
+    }
+}
+
+#[test]
+fn couplers_that_differ_by_a_few_steps_are_couplers_too() {
+    for more in 0..300 {
+        let bars = Bars::new(12_800, 12_800 + more);
+        for tips_sq in [1 << 20, 1 << 24, 1 << 27] {
+            let lean = bars.couplers().at(tips_sq).expect("closes");
+            let [rise, _] = truth(12_800.0, 12_800.0 + f64::from(more), tips_sq).expect("closes");
+            let off = f64::from(lean.rise) / 1024.0 - rise;
+            assert!(
+                off.abs() <= 0.002 * rise.max(1.0),
+                "{more}: {off} of {rise}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_loop_is_near_stretched_beyond_three_quarters_of_its_squared_reach() {
+    let reach = reach_sq(20_000, 30_000);
+    let limit = reach - reach / 4;
+    assert!(!Couplers::is_near_stretched(20_000, 30_000, limit));
+    assert!(Couplers::is_near_stretched(20_000, 30_000, limit + 1));
+}

@@ -1,0 +1,144 @@
+//! The gaits of a robot as its section has them: waveforms, channels, names.
+
+use lizard_avr::Flash;
+
+/// Samples of a waveform.
+pub const SAMPLES: usize = 64;
+
+/// The longest name of a gait: with it, `status` still is one line of the console.
+pub const LONGEST_NAME: usize = 48;
+
+/// The most gaits that a robot may have: a byte numbers them.
+pub const MOST_GAITS: usize = 255;
+
+/// The most waveforms that gaits may share: a byte numbers them.
+pub const MOST_WAVES: usize = 255;
+
+/// Samples over a cycle, 1/65536 turn at a gain of 1.
+pub type Wave = [i16; SAMPLES];
+
+/// A gait's name, byte by byte from flash, its words with a blank in between: also
+/// its console command.
+#[derive(Clone, Copy)]
+pub struct Name<'a> {
+    names: Flash<'a, [u8]>,
+    at: u16,
+    left: u8,
+}
+
+impl<'a> Name<'a> {
+    /// The name that begins at `start` among the names of a robot's gaits.
+    pub fn of(start: u16, length: u16, names: Flash<'a, [u8]>) -> Self {
+        Self {
+            names,
+            at: start,
+            left: length.min(LONGEST_NAME as u16) as u8,
+        }
+    }
+
+    /// Bytes that are left of it.
+    pub const fn length(&self) -> u8 {
+        self.left
+    }
+}
+
+impl Iterator for Name<'_> {
+    type Item = u8;
+
+    fn next(&mut self) -> Option<u8> {
+        self.left = self.left.checked_sub(1)?;
+        let byte = self.names.get(usize::from(self.at))?.load();
+        self.at += 1;
+        Some(byte)
+    }
+}
+
+lizard_avr::plain! {
+    /// What one servo does in a gait.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Channel {
+        /// Which waveform.
+        pub wave: u16,
+        /// How far the servo's reading is ahead of the phase, 1/65536 cycle.
+        pub offset: u16,
+        /// Factor of the waveform, Q14, counter-clockwise positive.
+        pub gain: i16,
+    }
+}
+
+lizard_avr::plain! {
+    /// One gait.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Gait {
+        /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
+        /// table is read backwards.
+        pub increment: i32,
+        /// The four servos.
+        pub channels: [Channel; 4],
+        /// Where its name begins among the names of its robot.
+        pub name_start: u16,
+        /// The name's length, at most [`LONGEST_NAME`].
+        pub name_length: u16,
+    }
+}
+
+/// A gait by its place in robot.toml. Place 0 is `stand`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GaitId(u8);
+
+impl GaitId {
+    /// The gait that holds the neutral pose.
+    pub const STAND: Self = Self(0);
+
+    /// All gaits of a robot that has `count` of them, in their order.
+    pub fn all(count: usize) -> impl Iterator<Item = Self> {
+        (0..count as u8).map(Self)
+    }
+
+    /// Its place.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The next of `count` gaits, if there is one.
+    pub fn next(self, count: usize) -> Option<Self> {
+        (self.index() + 1 < count).then(|| Self(self.0 + 1))
+    }
+}
+
+impl Gait {
+    /// A gait that does nothing.
+    pub const STILL: Self = Self {
+        name_start: 0,
+        name_length: 0,
+        increment: 0,
+        channels: [Channel {
+            wave: 0,
+            offset: 0,
+            gain: 0,
+        }; 4],
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::sample::{GAITS, Sample};
+
+    #[test]
+    fn names_and_numbers_of_gaits_go_together() {
+        let robot = Sample::odd();
+        let ids: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
+        assert_eq!(ids.len(), GAITS.len());
+        assert_eq!(ids[0], GaitId::STAND);
+        for (place, id) in ids.iter().enumerate() {
+            assert_eq!(id.index(), place);
+            assert_eq!(id.next(robot.gait_count()), ids.get(place + 1).copied());
+            let name = robot.name(*id);
+            assert_eq!(usize::from(name.length()), GAITS[place].len());
+            assert!(name.eq(GAITS[place].bytes()));
+        }
+    }
+}

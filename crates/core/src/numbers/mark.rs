@@ -1,0 +1,105 @@
+//! The mark of the code: which sections it reads, to be seen before it runs.
+//!
+//! A program that writes a robot alone talks to the boot loader, while the firmware does not
+//! run and cannot be asked. What it writes is of use only to code that reads this format. So
+//! the code has a mark at a place that never changes: behind the interrupt vectors, in the first
+//! page of flash. Whatever else is written to a board overwrites that page, so no other
+//! program can have the mark of an older one.
+//!
+//! ```
+//! use lizard_core::numbers::mark::{AT, Mark};
+//!
+//! let mut flash = vec![0xff; 128];
+//! assert_eq!(Mark::find(&flash), None);
+//! flash[AT..AT + 10].copy_from_slice(&Mark::HERE.bytes());
+//! assert_eq!(Mark::find(&flash), Some(Mark::HERE));
+//! ```
+
+use crate::numbers::section::{FORMAT, MAGIC};
+
+/// Where it is in flash: behind the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
+/// table 12-6).
+pub const AT: usize = 26 * 4;
+
+/// Bytes of the mark.
+pub const LENGTH: usize = 10;
+
+/// What the code says of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// [`FORMAT`] of the sections that it reads.
+    pub format: u16,
+    /// The firmware's version, as 0, 2 and 0.
+    pub version: [u8; 3],
+}
+
+impl Mark {
+    /// That of this code.
+    pub const HERE: Self = Self {
+        format: FORMAT,
+        version: [
+            number(env!("CARGO_PKG_VERSION_MAJOR")),
+            number(env!("CARGO_PKG_VERSION_MINOR")),
+            number(env!("CARGO_PKG_VERSION_PATCH")),
+        ],
+    };
+
+    /// As it is in flash: magic, format, version, and a byte of 0, since code begins at even
+    /// addresses.
+    #[must_use]
+    pub const fn bytes(self) -> [u8; LENGTH] {
+        let [a, b, c, d] = MAGIC.to_le_bytes();
+        let [low, high] = self.format.to_le_bytes();
+        let [major, minor, patch] = self.version;
+        [a, b, c, d, low, high, major, minor, patch, 0]
+    }
+
+    /// That of a flash, if it begins with a lizard's code.
+    #[must_use]
+    pub fn find(flash: &[u8]) -> Option<Self> {
+        let bytes = flash.get(AT..AT + LENGTH)?;
+        let (magic, rest) = bytes.split_first_chunk()?;
+        let &[low, high, major, minor, patch, 0] = rest else {
+            return None;
+        };
+        (u32::from_le_bytes(*magic) == MAGIC).then_some(Self {
+            format: u16::from_le_bytes([low, high]),
+            version: [major, minor, patch],
+        })
+    }
+}
+
+const fn number(text: &str) -> u8 {
+    match u8::from_str_radix(text, 10) {
+        Ok(number) => number,
+        Err(_) => panic!("a part of the version is above 255"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::format;
+
+    use super::*;
+
+    #[test]
+    fn the_version_is_the_packages() {
+        let [major, minor, patch] = Mark::HERE.version;
+        let version = format!("{major}.{minor}.{patch}");
+        assert_eq!(version, env!("CARGO_PKG_VERSION"));
+    }
+
+    #[test]
+    fn any_byte_of_another_value_is_another_mark_or_none() {
+        let mut flash = [0xff; 128];
+        flash[AT..AT + LENGTH].copy_from_slice(&Mark::HERE.bytes());
+        for at in AT..AT + LENGTH {
+            for bit in 0..8 {
+                let mut flash = flash;
+                flash[at] ^= 1 << bit;
+                assert_ne!(Mark::find(&flash), Some(Mark::HERE), "bit {bit} of {at}");
+            }
+        }
+        assert_eq!(Mark::find(&flash[..AT + LENGTH - 1]), None);
+    }
+}

@@ -1,0 +1,23 @@
+//! The numbers of a robot: units, types without behaviour, and the section of flash that
+//! they come from.
+//!
+//! The room at the bottom: every other room uses it, and it uses none.
+
+pub mod bars;
+pub mod calibration;
+pub mod cells;
+pub(crate) mod checksum;
+pub mod couplers;
+pub mod curve;
+pub mod gaits;
+pub mod limits;
+pub mod mark;
+pub mod part;
+pub mod pose;
+pub mod robot;
+pub mod root;
+pub mod section;
+pub mod slew;
+pub mod slider;
+pub mod supplies;
+pub mod units;

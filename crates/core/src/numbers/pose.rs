@@ -1,0 +1,128 @@
+//! A pose of the robot: where the four servos stand, as sweeps from neutral.
+//!
+//! The horns are fitted while the servos hold their neutral pulse. So a sweep is the
+//! angle that the servo really turns, and a chassis angle can be read off the robot.
+//! Order everywhere: A1 = theta1 front left, A2 = theta4 front right, A3 = theta8 back
+//! right, A4 = theta5 back left.
+
+use crate::numbers::calibration::Calibration;
+use crate::numbers::part::Servo;
+use crate::numbers::units::{Angle, Sweep, Width};
+
+/// Four sweeps, in servo order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Pose(pub [Sweep; 4]);
+
+/// Four pulse widths, in servo order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Pulses(pub [Width; 4]);
+
+impl Pose {
+    /// All servos at their neutral angle: the robot stands.
+    pub const NEUTRAL: Self = Self([Sweep(0); 4]);
+
+    /// The pose at four chassis angles of servos with these neutral ones; within the
+    /// travel or not.
+    pub fn at(angles: &[Angle; 4], neutral: &[Angle; 4]) -> Self {
+        let mut pose = Self::NEUTRAL;
+        for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral)) {
+            *sweep = neutral.sweep_to(*angle);
+        }
+        pose
+    }
+
+    /// The chassis angles of the servos.
+    pub fn angles(&self, neutral: &[Angle; 4]) -> [Angle; 4] {
+        let mut angles = *neutral;
+        for (angle, sweep) in angles.iter_mut().zip(&self.0) {
+            *angle = angle.swept(*sweep);
+        }
+        angles
+    }
+
+    /// The first servo whose travel does not reach its sweep.
+    pub fn beyond(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
+        for (place, servo) in calibration.iter().enumerate() {
+            if !servo.reaches(self.0[place]) {
+                return Some(Servo::at(place));
+            }
+        }
+        None
+    }
+
+    /// The pulses that hold this pose.
+    pub fn pulses(&self, calibration: &[Calibration; 4]) -> Pulses {
+        let mut pulses = Pulses::default();
+        for (index, servo) in calibration.iter().enumerate() {
+            pulses.0[index] = servo.width(self.0[index]);
+        }
+        pulses
+    }
+
+    /// The longest way of any servo to `other`, in 1/65536 turn.
+    pub fn farthest(&self, other: &Self) -> u16 {
+        let mut most = 0;
+        for (here, there) in self.0.iter().zip(&other.0) {
+            most = most.max(here.0.abs_diff(there.0));
+        }
+        most
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::Sample;
+
+    fn posed() -> impl Strategy<Value = (Sample, Pose)> {
+        Sample::random().prop_flat_map(|robot| {
+            let pose = robot.pose();
+            (Just(robot), pose)
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in posed()) {
+            let angles = pose.angles(&robot.neutral());
+            prop_assert_eq!(Pose::at(&angles, &robot.neutral()), pose);
+            prop_assert_eq!(pose.beyond(&robot.calibration()), None);
+        }
+
+        #[test]
+        fn the_first_servo_that_does_not_reach_its_angle_is_named(
+            (robot, mut pose) in posed(),
+            beyond: [bool; 4],
+        ) {
+            for (place, beyond) in beyond.into_iter().enumerate() {
+                if beyond {
+                    pose.0[place] = Sweep(robot.calibration()[place].max.0 + 1);
+                }
+            }
+            let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
+            prop_assert_eq!(pose.beyond(&robot.calibration()), first);
+        }
+
+        #[test]
+        fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in posed()) {
+            let pulses = pose.pulses(&robot.calibration());
+            for place in 0..4 {
+                let width = robot.calibration()[place].width(pose.0[place]);
+                prop_assert_eq!(pulses.0[place], width);
+            }
+        }
+
+        #[test]
+        fn the_farthest_way_is_that_of_any_servo_either_way(
+            from: [i16; 4],
+            to: [i16; 4],
+        ) {
+            let ways = (0..4).map(|place| from[place].abs_diff(to[place]));
+            let [from, to] = [from, to].map(|sweeps| Pose(sweeps.map(Sweep)));
+            prop_assert_eq!(Some(from.farthest(&to)), ways.max());
+            prop_assert_eq!(from.farthest(&to), to.farthest(&from));
+        }
+    }
+}

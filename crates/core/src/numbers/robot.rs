@@ -1,0 +1,252 @@
+//! What the core knows of a robot, read from its section of flash.
+//!
+//! The same core walks any lizard: bars, limits, servos and gaits come from a section
+//! ([`crate::numbers::section`]) that lies in the flash of a microcontroller or in the memory of a
+//! host. The section is checked once, when it is opened; each number is fetched when it
+//! is needed.
+
+use core::fmt;
+use core::mem::offset_of;
+
+use lizard_avr::{Flash, Plain, Region};
+
+use crate::numbers::bars::Bars;
+use crate::numbers::calibration::Calibration;
+use crate::numbers::calibration::Reach;
+use crate::numbers::cells::Cells;
+use crate::numbers::couplers::Tables;
+use crate::numbers::gaits::{Gait, GaitId, Name, Wave};
+use crate::numbers::limits::Limits;
+use crate::numbers::part::{End, Servo, Side};
+use crate::numbers::pose::Pose;
+use crate::numbers::section::{self, CURVES, Header, MapHead, NUMBERS, Numbers, Part, Place};
+use crate::numbers::slew::Slew;
+use crate::numbers::slider::Slider;
+use crate::numbers::supplies::Supplies;
+use crate::numbers::units::Angle;
+
+/// A four-servo lizard: its geometry, limits and gaits.
+#[derive(Clone, Copy)]
+pub struct Robot<'a> {
+    section: Region<'a>,
+    is_there: bool,
+}
+
+// Its numbers are the same in every state of a program that shows itself.
+impl fmt::Debug for Robot<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_there { "Robot" } else { "no robot" })
+    }
+}
+
+impl<'a> Robot<'a> {
+    /// No robot: it has no gait, and may not be moved.
+    pub const NONE: Self = Self {
+        section: Region::EMPTY,
+        is_there: false,
+    };
+
+    /// What is in `flash`, which must be a section that is whole and nothing behind it:
+    /// [`Robot::open`] looks at it.
+    #[inline(always)]
+    pub(crate) const fn at(flash: Region<'a>) -> Self {
+        Self {
+            section: flash,
+            is_there: true,
+        }
+    }
+
+    /// The robot of a section that was just made, whose numbers nobody has checked yet:
+    /// for the code that is about to check them.
+    #[cfg(any(test, feature = "host"))]
+    pub fn unchecked(flash: Region<'a>) -> Option<Self> {
+        let length = section::find(flash).ok()?;
+        Some(Self::at(flash.first(length)))
+    }
+
+    /// Whether there is no robot.
+    pub const fn is_none(&self) -> bool {
+        !self.is_there
+    }
+
+    /// The flash at whose beginning its section is.
+    pub const fn section(&self) -> Region<'a> {
+        self.section
+    }
+
+    /// What is `offset` bytes behind the beginning of the numbers.
+    #[inline(always)]
+    fn number<T: Plain>(&self, offset: usize) -> T {
+        self.section.read(NUMBERS + offset as u16)
+    }
+
+    /// Its name, byte by byte.
+    pub fn label(&self) -> impl Iterator<Item = u8> + use<'a> {
+        let section = self.section;
+        let name = offset_of!(Header, name) as u16;
+        (name..name + section::LONGEST_NAME as u16)
+            .map(move |at| section.read(at))
+            .take_while(|byte| *byte != 0)
+    }
+
+    /// A number that differs between two robots.
+    pub fn hash(&self) -> u32 {
+        self.section.read(offset_of!(Header, hash) as u16)
+    }
+
+    /// The same of the servos alone: their pins, pulses and neutral angles.
+    pub fn servo_hash(&self) -> u32 {
+        self.section.read(offset_of!(Header, servo_hash) as u16)
+    }
+
+    /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    pub fn pins(&self) -> [u8; 4] {
+        self.number(offset_of!(Numbers, pins))
+    }
+
+    /// Arduino number of the pin where the servos' rail is measured, 14 to 19.
+    pub fn rail_pin(&self) -> Option<u8> {
+        match self.number::<u16>(offset_of!(Numbers, rail)) {
+            0 => None,
+            pin => Some(pin as u8),
+        }
+    }
+
+    /// The bars of an end, in that end's own frame.
+    pub fn bars(&self, end: End) -> Bars {
+        self.number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
+    }
+
+    /// The curves of an end's couplers.
+    pub(crate) fn tables(&self, end: End) -> Tables<'a> {
+        let curves = offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVES]>();
+        let table = |curve: usize| match self.number(curves + curve * size_of::<u16>()) {
+            0 => None,
+            at => self.section.values(at, 1).get(0),
+        };
+        Tables {
+            rise: table(0),
+            stretched: table(1),
+            folded: table(2),
+            skew: table(3),
+        }
+    }
+
+    /// The five-bar with a slider of a side, as it is in the chassis frame.
+    pub fn side(&self, side: Side) -> Slider {
+        self.number(offset_of!(Numbers, sides) + side as usize * size_of::<Slider>())
+    }
+
+    /// The smallest margins allowed.
+    pub fn limits(&self) -> Limits {
+        self.number(offset_of!(Numbers, limits))
+    }
+
+    /// How fast servos may turn in a point-to-point move.
+    pub fn slew(&self) -> Slew {
+        self.number(offset_of!(Numbers, slew))
+    }
+
+    /// The servos' angles in the neutral pose.
+    pub fn neutral(&self) -> [Angle; 4] {
+        self.number(offset_of!(Numbers, neutral))
+    }
+
+    /// One servo of [`Robot::neutral`].
+    #[inline(never)]
+    pub fn neutral_of(&self, servo: Servo) -> Angle {
+        self.number(offset_of!(Numbers, neutral) + servo.index() * size_of::<Angle>())
+    }
+
+    /// The servos' pulses and travel, as robot.toml has them.
+    pub fn calibration(&self) -> [Calibration; 4] {
+        self.number(offset_of!(Numbers, calibration))
+    }
+
+    /// One servo of [`Robot::calibration`].
+    #[inline(never)]
+    pub fn servo(&self, servo: Servo) -> Calibration {
+        self.number(offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>())
+    }
+
+    /// The sweeps that the gaits and the neutral pose need of a servo.
+    #[inline(never)]
+    pub fn reach(&self, servo: Servo) -> Reach {
+        self.number(offset_of!(Numbers, reach) + servo.index() * size_of::<Reach>())
+    }
+
+    /// The supplies that are measured, and what their voltages mean.
+    pub fn supplies(&self) -> Supplies {
+        self.number(offset_of!(Numbers, supplies))
+    }
+
+    /// How many gaits it has; the first is `stand`, which holds the neutral pose.
+    pub fn gait_count(&self) -> usize {
+        match self.is_there {
+            true => usize::from(self.place(Part::Gaits).count),
+            false => 0,
+        }
+    }
+
+    /// Where a part is, and how many it has.
+    pub(crate) fn place(&self, part: Part) -> Place {
+        self.number(offset_of!(Numbers, parts) + part as usize * size_of::<Place>())
+    }
+
+    /// All of a part.
+    #[inline(always)]
+    fn part<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
+        let Place { at, count } = self.place(part);
+        self.section.values(at, count)
+    }
+
+    /// The waveforms that gaits share.
+    pub fn waves(&self) -> Flash<'a, [Wave]> {
+        self.part(Part::Waves)
+    }
+
+    /// A gait.
+    #[inline(never)]
+    pub fn gait(&self, id: GaitId) -> Gait {
+        self.part(Part::Gaits)
+            .get(id.index())
+            .map_or(Gait::STILL, Flash::load)
+    }
+
+    /// A gait's name.
+    #[inline(never)]
+    pub fn name(&self, id: GaitId) -> Name<'a> {
+        // Not the whole gait: a line may be compared with every name.
+        let gait = self.place(Part::Gaits).at + id.index() as u16 * size_of::<Gait>() as u16;
+        let number = |field: usize| self.section.read(gait + field as u16);
+        let start = number(offset_of!(Gait, name_start));
+        let length = number(offset_of!(Gait, name_length));
+        Name::of(start, length, self.part(Part::Names))
+    }
+
+    /// Whether a pose is in certified cells, in which the guard accepts every pose:
+    /// head, tail, left and right have a map each. False says nothing.
+    pub fn is_certified(&self, pose: &Pose) -> bool {
+        let maps = self.part::<[i8; 2]>(Part::Rows);
+        let mut begin = 0;
+        let mut pair = 0;
+        while pair < 4 {
+            let MapHead { first, rows } =
+                self.number(offset_of!(Numbers, maps) + pair * size_of::<MapHead>());
+            let [row, column] = PAIRS.at(pair).load();
+            let row = pose.0[usize::from(row & 3)];
+            let column = pose.0[usize::from(column & 3)];
+            if !Cells::among(first, begin, rows, maps).hold(row, column) {
+                return false;
+            }
+            begin += u16::from(rows);
+            pair += 1;
+        }
+        true
+    }
+}
+
+lizard_avr::flash! {
+    /// The servos of the maps: that of the rows, that of the columns.
+    const PAIRS: [[u8; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
+}

@@ -1,0 +1,208 @@
+//! The robot's section of flash: all that robot.toml says to the firmware, as data.
+//!
+//! The firmware is one image for any lizard. What differs from robot to robot lies
+//! behind it, at a fixed address, and can be written without a compiler. What is in a
+//! flash may be anything: an erased one, half of an upload, a section of another
+//! version, a byte that changed in the years. So nothing of it is believed before
+//! [`crate::numbers::robot::Robot::open`] has checked header, length and CRC, and every index and
+//! count.
+//!
+//! | part | bytes | what |
+//! |---|---|---|
+//! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of all behind it, name, hash of the numbers, hash of the servos |
+//! | [`Numbers`] | 232 | see there |
+//! | curves | 354 each | of the head's couplers and, where they are others, the tail's: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
+//! | gaits | 32 each | [`crate::numbers::gaits::Gait`] |
+//! | waveforms | 128 each | 64 samples |
+//! | names | | of the gaits, one after the other |
+//! | maps | 2 a row | certified cells of head, tail, left and right: first and last column |
+//!
+//! Each part is the type that is named, field by field, low bytes first. The device needs
+//! no arithmetic for any of it: what follows from the bars is there, too.
+
+use core::mem::offset_of;
+
+pub use lizard_avr::Region;
+
+use crate::numbers::bars::Bars;
+use crate::numbers::calibration::Calibration;
+use crate::numbers::calibration::Reach;
+use crate::numbers::checksum::Checksum;
+use crate::numbers::limits::Limits;
+use crate::numbers::slew::Slew;
+use crate::numbers::slider::Slider;
+use crate::numbers::supplies::Supplies;
+use crate::numbers::units::Angle;
+
+#[cfg(any(test, feature = "host"))]
+pub use content::{Content, Loop, Map};
+#[cfg(any(test, feature = "host"))]
+pub use seal::seal;
+
+#[cfg(any(test, feature = "host"))]
+mod content;
+#[cfg(any(test, feature = "host"))]
+mod seal;
+
+/// Raised when the meaning of a byte changes.
+pub const FORMAT: u16 = 2;
+
+/// What a section begins with.
+pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
+
+/// Where the section is in flash, and the most bytes that it may have.
+pub use lizard_avr::{SPACE, START};
+
+/// The longest name of a robot.
+pub const LONGEST_NAME: usize = 18;
+
+lizard_avr::plain! {
+    /// What stands before everything else.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Header {
+        /// [`MAGIC`].
+        pub magic: u32,
+        /// [`FORMAT`].
+        pub format: u16,
+        /// Bytes of the section, this header among them.
+        pub length: u16,
+        /// [`Checksum`] of all bytes behind it.
+        pub crc: u16,
+        /// The robot's name, filled up with zeros.
+        pub name: [u8; LONGEST_NAME],
+        /// By which two robots are told apart: CRC-32 of all but header and maps.
+        pub hash: u32,
+        /// By which saved settings are known to be for these servos.
+        pub servo_hash: u32,
+    }
+}
+
+lizard_avr::plain! {
+    /// The numbers of a robot.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Numbers {
+        /// The bars of head and tail, in the frame of each.
+        pub ends: [Bars; 2],
+        /// The sliders left and right.
+        pub sides: [Slider; 2],
+        /// The servos' angles in the neutral pose.
+        pub neutral: [Angle; 4],
+        /// Their pulses and travel.
+        pub calibration: [Calibration; 4],
+        /// What the gaits need of them.
+        pub reach: [Reach; 4],
+        /// The smallest margins.
+        pub limits: Limits,
+        /// How fast servos may turn in a move.
+        pub slew: Slew,
+        /// The supplies.
+        pub supplies: Supplies,
+        /// Where the curves of the couplers of head and tail begin: rise, stretched, folded,
+        /// skew; 0 for one that they do not need.
+        pub curves: [[u16; CURVES]; 2],
+        /// The parts, in the order of [`Part`].
+        pub parts: [Place; PARTS],
+        /// Arduino number of the pin where the servos' rail is measured; 0 where it is
+        /// not.
+        pub rail: u16,
+        /// Those of the servos' pins; 14 to 19 are A0 to A5.
+        pub pins: [u8; 4],
+        /// The heads of the maps of head, tail, left and right. The last of the numbers,
+        /// because the hash is not of them.
+        pub maps: [MapHead; 4],
+    }
+}
+
+/// Where the numbers are, and what follows them.
+pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
+pub(crate) const REST: u16 = NUMBERS + size_of::<Numbers>() as u16;
+
+/// The curves that couplers may have.
+pub const CURVES: usize = 4;
+
+/// What there is several of besides the curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// [`crate::numbers::gaits::Gait`].
+    Gaits,
+    /// Waveforms, [`crate::numbers::gaits::Wave`].
+    Waves,
+    /// Bytes of the gaits' names.
+    Names,
+    /// Rows of the maps of certified cells.
+    Rows,
+}
+
+/// How many of them.
+pub const PARTS: usize = 4;
+
+lizard_avr::plain! {
+    /// Where a part of the section is.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Place {
+        /// Bytes from the section's beginning.
+        pub at: u16,
+        /// How many.
+        pub count: u16,
+    }
+}
+
+lizard_avr::plain! {
+    /// The head of a map of certified cells.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct MapHead {
+        /// The first row.
+        pub first: i8,
+        /// How many rows.
+        pub rows: u8,
+    }
+}
+
+/// Why a section is no robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// From 1 on, since none at all has to be zero: see `Main::new`.
+#[repr(u8)]
+pub enum Damage {
+    /// There is none: no magic.
+    Missing = 1,
+    /// It is for another version of the firmware.
+    Format,
+    /// It was not written to its end, or has changed since.
+    Damaged,
+    /// It is whole and says what cannot be.
+    Impossible,
+}
+
+/// Where the bytes begin that the CRC is of.
+const CHECKED: usize = offset_of!(Header, name);
+
+/// The length of the section at the beginning of a region, whole as its CRC says.
+///
+/// # Errors
+/// [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
+#[inline(never)]
+pub fn find(flash: Region) -> Result<u16, Damage> {
+    if flash.size() < NUMBERS {
+        return Err(Damage::Missing);
+    }
+    if flash.read::<u32>(offset_of!(Header, magic) as u16) != MAGIC {
+        return Err(Damage::Missing);
+    }
+    if flash.read::<u16>(offset_of!(Header, format) as u16) != FORMAT {
+        return Err(Damage::Format);
+    }
+    let length = flash.read(offset_of!(Header, length) as u16);
+    if length < REST || length > flash.size() {
+        return Err(Damage::Damaged);
+    }
+    let mut checksum = Checksum::NOTHING;
+    let mut at = CHECKED as u16;
+    while at < length {
+        checksum = checksum.and(flash.read(at));
+        at += 1;
+    }
+    if checksum.0 != flash.read(offset_of!(Header, crc) as u16) {
+        return Err(Damage::Damaged);
+    }
+    Ok(length)
+}

@@ -1,0 +1,232 @@
+//! What a host puts into a section.
+
+use std::string::String;
+use std::vec::Vec;
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use lizard_avr::{Flash, Plain};
+
+use super::seal::sealed;
+use super::{CURVES, FORMAT, Header, LONGEST_NAME, MAGIC, MapHead, Numbers, Part, Place, REST};
+use crate::numbers::bars::Bars;
+use crate::numbers::calibration::Calibration;
+use crate::numbers::calibration::Reach;
+use crate::numbers::cells::Cells;
+use crate::numbers::couplers::{self, Couplers};
+use crate::numbers::curve::Table;
+use crate::numbers::gaits::{Gait, Wave};
+use crate::numbers::limits::Limits;
+use crate::numbers::slew::Slew;
+use crate::numbers::slider::Slider;
+use crate::numbers::supplies::Supplies;
+use crate::numbers::units::{Angle, Scale};
+
+/// Tells robots apart.
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// A robot's numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Content {
+    /// At most [`LONGEST_NAME`] characters.
+    pub name: String,
+    /// By which saved settings are known to be for these servos.
+    pub servo_hash: u32,
+    /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    pub pins: [u8; 4],
+    /// That of the pin where the servos' rail is measured.
+    pub rail: Option<u8>,
+    /// The servos' angles in the neutral pose.
+    pub neutral: [Angle; 4],
+    /// Their pulses and travel.
+    pub calibration: [Calibration; 4],
+    /// What the gaits need of them.
+    pub reach: [Reach; 4],
+    /// The smallest margins.
+    pub limits: Limits,
+    /// How fast the servos may turn in a move.
+    pub slew: Slew,
+    /// The supplies.
+    pub supplies: Supplies,
+    /// The bars of head and tail.
+    pub ends: [Loop; 2],
+    /// The sliders left and right.
+    pub sides: [Slider; 2],
+    /// The gaits; `stand` is the first.
+    pub gaits: Vec<Gait>,
+    /// Their names, one after the other.
+    pub names: Vec<u8>,
+    /// Their waveforms.
+    pub waves: Vec<Wave>,
+    /// The certified cells of head, tail, left and right.
+    pub maps: [Map; 4],
+}
+
+/// One end's loop, in steps of its scale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Loop {
+    /// Steps in a millimetre; the margins do not need it.
+    pub scale: Scale,
+    /// Distance between the shafts.
+    pub base: i16,
+    /// The left crank and the right one.
+    pub cranks: [i16; 2],
+    /// The left coupler and the right one.
+    pub couplers: [i16; 2],
+    /// Whether the crank tips can part so far that the couplers are nearly stretched.
+    pub near_stretched: bool,
+}
+
+/// A map of certified cells, see [`crate::numbers::cells::Cells`].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Map {
+    /// The first row.
+    pub first: i8,
+    /// The first and the last column of each row; the greater one first where no cell of
+    /// a row is certified.
+    pub rows: Vec<[i8; 2]>,
+}
+
+impl Map {
+    /// As the guard reads it.
+    #[must_use]
+    pub fn cells(&self) -> Cells<'_> {
+        Cells::new(self.first, Flash::from(self.rows.as_slice()))
+    }
+}
+
+impl Loop {
+    /// The bars, and what follows from them.
+    #[must_use]
+    pub fn bars(&self) -> Bars {
+        let [left, right] = self.cranks;
+        Bars::new([self.base, left, right], self.couplers, self.scale)
+    }
+
+    /// The curves that its couplers need: rise, stretched, folded, skew.
+    fn tables(&self) -> [Option<Table>; CURVES] {
+        let [a, b] = self.couplers;
+        [
+            Some(couplers::rise(a, b)),
+            self.near_stretched.then(|| couplers::stretched(a, b)),
+            Couplers::differ_much(a, b).then(|| couplers::folded(a, b)),
+            (a != b).then(|| couplers::skew(a, b)),
+        ]
+    }
+}
+
+impl Content {
+    /// Bytes of the section, which may be more than fits a board; where chance wants it,
+    /// [`Content::section`] has one more.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        let mut curves = Vec::new();
+        self.curves(&mut curves);
+        let rows: usize = self.maps.iter().map(|map| map.rows.len()).sum();
+        usize::from(REST)
+            + curves.len()
+            + size_of_val(self.gaits.as_slice())
+            + size_of_val(self.waves.as_slice())
+            + self.names.len()
+            + rows * size_of::<[i8; 2]>()
+    }
+
+    /// The section. Its length may be more than fits a board: see [`super::SPACE`].
+    ///
+    /// # Panics
+    /// Where there are more gaits, waveforms or rows than a byte counts, or more bytes
+    /// of all than two count.
+    #[must_use]
+    pub fn section(&self) -> Vec<u8> {
+        let [head, tail] = &self.ends;
+        let mut rest = Vec::new();
+        let curves = self.curves(&mut rest);
+        let mut place = |count: usize, bytes: &[u8]| {
+            let at = usize::from(REST) + rest.len();
+            rest.extend(bytes);
+            let number = |value: usize| u16::try_from(value).expect("at most 65535");
+            Place {
+                at: number(at),
+                count: number(count),
+            }
+        };
+        let bytes = |gaits: &[Gait]| {
+            gaits
+                .iter()
+                .flat_map(Plain::bytes)
+                .copied()
+                .collect::<Vec<u8>>()
+        };
+        let waves: Vec<u8> = self.waves.iter().flat_map(Plain::bytes).copied().collect();
+        let rows: Vec<[i8; 2]> = self.maps.iter().flat_map(|map| map.rows.clone()).collect();
+        let columns: Vec<u8> = rows
+            .as_flattened()
+            .iter()
+            .map(|column| *column as u8)
+            .collect();
+        // The rows are the last, because the hash is not of them.
+        let parts = [
+            place(self.gaits.len(), &bytes(&self.gaits)),
+            place(self.waves.len(), &waves),
+            place(self.names.len(), &self.names),
+            place(rows.len(), &columns),
+        ];
+        let numbers = Numbers {
+            ends: [head.bars(), tail.bars()],
+            sides: self.sides,
+            neutral: self.neutral,
+            calibration: self.calibration,
+            reach: self.reach,
+            limits: self.limits,
+            slew: self.slew,
+            supplies: self.supplies,
+            curves,
+            parts,
+            rail: self.rail.unwrap_or(0).into(),
+            pins: self.pins,
+            maps: self.maps.each_ref().map(|map| MapHead {
+                first: map.first,
+                rows: u8::try_from(map.rows.len()).expect("at most 255"),
+            }),
+        };
+
+        let mut of_robot = CRC.digest();
+        // The maps change no decision.
+        let mut without_maps = numbers;
+        without_maps.parts[Part::Rows as usize] = Place { at: 0, count: 0 };
+        without_maps.maps = [MapHead { first: 0, rows: 0 }; 4];
+        of_robot.update(without_maps.bytes());
+        of_robot.update(&rest[..rest.len() - columns.len()]);
+        let mut name = [0; LONGEST_NAME];
+        name[..self.name.len()].copy_from_slice(self.name.as_bytes());
+        let header = Header {
+            magic: MAGIC,
+            format: FORMAT,
+            length: 0,
+            crc: 0,
+            hash: of_robot.finalize(),
+            servo_hash: self.servo_hash,
+            name,
+        };
+        sealed([header.bytes(), numbers.bytes(), &rest].concat())
+    }
+
+    /// Appends the curves of both ends, those that are the same once; where each begins.
+    fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
+        let mut written: Vec<(Table, u16)> = Vec::new();
+        self.ends.each_ref().map(|end| {
+            end.tables().map(|table| {
+                let Some(table) = table else { return 0 };
+                if let Some((_, at)) = written
+                    .iter()
+                    .find(|(other, _)| other.bytes() == table.bytes())
+                {
+                    return *at;
+                }
+                let at = REST + rest.len() as u16;
+                rest.extend(table.bytes());
+                written.push((table, at));
+                at
+            })
+        })
+    }
+}

@@ -1,0 +1,222 @@
+//! What makes a section whole: its length and its checksum.
+//!
+//! Sixteen bits of a checksum miss one change in 65 536. A section that was written to some
+//! byte, with erased flash behind it, is a change that happens, and a section has
+//! thousands of bytes to end at; so is a flipped bit of its length. None of these may be
+//! missed, so whoever makes a section tries them all, and adds a byte where one would be.
+
+use core::mem::offset_of;
+use std::vec::Vec;
+
+use super::{CHECKED, Header, SPACE};
+use crate::numbers::checksum::Checksum;
+
+/// A byte of erased flash.
+const ERASED: u8 = 0xff;
+
+/// Where the length is, and the checksum, which what it is of follows.
+const LENGTH: usize = offset_of!(Header, length);
+const CRC: usize = offset_of!(Header, crc);
+
+/// Puts the checksum of a section right, whatever its bytes are.
+///
+/// # Panics
+/// Where they are fewer than a header.
+pub fn seal(section: &mut [u8]) {
+    let crc = Checksum::of(&section[CHECKED..]).0;
+    section[CRC..CHECKED].copy_from_slice(&crc.to_le_bytes());
+}
+
+/// The section with its length and checksum: none of its beginnings with erased flash
+/// behind it has the same sum, and neither has another length that is one bit off. For that
+/// it may get a byte more.
+///
+/// # Panics
+/// Where it is longer than two bytes count.
+pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
+    loop {
+        let length = u16::try_from(section.len()).expect("at most 65535");
+        section[LENGTH..CRC].copy_from_slice(&length.to_le_bytes());
+        seal(&mut section);
+        let checked = &section[CHECKED..];
+        let sums = sums(checked);
+        if !a_beginning_passes(checked, &sums) && !another_length_passes(length, &sums) {
+            return section;
+        }
+        section.push(0);
+    }
+}
+
+/// The sums of a section's beginnings, from none of its bytes to all of them.
+fn sums(bytes: &[u8]) -> Vec<Checksum> {
+    let mut sum = Checksum::NOTHING;
+    let mut sums = Vec::with_capacity(bytes.len() + 1);
+    sums.push(sum);
+    for byte in bytes {
+        sum = sum.and(*byte);
+        sums.push(sum);
+    }
+    sums
+}
+
+/// Whether bytes that were written to some place, with erased flash behind them, have the
+/// sum of all of them. They may be all of them: the last ones may be erased flash's own.
+fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
+    // What a beginning's sum would have to be, for the erased bytes behind it to make it that
+    // of all.
+    let mut needed = sums[bytes.len()];
+    let mut is_whole = true;
+    for (byte, beginning) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
+        needed = before(needed, ERASED);
+        is_whole &= *byte == ERASED;
+        if !is_whole && *beginning == needed {
+            return true;
+        }
+    }
+    false
+}
+
+/// The sum to which this byte was added: [`Checksum::and`] backward.
+const fn before(sum: Checksum, byte: u8) -> Checksum {
+    // The sum's low half came from the high half before and the byte alone.
+    let low = sum.0 as u8;
+    let out = low ^ (low << 5);
+    let high = out ^ (out >> 4) ^ byte;
+    let out = out as u16;
+    let low = (sum.0 ^ (out << 12) ^ (out << 5) ^ out) >> 8;
+    Checksum((high as u16) << 8 | low)
+}
+
+/// Whether a length that is one bit off has the sum of this one, with erased flash behind
+/// the section. No board takes one of more than [`SPACE`].
+fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
+    let own = sums[usize::from(length) - CHECKED];
+    let is_one_off = |other: u16| (other ^ length).is_power_of_two();
+    let shorter = (CHECKED as u16 + 1..length)
+        .any(|other| is_one_off(other) && sums[usize::from(other) - CHECKED] == own);
+    let mut sum = own;
+    shorter
+        || (length..SPACE).any(|last| {
+            sum = sum.and(ERASED);
+            is_one_off(last + 1) && sum == own
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The same, byte by byte.
+    fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
+        let own = Checksum::of(bytes);
+        (0..bytes.len()).any(|end| {
+            let mut cut = bytes.to_vec();
+            cut[end..].fill(ERASED);
+            cut != bytes && Checksum::of(&cut) == own
+        })
+    }
+
+    /// The same as [`another_length_passes`], on what the flash would hold.
+    fn another_length_has_the_sum(section: &[u8]) -> bool {
+        let own = Checksum::of(&section[CHECKED..]);
+        let mut flash = section.to_vec();
+        flash.resize(SPACE.into(), ERASED);
+        let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
+        let mut lengths = lengths.filter(|length| (CHECKED + 1..=flash.len()).contains(length));
+        lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == own)
+    }
+
+    /// Two bytes that lead from one sum to another: a sum of sixteen bits takes two.
+    fn pair(from: Checksum, to: Checksum) -> [u8; 2] {
+        let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
+        let mut right = pairs.filter(|[low, high]| from.and(*low).and(*high) == to);
+        right.next().expect("any two sums are two bytes apart")
+    }
+
+    #[test]
+    fn every_byte_of_a_sum_can_be_taken_back() {
+        for sum in (0..=u16::MAX).map(Checksum) {
+            for byte in 0..=u8::MAX {
+                assert_eq!(before(sum.and(byte), byte), sum);
+            }
+        }
+    }
+
+    #[test]
+    fn a_length_one_bit_off_that_has_the_sum_is_found() {
+        let mut found = [0, 0];
+        for length in [300usize, 425] {
+            for bit in 0..8 {
+                let other = length ^ 1 << bit;
+                let mut bytes: Vec<u8> = (0..length as u32 - 2)
+                    .map(|n| ((n * n) >> 3) as u8)
+                    .collect();
+                if other <= CHECKED || (bytes.len() + 1..length).contains(&other) {
+                    continue;
+                }
+                // Shorter: the sum there. Longer: one to which the erased bytes lead back.
+                let erased = |from| (length..other).fold(from, |sum: Checksum, _| sum.and(ERASED));
+                let target = match other < length {
+                    true => Some(Checksum::of(&bytes[CHECKED..other])),
+                    false => (0..=u16::MAX)
+                        .map(Checksum)
+                        .find(|sum| erased(*sum) == *sum),
+                };
+                let Some(target) = target else { continue };
+                bytes.extend(pair(Checksum::of(&bytes[CHECKED..]), target));
+                assert!(another_length_has_the_sum(&bytes), "{length} and {other}");
+                let sums = sums(&bytes[CHECKED..]);
+                assert!(
+                    another_length_passes(length as u16, &sums),
+                    "{length} and {other}"
+                );
+                found[usize::from(other > length)] += 1;
+            }
+        }
+        let [shorter, longer] = found;
+        assert!(
+            shorter >= 6 && longer >= 6,
+            "{shorter} shorter, {longer} longer"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn a_beginning_that_has_the_sum_of_all_is_found(
+            bytes in prop::collection::vec(any::<u8>(), 0..300),
+            erased in 0..4usize,
+            end in 0..300usize,
+        ) {
+            let mut bytes = bytes;
+            bytes.extend(std::vec![ERASED; erased]);
+            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
+            // Two more bytes can be chosen so that the sum of a beginning is that of all:
+            // all of them are tried.
+            let end = end.min(bytes.len());
+            let mut cut = bytes.clone();
+            cut[end..].fill(ERASED);
+            let target = Checksum::of(&cut).and(ERASED).and(ERASED);
+            bytes.extend(pair(Checksum::of(&bytes), target));
+            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), a_beginning_has_the_sum(&bytes));
+            let differs = cut[end..].iter().chain(&[ERASED; 2]).ne(&bytes[end..]);
+            prop_assert_eq!(a_beginning_passes(&bytes, &sums(&bytes)), differs || a_beginning_has_the_sum(&bytes));
+        }
+
+        #[test]
+        fn a_sealed_section_has_its_length_and_sum_and_at_most_some_bytes_more(
+            bytes in prop::collection::vec(any::<u8>(), CHECKED..600),
+        ) {
+            let section = sealed(bytes.clone());
+            let length = u16::from_le_bytes([section[LENGTH], section[LENGTH + 1]]);
+            let crc = u16::from_le_bytes([section[CRC], section[CRC + 1]]);
+            prop_assert_eq!(usize::from(length), section.len());
+            prop_assert_eq!(crc, Checksum::of(&section[CHECKED..]).0);
+            prop_assert!(section.len() <= bytes.len() + 3);
+            prop_assert!(!a_beginning_has_the_sum(&section[CHECKED..]));
+            prop_assert!(!another_length_has_the_sum(&section));
+            prop_assert_eq!(&section[CHECKED..bytes.len()], &bytes[CHECKED..]);
+        }
+    }
+}

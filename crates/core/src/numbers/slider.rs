@@ -1,0 +1,63 @@
+//! The slider in each side of the body: its lengths, and the stroke that it may use.
+
+use lizard_avr::mul_unsigned;
+
+use crate::numbers::units::Scale;
+
+/// The longest that a side may be, in steps: the chassis, both arms and the offset
+/// together; and the slider.
+pub const LONGEST: f64 = 255.0 * 256.0;
+
+/// The longest that both arms and the offset may be together, in steps: what they
+/// add up to has a sign.
+pub const LONGEST_ARMS: f64 = 127.0 * 256.0;
+
+lizard_avr::plain! {
+    /// One side of the body, lengths in steps of `scale`.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Slider {
+        /// How many steps are a millimetre.
+        pub scale: Scale,
+        /// Front shaft's x less the rear shaft's.
+        pub offset: i16,
+        /// Distance between the two shafts along y.
+        pub base: u16,
+        /// Arm at the front crank, at a right angle to it.
+        pub front: i16,
+        /// Arm at the rear crank, at a right angle to it.
+        pub rear: i16,
+        /// The slider's nominal length.
+        pub nominal: u16,
+        /// The shortest that its stroke allows.
+        pub min: u16,
+        /// The longest.
+        pub max: u16,
+    }
+}
+
+impl Slider {
+    /// No slider.
+    pub const NONE: Self = Self {
+        scale: Scale { bits: 0 },
+        offset: 0,
+        base: 0,
+        front: 0,
+        rear: 0,
+        nominal: 0,
+        min: 0,
+        max: 0,
+    };
+
+    /// True where a squared length is within the stroke.
+    pub fn allows(&self, length_sq: u32) -> bool {
+        let square = |length| mul_unsigned(length, length);
+        square(self.min) <= length_sq && length_sq <= square(self.max)
+    }
+
+    /// The travel from nominal at a length, in hundredths of a millimetre.
+    #[inline(always)]
+    pub fn travel(&self, length: u16) -> i32 {
+        self.scale
+            .hundredths(i32::from(length) - i32::from(self.nominal))
+    }
+}

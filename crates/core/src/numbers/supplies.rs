@@ -1,0 +1,30 @@
+//! The supplies as robot.toml describes them: the reference of the chip and the thresholds.
+
+lizard_avr::plain! {
+    /// Voltages of one supply below which the robot reacts, mV, falling.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Thresholds {
+        /// Below: gaits at no more than half their pace, and no EEPROM writes.
+        pub slow: u16,
+        /// Below: the robot freezes.
+        pub stop: u16,
+        /// Below: the pulses end.
+        pub rest: u16,
+    }
+}
+
+lizard_avr::plain! {
+    /// The supplies, as in robot.toml.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Supplies {
+        /// The chip's reference, mV.
+        pub reference: u16,
+        /// Of the chip's own supply.
+        pub board: Thresholds,
+        /// The reference times the ratio of the divider through which the servos' rail is
+        /// measured, mV; 0 where it is not.
+        pub rail_reference: u16,
+        /// Of the rail itself.
+        pub rail: Thresholds,
+    }
+}
