@@ -36,7 +36,7 @@ fn built(feature: &str) -> bool {
         feature = "console",
         feature = "parts"
     ),
-    allow(dead_code, reason = "a whole build lacks nothing")
+    allow(dead_code, reason = "a complete build lacks nothing")
 )]
 pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
     in_a_build(typed, known, built)
@@ -71,7 +71,7 @@ mod tests {
     use super::super::KNOWN;
     use super::*;
 
-    fn said(word: &str, features: &[&str]) -> String {
+    fn message(word: &str, features: &[&str]) -> String {
         in_a_build(&[word.into(), "--json".into()], KNOWN, |feature| {
             features.contains(&feature)
         })
@@ -81,27 +81,27 @@ mod tests {
     #[test]
     fn a_command_of_an_absent_feature_says_how_to_get_it() {
         assert_eq!(
-            said("sim", &["paper"]),
+            message("sim", &["paper"]),
             "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
         );
-        assert!(said("backup", &[]).contains("without the commands for a board on USB;"));
-        assert!(said("parts", &["console"]).contains("without the parts to print;"));
-        assert!(said("monitor", &[]).starts_with("`lizard console` is missing: "));
+        assert!(message("backup", &[]).contains("without the commands for a board on USB;"));
+        assert!(message("parts", &["console"]).contains("without the parts to print;"));
+        assert!(message("monitor", &[]).starts_with("`lizard console` is missing: "));
     }
 
     #[test]
     fn of_two_features_those_that_are_absent_are_named() {
-        assert!(said("tune", &["simulator"]).contains("without the commands that compute;"));
-        assert!(said("tune", &["paper"]).contains("without the simulator;"));
-        assert!(said("replay", &[]).contains("a board on USB and the simulator;"));
+        assert!(message("tune", &["simulator"]).contains("without the commands that compute;"));
+        assert!(message("tune", &["paper"]).contains("without the simulator;"));
+        assert!(message("replay", &[]).contains("a board on USB and the simulator;"));
     }
 
     #[test]
     fn a_word_that_is_no_command_is_answered_with_the_one_that_was_meant() {
         assert_eq!(
-            said("fly", &[]),
+            message("fly", &[]),
             "there is no command `fly`; lizard --help lists them"
         );
-        assert!(said("claibrate", &[]).contains("; did you mean `calibrate`?"));
+        assert!(message("claibrate", &[]).contains("; did you mean `calibrate`?"));
     }
 }

@@ -30,7 +30,7 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
-/// Runs `lizard completions` for the whole program.
+/// Runs `lizard completions` for the program.
 ///
 /// # Errors
 /// Standard output cannot be written.
@@ -42,7 +42,7 @@ pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Fa
     Ok(out.flush()?)
 }
 
-/// Runs `lizard man` for the whole program.
+/// Runs `lizard man` for the program.
 ///
 /// # Errors
 /// A file cannot be written.

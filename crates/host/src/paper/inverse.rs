@@ -14,7 +14,7 @@ use crate::shared::number::tidy;
 struct Report {
     head: Option<Loop>,
     tail: Option<Loop>,
-    /// The pose with both elbows outward, the other end at neutral if not asked for.
+    /// The pose with both elbows outward; an end that was not given is at neutral.
     pose: Option<Angles>,
     safe: bool,
     why: Vec<String>,
@@ -109,10 +109,10 @@ fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
         why.push("another assembly mode: the end point would be behind the crank tips".to_string());
     }
     if let Ok(pose) = &there {
-        // In the other assembly mode the type-2 margin is negative, which is said.
-        let said = |what| behind && Check::TYPE2.contains(&what);
+        // In the other assembly mode the type-2 margin is negative, which is stated.
+        let stated = |what| behind && Check::TYPE2.contains(&what);
         let broken = robot.limits().end_violations(end, pose);
-        why.extend(broken.filter(|v| !said(v.what)).map(|v| v.to_string()));
+        why.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
     }
     Way {
         left: bend(a.working_mode.left),
@@ -134,7 +134,7 @@ fn bend(elbow: Elbow) -> &'static str {
     }
 }
 
-/// Puts both ends together and checks the whole robot.
+/// Combines both ends and checks the robot.
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut whole = true;
@@ -234,7 +234,7 @@ fn text(report: &Report) -> String {
     page
 }
 
-/// A miss in mm; rounding is not told apart from rounding.
+/// A miss in mm; all rounding errors count as equal.
 fn rounding(mm: f64) -> String {
     if mm < 1e-9 {
         "< 1e-9".to_string()

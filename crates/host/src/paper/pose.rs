@@ -3,7 +3,7 @@
 use lizard_kinematics::Vector;
 
 use crate::paper::{inverse, mobility, singularity, solve, velocity};
-use crate::shared::pose_args::length;
+use crate::shared::pose_args::Quantity;
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Compute the robot at a pose: its joints, singularities, freedoms or rates
@@ -33,11 +33,11 @@ pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
     /// End point of the head in mm, chassis frame
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = Quantity::LENGTH.parser(),
           help_heading = "Pose", conflicts_with = "theta1")]
     head: Option<Vec<f64>>,
     /// End point of the tail in mm, chassis frame
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = Quantity::LENGTH.parser(),
           help_heading = "Pose", conflicts_with = "theta1")]
     tail: Option<Vec<f64>>,
     /// The subject to print; all but the joints are also printed of the neutral pose, if none

@@ -12,7 +12,7 @@ use crate::shared::number::tidy;
 
 /// One object of `lizard pose --json`. Everything that a pose without a
 /// solution lacks is null; seconds are there only where the stream has them.
-#[derive(serde::Serialize)]
+#[derive(Default, serde::Serialize)]
 pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
@@ -68,7 +68,13 @@ impl PoseLine {
     pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
         let s = match solved {
             Ok(solution) => solution,
-            Err(infeasible) => return Self::without(seconds, infeasible),
+            Err(infeasible) => {
+                return Self {
+                    seconds,
+                    why: vec![infeasible.to_string()],
+                    ..Self::default()
+                };
+            }
         };
         let why = verdict::reasons(robot, s);
         let (head, tail) = (s.head_point(), s.tail_point());
@@ -97,24 +103,6 @@ impl PoseLine {
             margins: Some(Sines(s.margins)),
             safe: why.is_empty(),
             why,
-        }
-    }
-
-    fn without(seconds: Option<f64>, infeasible: &Infeasible) -> Self {
-        Self {
-            seconds,
-            theta2: None,
-            theta3: None,
-            theta6: None,
-            theta7: None,
-            head: None,
-            tail: None,
-            left: None,
-            right: None,
-            legs: None,
-            margins: None,
-            safe: false,
-            why: vec![infeasible.to_string()],
         }
     }
 }

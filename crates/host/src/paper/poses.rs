@@ -49,7 +49,7 @@ const LONGEST_LINE: u64 = 1024;
 /// A line of the stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed {
-    /// s, where the stream has such a column.
+    /// Time, s, if the stream has such a column.
     pub seconds: Option<f64>,
     /// The servo angles.
     pub pose: Pose,

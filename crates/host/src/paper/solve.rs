@@ -62,7 +62,7 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     })
 }
 
-/// Writes what comes, until no more can come.
+/// Writes the blocks until the channel is closed.
 fn write(lines: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     if let Some(heading) = heading {
@@ -74,8 +74,8 @@ fn write(lines: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), 
     Ok(out.flush()?)
 }
 
-/// Solves batch after batch and sends their lines on. Ends early, without a
-/// word, where the writer has given up; it has the word.
+/// Solves batch after batch and sends their lines on. Ends early and silently if the writer has
+/// stopped, which reports the reason.
 fn solve_all(
     robot: &Robot,
     json: bool,

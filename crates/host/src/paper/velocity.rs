@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::tidy;
-use crate::shared::pose_args::{acceleration, rate};
+use crate::shared::pose_args::Quantity;
 
 /// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;
@@ -19,28 +19,28 @@ const SWEEP: f64 = 0.04;
 #[command(next_help_heading = "Servos, for --show rates; all 0 unless given")]
 pub struct DriveArgs {
     /// Rate of theta1 (A1), deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = Quantity::RATE.parser())]
     omega1: f64,
     /// Rate of theta4 (A2), deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = Quantity::RATE.parser())]
     omega4: f64,
     /// Rate of theta8 (A3), deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = Quantity::RATE.parser())]
     omega8: f64,
     /// Rate of theta5 (A4), deg/s
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = rate)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = Quantity::RATE.parser())]
     omega5: f64,
     /// Acceleration of theta1 (A1), deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = Quantity::ACCELERATION.parser())]
     alpha1: f64,
     /// Acceleration of theta4 (A2), deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = Quantity::ACCELERATION.parser())]
     alpha4: f64,
     /// Acceleration of theta8 (A3), deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = Quantity::ACCELERATION.parser())]
     alpha8: f64,
     /// Acceleration of theta5 (A4), deg/s^2
-    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = acceleration)]
+    #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S^2", value_parser = Quantity::ACCELERATION.parser())]
     alpha5: f64,
 }
 
@@ -133,7 +133,7 @@ fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
     ]
 }
 
-/// Rate and acceleration in the same order.
+/// Rates and accelerations in the same order.
 fn rates(m: &Derivatives) -> [(f64, f64); 12] {
     let pair = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
     [

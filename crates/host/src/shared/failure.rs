@@ -11,17 +11,17 @@ pub enum Failure {
     /// robot.toml is missing or wrong.
     #[error("{0}")]
     Robot(#[from] lizard_robot::Error),
-    /// The input is well formed, but what it asks for does not exist.
+    /// The input is well formed, but its result does not exist.
     #[error("{0}")]
     Impossible(String),
-    /// Standard input, standard output or the terminal failed. What concerns a file or
-    /// a port is said with its name.
+    /// Standard input, standard output or the terminal failed. Errors of a file or a port are
+    /// reported with its name.
     #[error("standard input or output: {0}")]
     Io(#[from] io::Error),
 }
 
 impl Failure {
-    /// 2 for wrong input, 1 for everything else.
+    /// The program's exit code: 2 for wrong input, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Robot(_) => 2,

@@ -1,7 +1,8 @@
 //! Colours and strokes that every drawing shares.
 
-use svg::Document;
+use svg::node::Value;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
+use svg::{Document, Node};
 
 /// Servos A1 to A4, and their legs: three of Okabe and Ito's colours and a purple
 /// of Tol's, which the colour-blind can tell apart too.
@@ -29,11 +30,11 @@ const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 /// The part of a text that is at its point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
-    /// At its beginning.
+    /// The text begins there.
     Start,
-    /// In its middle.
+    /// Its middle is there.
     Middle,
-    /// At its end.
+    /// The text ends there.
     End,
 }
 
@@ -66,6 +67,13 @@ pub fn text_middle(words: &str, at: (f64, f64), size: f64) -> Text {
 /// Dark text that ends at a point.
 pub fn text_end(words: &str, at: (f64, f64), size: f64) -> Text {
     text(words, at, size, DARK, Anchor::End)
+}
+
+/// A picture's title and the line below it.
+pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
+    group
+        .add(text_start(words, (left, 40.0), 24.0).set("font-weight", "bold"))
+        .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
 /// The text of a picture on a white page.
@@ -116,6 +124,13 @@ pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
         .set("cy", fixed(centre.1))
         .set("r", radius)
         .set("fill", fill)
+}
+
+/// The shape with an edge of this colour and width.
+pub fn edged<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
+    shape.assign("stroke", colour);
+    shape.assign("stroke-width", width);
+    shape
 }
 
 /// An open curve through points.

@@ -8,7 +8,6 @@ use serde::Serialize;
 ///
 /// # Errors
 /// Standard output cannot be written.
-#[cfg(feature = "paper")]
 pub fn either(
     json: bool,
     value: &impl Serialize,

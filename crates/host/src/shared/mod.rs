@@ -1,5 +1,14 @@
 //! Helpers that several commands use: files, errors, the robot file, JSON, the colours and
 //! shapes of pictures, and computations spread over machines.
+#![cfg_attr(
+    not(all(
+        feature = "simulator",
+        feature = "paper",
+        feature = "console",
+        feature = "parts"
+    )),
+    allow(dead_code, reason = "a build without a feature uses fewer helpers")
+)]
 
 pub mod failure;
 pub mod files;

@@ -4,7 +4,7 @@
 //! moves the cursor, changes the window's title or hides what follows. So text from a
 //! file or a board is shown with such characters spelled out.
 
-/// The text with every control character as Rust writes it, such as `\u{1b}`.
+/// The text with every control character as an escape of Rust, such as `\u{1b}`.
 #[must_use]
 pub fn plain(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -18,8 +18,7 @@ pub fn plain(text: &str) -> String {
     shown
 }
 
-/// A text with plain lines of a length that a person reads: of a longer line, the middle is
-/// omitted.
+/// The text with its lines made plain; the middle of a very long line is omitted.
 #[must_use]
 pub fn readable_lines(text: &str) -> String {
     let lines: Vec<String> = text.split('\n').map(|line| short(&plain(line))).collect();
@@ -46,8 +45,8 @@ mod tests {
         let [fits, long] = [900, 901].map(|count| "ä".repeat(count));
         assert_eq!(readable_lines(&fits), fits);
         let side = "ä".repeat(300);
-        let said = format!("no\n{side} [...301 characters...] {side}");
-        assert_eq!(readable_lines(&format!("no\n{long}")), said);
+        let shortened = format!("no\n{side} [...301 characters...] {side}");
+        assert_eq!(readable_lines(&format!("no\n{long}")), shortened);
     }
 
     #[test]

@@ -37,11 +37,21 @@ impl Quantity {
         most: 1e9,
         unit: "s",
     };
+    /// A length in units of D.
+    pub const SHARE: Self = Self {
+        most: 1e6,
+        unit: "D",
+    };
     /// A coordinate or a length, mm.
     pub const LENGTH: Self = Self {
         most: 1e6,
         unit: "mm",
     };
+
+    /// A parser of this quantity for clap.
+    pub fn parser(self) -> impl Fn(&str) -> Result<f64, String> + Clone {
+        move |text| self.parse(text).map_err(|fault| format!("it {fault}"))
+    }
 
     /// A number within the bounds.
     ///
@@ -60,11 +70,11 @@ impl Quantity {
 /// The reason why a typed number is refused; the text continues a sentence about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberFault {
-    /// It is no number.
+    /// The text is no number.
     NotANumber,
-    /// It is infinite, not a number by name, or too large for a double.
+    /// The number is infinite, NaN, or too large for a double.
     NotFinite,
-    /// It is larger than its quantity may be.
+    /// The number is larger than its quantity may be.
     OutOfRange(Quantity),
 }
 
@@ -82,66 +92,30 @@ impl fmt::Display for NumberFault {
 
 impl std::error::Error for NumberFault {}
 
-fn number(quantity: Quantity, text: &str) -> Result<f64, String> {
-    quantity.parse(text).map_err(|fault| format!("it {fault}"))
-}
-
-/// An angle in degrees, for clap.
-///
-/// # Errors
-/// The text is no number, or beyond the bounds of an angle.
-pub fn angle(text: &str) -> Result<f64, String> {
-    number(Quantity::ANGLE, text)
-}
-
-/// A speed in deg/s, for clap.
-///
-/// # Errors
-/// The text is no number, or beyond the bounds of a rate.
-pub fn rate(text: &str) -> Result<f64, String> {
-    number(Quantity::RATE, text)
-}
-
-/// An acceleration in deg/s^2, for clap.
-///
-/// # Errors
-/// The text is no number, or beyond the bounds of an acceleration.
-pub fn acceleration(text: &str) -> Result<f64, String> {
-    number(Quantity::ACCELERATION, text)
-}
-
-/// A coordinate or a length in mm, for clap.
-///
-/// # Errors
-/// The text is no number, or beyond the bounds of a length.
-pub fn length(text: &str) -> Result<f64, String> {
-    number(Quantity::LENGTH, text)
-}
-
 /// `--theta1` and its three companions.
 #[derive(clap::Args, Debug, Default)]
 #[command(allow_negative_numbers = true)]
 pub struct PoseArgs {
     /// Servo A1, front left, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+    #[arg(long, value_name = "DEG", value_parser = Quantity::ANGLE.parser(), help_heading = "Pose",
           requires_all = ["theta4", "theta8", "theta5"])]
     theta1: Option<f64>,
     /// Servo A2, front right, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+    #[arg(long, value_name = "DEG", value_parser = Quantity::ANGLE.parser(), help_heading = "Pose",
           requires_all = ["theta1", "theta8", "theta5"])]
     theta4: Option<f64>,
     /// Servo A3, back right, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+    #[arg(long, value_name = "DEG", value_parser = Quantity::ANGLE.parser(), help_heading = "Pose",
           requires_all = ["theta1", "theta4", "theta5"])]
     theta8: Option<f64>,
     /// Servo A4, back left, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+    #[arg(long, value_name = "DEG", value_parser = Quantity::ANGLE.parser(), help_heading = "Pose",
           requires_all = ["theta1", "theta4", "theta8"])]
     theta5: Option<f64>,
 }
 
 impl PoseArgs {
-    /// The pose, if one was given; clap takes care that it is whole.
+    /// The pose, if one was given; clap checks that it is complete.
     pub fn get(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,

@@ -7,7 +7,7 @@ use lizard_robot::Robot;
 use crate::Failure;
 use crate::shared::files::{self, reading};
 
-/// The robot.toml of this source tree, for use outside of it.
+/// The robot.toml of this source tree, for use outside it.
 const BUILT_IN: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
@@ -36,7 +36,7 @@ pub struct RobotFile {
     /// that the program has: large, own-gaits, paper, unequal
     #[arg(long = "robot", value_name = "FILE", help_heading = "Robot")]
     path: Option<PathBuf>,
-    /// The text itself, where it was read elsewhere.
+    /// The text itself, if it comes from elsewhere.
     #[arg(skip)]
     text: Option<String>,
 }

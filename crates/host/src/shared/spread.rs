@@ -6,10 +6,6 @@
 //! machine computes them all, a part computes its own pieces, and a merge runs the same
 //! program with the pieces that it has read. A part contains the version, the options and
 //! the robot, so that parts of different computations cannot be mixed.
-#![cfg_attr(
-    not(any(feature = "paper", feature = "parts")),
-    allow(dead_code, reason = "nothing can be spread")
-)]
 
 use std::collections::BTreeMap;
 use std::io;
@@ -29,7 +25,7 @@ const MOST: u32 = 1_000_000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Part {
-    /// From 1 on.
+    /// The number of this part, from 1.
     pub(crate) number: u32,
     /// The number of parts.
     pub(crate) of: u32,
@@ -124,7 +120,7 @@ pub trait Spreads: Serialize + DeserializeOwned {
     /// The command's name.
     const COMMAND: &'static str;
 
-    /// Its robot and its part.
+    /// The command's robot and its part.
     fn places(&mut self) -> (&mut RobotFile, &mut Spread);
 }
 
@@ -146,7 +142,7 @@ pub(crate) struct Share {
 }
 
 impl Spread {
-    /// Takes what parts have found.
+    /// Sets the results of all parts, for a merge.
     pub(crate) fn take(&mut self, merged: BTreeMap<usize, Value>) {
         self.merged = Some(merged);
     }
@@ -242,8 +238,11 @@ mod tests {
             "a/b",
             "1/1000001",
         ] {
-            let said = wrong.parse::<Part>().expect_err(wrong);
-            assert!(said.starts_with("it must be as 2/8"), "{wrong}: {said}");
+            let message = wrong.parse::<Part>().expect_err(wrong);
+            assert!(
+                message.starts_with("it must be as 2/8"),
+                "{wrong}: {message}"
+            );
         }
     }
 }

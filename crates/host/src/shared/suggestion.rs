@@ -1,4 +1,4 @@
-//! The name that a user may have meant who typed an unknown one.
+//! Suggestions for a mistyped name.
 
 /// The similarity of two words, 0 to 1, from which one counts as a mistyped form of the other;
 /// the same value as clap's for commands and options.

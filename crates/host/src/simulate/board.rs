@@ -42,7 +42,7 @@ pub enum BoardError {
     /// The firmware sleeps with interrupts off.
     #[error("the firmware sleeps with interrupts off, for ever")]
     Halted,
-    /// The firmware went where there is nothing.
+    /// The firmware ran into an invalid address.
     #[error("the firmware crashed: {0}")]
     Crashed(String),
     /// The power has been cut.
@@ -86,7 +86,7 @@ pub struct SimulatedBoard {
     lines: Vec<Line>,
     /// Number of lines that [`SimulatedBoard::next_line`] has returned.
     returned: usize,
-    /// Start of a frame: where the others are counted from.
+    /// The start of some frame, from which others are counted.
     anchor: Option<u64>,
 }
 
@@ -100,7 +100,7 @@ impl SimulatedBoard {
         Ok(Self::with_image(image, fidelity, robot))
     }
 
-    /// The same with an image that has the robot in it already.
+    /// Powers on a board with an image that contains the robot already.
     #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
         let mut uno = Uno::with_image(image, fidelity);
@@ -259,7 +259,7 @@ impl SimulatedBoard {
         Ok(self.uno.time_calls(entry, ms * CYCLES_PER_MS))
     }
 
-    /// Cycles spent so far in the handlers of some vectors.
+    /// The cycles spent so far in the handlers of some vectors.
     pub fn handler_cycles(&self, which: impl Fn(u8) -> bool) -> u64 {
         let all = self.uno.interrupts();
         let those = all.iter().filter(|used| which(used.vector));

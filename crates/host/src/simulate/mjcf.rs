@@ -15,7 +15,7 @@ use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
-/// A foot may be off by so much, mm; more, and its screw or its leaf ends.
+/// The largest length error of a foot, mm; beyond it, its screw or its leaf ends.
 const MOST: f64 = 5.0;
 
 /// Write the robot for MuJoCo, a physics engine: bodies, masses, joints, feet, servos
@@ -129,7 +129,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// By how much each foot is too long, mm, servo order.
+/// The length error of each foot, mm, servo order.
 fn lengths(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
     let mut long = [None; 4];
     for LongFoot { leg, mm } in given {

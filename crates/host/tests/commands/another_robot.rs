@@ -25,7 +25,7 @@ fn of_the_image() -> String {
 fn another() -> (String, String) {
     let named = ["unequal", "large"].map(|name| {
         let path = robot(name);
-        let report = run(&["gaits", "--robot", &path]).said();
+        let report = run(&["gaits", "--robot", &path]).success();
         (path, robot_in(&report))
     });
     let image = of_the_image();

@@ -18,8 +18,8 @@ fn without_a_board_and_without_a_firmware_built_it_gets_as_far_as_the_port() {
     let empty = tempfile::tempdir().expect("a folder");
     for words in [&[][..], &["--only-robot"], &["--robot", "large"]] {
         let arguments = [&["flash", "/dev/no-such-port"], words].concat();
-        let said = run_in(empty.path(), &arguments, "").refusal();
-        assert!(said.contains("no-such-port"), "{said}");
+        let message = run_in(empty.path(), &arguments, "").refusal();
+        assert!(message.contains("no-such-port"), "{message}");
     }
 }
 
@@ -36,14 +36,14 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
             begin.elapsed()
         );
         assert_eq!(made.err, "");
-        let said = made.said();
+        let output = made.success();
         assert!(
-            said.starts_with("x.hex: ") && said.contains(&format!("robot {name} ")),
-            "{said}"
+            output.starts_with("x.hex: ") && output.contains(&format!("robot {name} ")),
+            "{output}"
         );
         let text = fs::read_to_string(folder.path().join("x.hex")).expect("it is written");
         let piped = [&["image", "--robot", name], options].concat();
-        let piped = run_in(folder.path(), &piped, "").said();
+        let piped = run_in(folder.path(), &piped, "").success();
         assert!(piped == text, "the same goes to a pipe");
         // By another reader of Intel HEX than the one that wrote it.
         let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
@@ -60,8 +60,8 @@ fn a_robot_that_is_wrong_gives_no_image() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("a file");
     let arguments = ["image", "--robot", "x.toml", "--output", "x.hex"];
-    let said = run_in(folder.path(), &arguments, "").refusal();
-    assert!(said.contains("x.toml"), "{said}");
+    let message = run_in(folder.path(), &arguments, "").refusal();
+    assert!(message.contains("x.toml"), "{message}");
     assert!(!folder.path().join("x.hex").exists());
 }
 
@@ -71,9 +71,9 @@ fn a_port_that_is_not_there_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("a.hex"), HEX).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
-    let said = run_in(folder.path(), &arguments, "").refusal();
+    let message = run_in(folder.path(), &arguments, "").refusal();
     let begin = "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
-    assert!(said.starts_with(begin), "{said}");
+    assert!(message.starts_with(begin), "{message}");
 }
 
 #[test]
@@ -81,14 +81,14 @@ fn a_file_that_is_no_image_is_refused_before_any_port_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "half.hex"];
-    let said = run_in(folder.path(), &arguments, "").refusal();
+    let message = run_in(folder.path(), &arguments, "").refusal();
     assert!(
-        said.starts_with("lizard: half.hex: line 2 is no Intel HEX"),
-        "{said}"
+        message.starts_with("lizard: half.hex: line 2 is no Intel HEX"),
+        "{message}"
     );
     for other in [&["--robot", "robot.toml"][..], &["--only-robot"]] {
         let both = [&arguments[..], other].concat();
-        let said = run_in(folder.path(), &both, "").refusal();
-        assert!(said.contains("cannot be used with"), "{said}");
+        let message = run_in(folder.path(), &both, "").refusal();
+        assert!(message.contains("cannot be used with"), "{message}");
     }
 }

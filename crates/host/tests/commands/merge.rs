@@ -10,7 +10,7 @@ fn complaint(words: &str, input: &str) -> String {
 
 /// The output of all parts, the last one first.
 fn parts(words: &str, of: usize) -> String {
-    let part = |number| lizard(&format!("{words} --part {number}/{of}"), "").said();
+    let part = |number| lizard(&format!("{words} --part {number}/{of}"), "").success();
     (1..=of).rev().map(part).collect()
 }
 
@@ -24,9 +24,9 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
         ("design --search --step 0.1 --top 3 --json", 5),
     ] {
         let words = paper(words);
-        let whole = lizard(&words, "").said();
+        let whole = lizard(&words, "").success();
         assert!(whole.len() > 100, "{words}: {whole}");
-        let merged = lizard("merge", parts(&words, of)).said();
+        let merged = lizard("merge", parts(&words, of)).success();
         assert_eq!(merged, whole, "{words}");
     }
 }
@@ -38,19 +38,19 @@ fn a_merge_refuses_what_is_not_all_of_one_computation() {
     let (last, first) = parts.split_once('\n').expect("two lines");
     assert_eq!(complaint("merge", last), "lizard: part 1/2 is missing");
     let other = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
-    let other = lizard(other, "").said();
+    let other = lizard(other, "").success();
     assert_eq!(
         complaint("merge", &format!("{last}\n{other}")),
         "lizard: part 1/2 has another robot than another part"
     );
-    let step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").said();
+    let step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").success();
     assert!(complaint("merge", &format!("{last}\n{step}")).contains("other options"));
     // A job that was killed leaves half a line.
     let half = &first[..first.len() / 2];
-    let said = complaint("merge", &format!("{last}\n{half}"));
+    let message = complaint("merge", &format!("{last}\n{half}"));
     assert!(
-        said.starts_with("lizard: standard input: line 2 is no part: "),
-        "{said}"
+        message.starts_with("lizard: standard input: line 2 is no part: "),
+        "{message}"
     );
     assert!(complaint("merge", "").contains("there are no parts"));
     assert!(complaint("merge no-such-part", "").contains("cannot read no-such-part: "));
@@ -58,11 +58,11 @@ fn a_merge_refuses_what_is_not_all_of_one_computation() {
 
 #[test]
 fn a_part_is_of_so_many_and_of_what_takes_long() {
-    let said = complaint("prove --part 3/2", "");
+    let message = complaint("prove --part 3/2", "");
     assert!(
-        said.contains("it must be as 2/8, from 1/8 to 8/8"),
-        "{said}"
+        message.contains("it must be as 2/8, from 1/8 to 8/8"),
+        "{message}"
     );
-    let said = complaint(&paper("design --part 1/2"), "");
-    assert!(said.contains("--part goes with --search"), "{said}");
+    let message = complaint(&paper("design --part 1/2"), "");
+    assert!(message.contains("--part goes with --search"), "{message}");
 }

@@ -16,7 +16,7 @@ fn fresh(name: &str) -> PathBuf {
 fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
     let file = fresh("robot.xml");
     let path = file.display().to_string();
-    run(&["mjcf", &path]).said();
+    run(&["mjcf", &path]).success();
     let text = fs::read_to_string(&file).expect("a file");
     for part in [
         "<position name=\"A1\"",
@@ -32,7 +32,7 @@ fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
 #[test]
 #[cfg(unix)]
 fn a_stream_gets_the_file_and_nothing_else() {
-    let text = run(&["mjcf", "/dev/stdout", "--long-foot", "LH=-0.5"]).said();
+    let text = run(&["mjcf", "/dev/stdout", "--long-foot", "LH=-0.5"]).success();
     assert!(text.starts_with("<mujoco ") && text.ends_with("</mujoco>\n"));
 }
 

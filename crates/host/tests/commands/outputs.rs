@@ -65,7 +65,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
 fn an_image_makes_the_folders_that_it_needs() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = "image --robot large --output new/folder/x.hex";
-    lizard(folder.path(), line).said();
+    lizard(folder.path(), line).success();
     assert!(folder.path().join("new/folder/x.hex").is_file());
 }
 

@@ -27,7 +27,7 @@ fn changed(name: &str, change: impl Fn(String) -> String) -> String {
 #[test]
 fn a_folder_holds_everything_to_build_the_robot() {
     let folder = fresh("parts-all");
-    make(&folder, &["--robot", &robot("paper")]).said();
+    make(&folder, &["--robot", &robot("paper")]).success();
     for file in [
         "step/plate.step",
         "stl/link-A1-A3.stl",
@@ -96,13 +96,13 @@ fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
     let light = changed("light.toml", |text| {
         text.replace("mass = 396.4", "mass = 280.0")
     });
-    let said = |robot: &str| make(&fresh("parts-light"), &["--robot", robot]).said();
-    let light = said(&light);
+    let summary = |robot: &str| make(&fresh("parts-light"), &["--robot", robot]).success();
+    let light = summary(&light);
     assert!(
         light.contains("The parts weigh 396 g") && light.ends_with("\n[body]\nmass = 396.0\n"),
         "{light}"
     );
-    assert_eq!(said(&robot("paper")).lines().count(), 1);
+    assert_eq!(summary(&robot("paper")).lines().count(), 1);
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn struts_may_have_springs() {
     let robot = changed("strut.toml", |text| {
         text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
     });
-    make(&folder, &["--robot", &robot]).said();
+    make(&folder, &["--robot", &robot]).success();
     for file in [
         "stl/rigid-strut.stl",
         "cut/rigid-strut.dxf",
@@ -138,11 +138,11 @@ fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
     let robot = changed("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
     let made = make(&folder, &["--robot", &robot]);
     assert_eq!(made.code, Some(1));
-    let said = made.err;
+    let message = made.err;
     assert!(
-        said.contains(" overlap by ") && said.contains(" at pose "),
-        "{said}"
+        message.contains(" overlap by ") && message.contains(" at pose "),
+        "{message}"
     );
-    assert_eq!(said.lines().count(), 1, "{said}");
+    assert_eq!(message.lines().count(), 1, "{message}");
     assert!(!folder.exists());
 }

@@ -16,14 +16,14 @@ pub struct Outcome {
 
 impl Outcome {
     /// Standard output of a run that succeeds.
-    pub fn said(self) -> String {
+    pub fn success(self) -> String {
         assert_eq!(self.code, Some(0), "{}", self.err);
         self.out
     }
 
     /// Standard output as one JSON value.
     pub fn json(self) -> serde_json::Value {
-        serde_json::from_str(&self.said()).expect("JSON")
+        serde_json::from_str(&self.success()).expect("JSON")
     }
 
     /// The message of a run that refuses its input and writes nothing.

@@ -25,9 +25,9 @@ impl Board {
 
     /// The answer to a line, until all motion has ended.
     fn send(&mut self, line: &str) -> Vec<String> {
-        let mut said = self.running.send(format!("{line}\r").as_bytes());
-        said.extend(self.run(100));
-        said
+        let mut answer = self.running.send(format!("{line}\r").as_bytes());
+        answer.extend(self.run(100));
+        answer
     }
 }
 
@@ -53,12 +53,15 @@ fn every_line_of_the_quickstart_is_answered_as_it_shows() {
             let mut shown = turn.lines();
             let line = shown.next().expect("a line");
             let shown: Vec<&str> = shown.collect();
-            let said = board.send(line);
-            let alike = said.len() == shown.len()
-                && said.iter().zip(&shown).all(|(said, shown)| is(said, shown));
+            let answer = board.send(line);
+            let alike = answer.len() == shown.len()
+                && answer
+                    .iter()
+                    .zip(&shown)
+                    .all(|(answer, shown)| is(answer, shown));
             assert!(
                 alike,
-                "{line}\n  is answered by {said:#?}\n  but shown as {shown:#?}"
+                "{line}\n  is answered by {answer:#?}\n  but shown as {shown:#?}"
             );
             lines += 1;
         }
@@ -78,7 +81,7 @@ fn every_sentence_in_the_table_of_troubles_is_one_of_the_firmware() {
     for row in table.lines().filter(|line| line.starts_with('|')) {
         rows += 1;
         for quoted in row.split('`').skip(1).step_by(2) {
-            let said = if let Some(refusal) = quoted.strip_prefix("err ") {
+            let answer = if let Some(refusal) = quoted.strip_prefix("err ") {
                 let (code, reason) = refusal.split_at(1);
                 codes[code.parse::<usize>().expect("a code")] = true;
                 reason
@@ -87,7 +90,7 @@ fn every_sentence_in_the_table_of_troubles_is_one_of_the_firmware() {
             } else {
                 continue;
             };
-            for words in said
+            for words in answer
                 .split("...")
                 .map(|words| words.trim_matches([' ', ',']))
             {

@@ -8,8 +8,8 @@ use lizard_time_limit::LIMIT;
 
 use crate::program::{robot, run, scratch};
 
-fn said(words: &[&str]) -> String {
-    run(words).said()
+fn output(words: &[&str]) -> String {
+    run(words).success()
 }
 
 fn complaint(words: &[&str]) -> String {
@@ -26,7 +26,7 @@ fn under(help: &str, heading: &str) -> Vec<String> {
 
 #[test]
 fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
-    let help = said(&["--help"]);
+    let help = output(&["--help"]);
     let headings = [
         "Drive the robot",
         "Simulate it",
@@ -47,13 +47,16 @@ fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
         .map(|heading| under(&help, heading).len());
     assert!(listed.sum::<usize>() <= 20, "{help}");
     assert!(under(&help, "Drive the robot").contains(&"console".to_owned()));
-    assert_eq!(said(&["help"]), help);
+    assert_eq!(output(&["help"]), help);
 }
 
 #[test]
 fn a_roboticists_words_mean_the_same_commands() {
-    assert_eq!(said(&["monitor", "--help"]), said(&["console", "--help"]));
-    let help = said(&["help"]);
+    assert_eq!(
+        output(&["monitor", "--help"]),
+        output(&["console", "--help"])
+    );
+    let help = output(&["help"]);
     let line = help.lines().find(|line| line.contains(" console "));
     assert!(line.expect("console").ends_with("[also: monitor]"));
 }
@@ -158,7 +161,7 @@ fn offered(script: &Path, words: &str, place: usize) -> Vec<String> {
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
     let script = scratch().join("lizard.bash");
-    std::fs::write(&script, said(&["completions", "bash"])).expect("it is written");
+    std::fs::write(&script, output(&["completions", "bash"])).expect("it is written");
     assert_eq!(offered(&script, "lizard calib", 1), ["calibrate"]);
     assert_eq!(
         offered(&script, "lizard twin --ro", 2),
@@ -171,8 +174,8 @@ fn bash_completes_commands_and_options() {
 fn every_command_has_a_manual_page_that_names_its_options() {
     let folder = tempfile::tempdir().expect("a folder");
     let pages = folder.path().join("man1");
-    said(&["man", &pages.display().to_string()]);
-    let help = said(&["--help"]);
+    output(&["man", &pages.display().to_string()]);
+    let help = output(&["--help"]);
     let mut count = 0;
     for heading in [
         "Drive the robot",

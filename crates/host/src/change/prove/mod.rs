@@ -6,7 +6,10 @@
 //! in which the firmware counts angles, decides every possible pose: 1.8e18 for servos of
 //! half a turn. Nothing is sampled.
 
+mod end_walk;
 mod positions;
+mod rows;
+mod side_walk;
 mod tally;
 mod walk;
 
@@ -21,7 +24,8 @@ use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
-pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
+pub use rows::Share;
+pub use tally::{Finding, MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 
 /// Compare the firmware's guard with floating point at every possible pose.
 ///
@@ -64,37 +68,7 @@ impl Spreads for Args {
     }
 }
 
-/// A sample of the pairs: in each row, the pairs whose column has a certain remainder modulo
-/// `one_in`. The remainder differs from row to row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share {
-    /// One pair in N is checked; at least 1.
-    pub one_in: u32,
-    /// Offset of the selected pairs, below `one_in`.
-    pub offset: u32,
-}
-
-impl Share {
-    /// The sample that contains all pairs.
-    pub const ALL: Self = Self {
-        one_in: 1,
-        offset: 0,
-    };
-}
-
-/// The result of comparing the guard with geometry at one end or one side.
-#[derive(Clone, Debug, Serialize)]
-pub struct Finding {
-    /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
-    pub part: String,
-    /// The servos that decide it.
-    pub servos: Vec<&'static str>,
-    /// Of its conditions.
-    #[serde(flatten)]
-    pub tally: Tally,
-}
-
-/// The comparison for a whole robot.
+/// The comparison of guard and geometry for one robot.
 #[derive(Clone, Debug, Serialize)]
 pub struct Proof {
     /// Ends, sides and legs.

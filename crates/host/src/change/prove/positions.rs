@@ -9,7 +9,7 @@ use lizard_robot::CoreRobot;
 pub struct Positions {
     /// The first one's sweep from neutral.
     first: i16,
-    /// Its angle in the chassis frame, degrees.
+    /// The angle of each position in the chassis frame, degrees.
     pub degrees: Vec<f64>,
     /// The crank's direction in the frame of its end, Q15.
     pub fixed: Vec<Direction>,

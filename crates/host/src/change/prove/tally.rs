@@ -28,7 +28,7 @@ pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
 pub struct Tally {
     /// Pairs of positions checked.
     pub pairs: u64,
-    /// Those of them that a cell of the robot's maps holds: the guard must accept each.
+    /// The number of pairs in a cell of the robot's maps: the guard must accept each.
     pub certified: u64,
     /// Largest error of the type-2 margin, a sine.
     pub type2: Option<f64>,
@@ -58,7 +58,7 @@ impl Tally {
         }
     }
 
-    /// Of two walks together.
+    /// Adds the sums of another walk.
     pub fn and(mut self, other: Self) -> Self {
         self.pairs += other.pairs;
         self.certified += other.certified;
@@ -105,4 +105,16 @@ impl Tally {
             self.example.get_or_insert_with(example);
         }
     }
+}
+
+/// The result of comparing the guard with geometry at one end or one side.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
+    pub part: String,
+    /// The servos that decide it.
+    pub servos: Vec<&'static str>,
+    /// The sums over its pairs.
+    #[serde(flatten)]
+    pub tally: Tally,
 }

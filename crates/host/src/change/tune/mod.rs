@@ -258,8 +258,8 @@ mod tests {
             ("--rounds 0", "0 is not in 1..=10000"),
             ("--robots 3", "3 is not in 20..=100000"),
         ] {
-            let said = tuned(words).expect_err(words);
-            assert!(said.contains(why), "{words}: {said}");
+            let message = tuned(words).expect_err(words);
+            assert!(message.contains(why), "{words}: {message}");
         }
     }
 }

@@ -40,7 +40,7 @@ pub struct RestoreArgs {
 /// No board, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("backup FILE")?;
-    let (mut board, _) = finder.meet()?;
+    let (mut board, _) = finder.open_and_greet()?;
     let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
     files::write(&args.file, file::text(&set).as_bytes())?;
     println!(
@@ -58,8 +58,8 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let set = file::read(&args.file)?;
     let finder = args.connect.finder("restore FILE")?;
-    let (mut board, _) = finder.meet()?;
-    give(&set, &mut board.link)
+    let (mut board, _) = finder.open_and_greet()?;
+    send_calibration(&set, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
     println!(
         "{} has the calibration of {} and has saved it",
@@ -71,8 +71,8 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
 
 /// The reason why the robot did not accept a calibration.
 #[derive(Debug, thiserror::Error)]
-pub enum GiveError {
-    /// A part of it is refused.
+pub enum SendError {
+    /// The robot refused a value.
     #[error("{0}; nothing was saved, the robot has what it had before")]
     Refused(LinkError),
     /// Neither the new nor the old one is in effect.
@@ -88,21 +88,24 @@ pub enum GiveError {
 ///
 /// # Errors
 /// A refusal, or a connection that breaks.
-pub fn give<P: Read + Write>(set: &Calibration, link: &mut Link<P>) -> Result<(), GiveError> {
-    let before = Calibration::ask(link).map_err(GiveError::Refused)?;
+pub fn send_calibration<P: Read + Write>(
+    set: &Calibration,
+    link: &mut Link<P>,
+) -> Result<(), SendError> {
+    let before = Calibration::ask(link).map_err(SendError::Refused)?;
     let given = set
         .apply(link)
         .and_then(|()| Calibration::ask(link))
         .map(|now| now.is_same(set));
     let error = match given {
-        Ok(true) => match link.tell("save") {
+        Ok(true) => match link.command("save") {
             Ok(_) => return Ok(()),
-            Err(error) => GiveError::Refused(error),
+            Err(error) => SendError::Refused(error),
         },
-        Ok(false) => GiveError::Differs,
-        Err(error) => GiveError::Refused(error),
+        Ok(false) => SendError::Differs,
+        Err(error) => SendError::Refused(error),
     };
-    before.apply(link).map_err(GiveError::Between)?;
+    before.apply(link).map_err(SendError::Between)?;
     Err(error)
 }
 
@@ -114,14 +117,14 @@ mod tests {
     #[test]
     fn what_was_backed_up_is_there_again_after_restoring_and_loading() {
         let mut link = robot();
-        link.tell("trim 3 -4.25").expect("it is taken");
-        link.tell("boot walk").expect("it is taken");
+        link.command("trim 3 -4.25").expect("it is taken");
+        link.command("boot walk").expect("it is taken");
         let kept = Calibration::ask(&mut link).expect("it answers");
         let kept = file::parse(&file::text(&kept)).expect("it is a calibration");
-        link.tell("factory").expect("it is taken");
-        give(&kept, &mut link).expect("it is taken and saved");
-        link.tell("factory").expect("it is taken");
-        link.tell("load").expect("something was saved");
+        link.command("factory").expect("it is taken");
+        send_calibration(&kept, &mut link).expect("it is taken and saved");
+        link.command("factory").expect("it is taken");
+        link.command("load").expect("something was saved");
         assert!(
             Calibration::ask(&mut link)
                 .expect("it answers")
@@ -132,12 +135,12 @@ mod tests {
     #[test]
     fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
         let mut link = robot();
-        link.tell("trim 3 -4.25").expect("it is taken");
+        link.command("trim 3 -4.25").expect("it is taken");
         let before = Calibration::ask(&mut link).expect("it answers");
         let mut set = before.clone();
         set.servo.at(0).trim = 5.0;
         set.servo.at(2).scale = 99.0;
-        let error = give(&set, &mut link).expect_err("it is refused");
+        let error = send_calibration(&set, &mut link).expect_err("it is refused");
         assert_eq!(
             error.to_string(),
             "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, the \

@@ -1,4 +1,4 @@
-//! Everything that `save` stores, in the form in which the console prints and accepts it.
+//! The settings that `save` stores, in the form in which the console prints and accepts them.
 
 use std::io::{Read, Write};
 
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::link::{Link, LinkError};
 
 /// The settings of a robot.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Calibration {
     /// The action after power-on: a gait, or rest.
     pub boot: String,
@@ -58,7 +59,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// As the console writes it.
+    /// The sign as the console writes it.
     #[must_use]
     pub const fn sign(self) -> char {
         match self {
@@ -67,7 +68,7 @@ impl Direction {
         }
     }
 
-    /// The other one.
+    /// The opposite direction.
     #[must_use]
     pub const fn reversed(self) -> Self {
         match self {
@@ -101,7 +102,7 @@ impl Calibration {
     /// # Errors
     /// No answer, or one that is not understood.
     pub fn ask<P: Read + Write>(link: &mut Link<P>) -> Result<Self, LinkError> {
-        let reply = link.tell("cal")?;
+        let reply = link.command("cal")?;
         Self::parse(&reply.notes).ok_or_else(|| LinkError::Unclear {
             line: "cal".to_owned(),
             answer: reply.notes.join(" / "),
@@ -147,7 +148,7 @@ impl Calibration {
         })
     }
 
-    /// The lines that set all of it.
+    /// The console commands that set all values.
     #[must_use]
     pub fn commands(&self) -> Vec<String> {
         let mut lines = Vec::new();
@@ -179,7 +180,7 @@ impl Calibration {
             let mut refusal = None;
             let mut left = Vec::new();
             for line in &lines {
-                match link.tell(line) {
+                match link.command(line) {
                     Ok(_) => {}
                     Err(error @ LinkError::Refused { .. }) => {
                         refusal = refusal.or(Some(error));
@@ -197,7 +198,7 @@ impl Calibration {
                 return Err(refusal);
             } else {
                 from_factory = true;
-                link.tell("factory")?;
+                link.command("factory")?;
                 lines = self.commands();
             }
         }

@@ -1,4 +1,4 @@
-//! From the arguments to a board that has said what it is.
+//! Opening a board: from the command's arguments to its first line.
 
 use std::path::PathBuf;
 
@@ -103,7 +103,7 @@ fn simulated(
 }
 
 impl Finder {
-    /// Opens the port, which resets the board. To be greeted next.
+    /// Opens the port, which resets the board. [`Connection::greet`] comes next.
     ///
     /// # Errors
     /// No board, more than one, or its port cannot be opened.
@@ -127,7 +127,7 @@ impl Finder {
     ///
     /// # Errors
     /// As [`Finder::open`], or no lizard answers.
-    pub fn meet(&self) -> Result<(Connection, Option<String>), Failure> {
+    pub fn open_and_greet(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
         eprintln!("lizard: waiting for the board at {}", board.name);
         let banner = board.greet()?;

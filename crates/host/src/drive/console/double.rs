@@ -10,7 +10,7 @@ use lizard_robot::Robot;
 
 use super::link::{Link, Patience};
 
-/// The core on its board without a chip, and what it has written.
+/// The core on a virtual board, and its output.
 pub struct Double {
     running: Running,
     out: VecDeque<u8>,
@@ -43,8 +43,8 @@ impl Double {
         }
     }
 
-    /// Puts out what the robot has said.
-    fn hear(&mut self) {
+    /// Collects the robot's output.
+    fn collect(&mut self) {
         self.running.settle();
         let text = &mut self.running.board.transmitter.text;
         self.out
@@ -56,7 +56,7 @@ impl Read for Double {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.out.is_empty() {
             self.running.frame();
-            self.hear();
+            self.collect();
         }
         if self.out.is_empty() {
             std::thread::sleep(Duration::from_micros(200));
@@ -71,7 +71,7 @@ impl Write for Double {
         self.sent.push_str(&String::from_utf8_lossy(bytes));
         for byte in bytes {
             self.running.board.send(&[*byte]);
-            self.hear();
+            self.collect();
         }
         Ok(bytes.len())
     }

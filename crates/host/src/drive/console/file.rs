@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
-use super::calibration::{Calibration, Servos, is_name};
+use super::calibration::{Calibration, is_name};
 use crate::Failure;
 use crate::shared::files;
 
@@ -17,30 +15,14 @@ const HEAD: &str = "\
 
 ";
 
-/// The keys, in their order.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    format: String,
-    boot: String,
-    deadman: u16,
-    servo: Servos,
-}
-
 /// The text of the file.
 #[must_use]
 pub fn text(set: &Calibration) -> String {
-    let file = File {
-        format: FORMAT.to_owned(),
-        boot: set.boot.clone(),
-        deadman: set.deadman,
-        servo: set.servo.clone(),
-    };
-    let keys = toml::to_string(&file).expect("numbers and words are always TOML");
-    format!("{HEAD}{keys}")
+    let keys = toml::to_string(set).expect("numbers and words are always TOML");
+    format!("{HEAD}format = \"{FORMAT}\"\n{keys}")
 }
 
-/// Reads such a text.
+/// Reads the text of a calibration file.
 ///
 /// # Errors
 /// A sentence that names the key or the line.
@@ -50,17 +32,17 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
         text.get(..at)
             .map_or(1, |before| before.lines().count().max(1))
     };
-    let table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
+    let mut table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
         let at = error.span().map_or(0, |span| span.start);
         let why = lizard_robot::mistake(text, at, error.message());
         format!("line {}: {why}", line(&error))
     })?;
-    match table.get("format") {
+    match table.remove("format") {
         Some(format) if format.as_str() == Some(FORMAT) => {}
         Some(other) => return Err(format!("format is {other}, not \"{FORMAT}\"")),
         None => return Err(format!("the key format = \"{FORMAT}\" is missing")),
     }
-    let file: File = serde_path_to_error::deserialize(table).map_err(|error| {
+    let set: Calibration = serde_path_to_error::deserialize(table).map_err(|error| {
         let key = error.path().to_string();
         let problem = error.inner().message().to_owned();
         match key.as_str() {
@@ -68,10 +50,10 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
             _ => format!("{key}: {problem}"),
         }
     })?;
-    if !is_name(&file.boot) {
-        return Err(format!("boot: `{}` is no name of a gait", file.boot));
+    if !is_name(&set.boot) {
+        return Err(format!("boot: `{}` is no name of a gait", set.boot));
     }
-    for (name, servo) in ["A1", "A2", "A3", "A4"].into_iter().zip(file.servo.all()) {
+    for (name, servo) in ["A1", "A2", "A3", "A4"].into_iter().zip(set.servo.all()) {
         let [min, max] = servo.limit;
         let values = [
             ("trim", servo.trim),
@@ -90,11 +72,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
             }
         }
     }
-    Ok(Calibration {
-        boot: file.boot,
-        deadman: file.deadman,
-        servo: file.servo,
-    })
+    Ok(set)
 }
 
 /// Reads a file.
@@ -109,7 +87,7 @@ pub fn read(path: &Path) -> Result<Calibration, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::calibration::{Direction, Servo};
+    use super::super::calibration::{Direction, Servo, Servos};
     use super::*;
 
     fn set() -> Calibration {
@@ -155,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_file_is_said_with_its_key() {
+    fn a_mistake_in_a_file_is_reported_with_its_key() {
         let good = text(&set());
         let complaint = |from: &str, to: &str| {
             assert!(good.contains(from), "{from}");

@@ -10,7 +10,7 @@ const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
 /// A USB serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UsbPort {
-    /// Such as /dev/ttyACM0 or COM3.
+    /// The name of the port, such as /dev/ttyACM0 or COM3.
     pub name: String,
     /// The number of the vendor of its chip.
     pub vendor: u16,
@@ -36,7 +36,7 @@ pub enum FindError {
     Several {
         /// The subcommand, with what comes before the port.
         command: &'static str,
-        /// Those that might be meant.
+        /// The ports that may have the board.
         ports: Vec<UsbPort>,
     },
 }
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn none_and_several_are_said_with_what_to_do() {
+    fn none_and_several_are_reported_with_the_remedy() {
         let none = chosen(&[]).expect_err("there is none");
         assert!(none.contains("carries data") && none.contains("lizard console /dev/ttyACM0"));
         assert_eq!(

@@ -1,4 +1,4 @@
-//! The lines typed in earlier sessions, kept in the user's folder for such things.
+//! The lines typed in earlier sessions, in a file of the user's state folder.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,4 @@
-//! `lizard console`: a person, or a script on standard input,
-//! talks to the robot.
+//! `lizard console`: a dialogue of the user, or of a script on standard input, with the robot.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
@@ -14,14 +13,13 @@ use super::history;
 use super::link::LinkError;
 use super::prompt::{Outcome, Prompt};
 use super::recorder::{self, Event, FORMAT, Recorder};
-use super::refusals::Refusals;
 use super::screen::Screen;
 use super::session::Session;
 use super::terminal;
 use super::turn_error::TurnError;
 use crate::Failure;
 
-/// Talk to the robot
+/// Dialogue to the robot
 ///
 /// Finds the board, waits for it to start, and passes lines to it; `help` lists its
 /// commands. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit` end the
@@ -54,19 +52,18 @@ pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
     }
-    talk(&args.connect.finder("console")?, args.record)
+    dialogue(&args.connect.finder("console")?, args.record)
 }
 
-fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
-    let (board, banner) = finder.meet()?;
-    let mut talk = Talk {
+fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
+    let (board, banner) = finder.open_and_greet()?;
+    let mut dialogue = Dialogue {
         session: Session::new(Instant::now(), true, file.is_some()),
         recorder: None,
         mark: "",
-        refusals: Refusals::default(),
     };
     if let Some(path) = file {
-        talk.mark = "REC  ";
+        dialogue.mark = "REC  ";
         let mut recorder = recorder::create(&path)?;
         let event = Event::Begin {
             format: FORMAT.to_owned(),
@@ -74,40 +71,39 @@ fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
             banner: banner.clone(),
         };
         recorder.write(Instant::now(), event)?;
-        talk.recorder = Some(recorder);
+        dialogue.recorder = Some(recorder);
     }
     let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        match talk.with_a_person(finder, board, &first) {
-            // The person has left with the terminal.
+        match dialogue.with_terminal(finder, board, &first) {
+            // The user has closed the terminal.
             Err(Failure::Io(_)) if !terminal::is_there() => Ok(()),
             ended => ended,
         }
     } else {
-        talk.with_a_script(board, &first)
+        dialogue.with_script(board, &first)
     }
 }
 
-/// A session with where it is kept.
-struct Talk {
+/// A session and the file that records it.
+struct Dialogue {
     session: Session,
     recorder: Option<FileRecorder>,
     mark: &'static str,
-    refusals: Refusals,
 }
 
-impl Talk {
-    /// Passes on what is to be sent, and takes what has come; `show` gets the lines
-    /// for the person.
+impl Dialogue {
+    /// Sends the next line and takes the lines that have come; `show` gets those for the
+    /// user.
     fn turn(
         &mut self,
         board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
     ) -> Result<(), TurnError> {
-        if let Some(line) = self.session.due(Instant::now()) {
+        if let Some(line) = self.session.next_line(Instant::now()) {
             board.link.send(&line)?;
         }
-        // Not for ever: the keys wait.
+        // At most 51 lines: the keys wait.
         for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.line(wait)? else {
                 break;
@@ -117,30 +113,26 @@ impl Talk {
             }
         }
         let overdue = self.session.overdue(Instant::now());
-        self.keep()?;
-        if let Some(unanswered) = overdue {
-            self.refusals.count_silence(&unanswered);
-            show(&unanswered.to_string())?;
+        for event in self.session.take_events() {
+            self.record(event)?;
+        }
+        if let Some(message) = overdue {
+            show(&message)?;
         }
         Ok(())
     }
 
-    fn keep(&mut self) -> Result<(), Failure> {
-        let said = self.session.take_said();
-        said.iter().for_each(|said| self.refusals.hear(said));
-        if let Some(recorder) = &mut self.recorder {
-            let now = Instant::now();
-            for said in said {
-                recorder.write(now, said.into())?;
-            }
+    fn record(&mut self, event: Event) -> Result<(), Failure> {
+        match &mut self.recorder {
+            Some(recorder) => recorder.write(Instant::now(), event),
+            None => Ok(()),
         }
-        Ok(())
     }
 
-    fn with_a_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
+    fn with_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
         let mut out = io::stdout();
         writeln!(out, "{first}")?;
-        // The answers are all that is wanted.
+        // A script needs only the answers, unless it is recorded.
         self.session = Session::new(
             Instant::now(),
             self.recorder.is_some(),
@@ -152,7 +144,7 @@ impl Talk {
             while !ended {
                 match lines.try_recv() {
                     Ok(line) if line.trim().is_empty() => {}
-                    Ok(line) => self.session.say(line.trim()),
+                    Ok(line) => self.session.queue(line.trim()),
                     Err(TryRecvError::Empty) => break,
                     Err(TryRecvError::Disconnected) => ended = true,
                 }
@@ -163,10 +155,10 @@ impl Talk {
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
         }
-        self.refusals.verdict()
+        self.session.verdict()
     }
 
-    fn with_a_person(
+    fn with_terminal(
         mut self,
         finder: &Finder,
         board: Connection,
@@ -178,10 +170,10 @@ impl Talk {
         screen.print("(help lists the commands; Ctrl-D leaves)")?;
         let mut board = Some(board);
         let mut failed = None;
-        while !self.keys(&mut screen, &mut prompt)? {
+        while !self.handle_keys(&mut screen, &mut prompt)? {
             let Some(present) = &mut board else {
                 screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
-                board = self.look_again(finder, &mut screen)?;
+                board = self.reopen(finder, &mut screen)?;
                 continue;
             };
             match self.turn(present, |line| screen.print(line)) {
@@ -189,9 +181,7 @@ impl Talk {
                 Err(TurnError::Link(LinkError::Gone)) => {
                     let words = format!("{}: {}", present.name, LinkError::Gone);
                     screen.print(&words)?;
-                    if let Some(recorder) = &mut self.recorder {
-                        recorder.write(Instant::now(), Event::Gone)?;
-                    }
+                    self.record(Event::Gone)?;
                     board = None;
                     continue;
                 }
@@ -222,8 +212,8 @@ impl Talk {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Takes the keys that have been pressed; true if the person leaves.
-    fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
+    /// Takes the keys that have been pressed; true if the user leaves.
+    fn handle_keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
         if !terminal::is_there() {
             return Ok(true);
         }
@@ -244,7 +234,7 @@ impl Talk {
                     }
                     Outcome::Line(line) => {
                         screen.print(&format!("> {line}"))?;
-                        self.session.say(&line);
+                        self.session.queue(&line);
                     }
                 }
             }
@@ -253,7 +243,7 @@ impl Talk {
     }
 
     /// The board, if it is there again.
-    fn look_again(
+    fn reopen(
         &mut self,
         finder: &Finder,
         screen: &mut Screen,

@@ -19,10 +19,10 @@ const LONGEST: usize = 512;
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
 pub struct Patience {
-    /// For the banner after the port has been opened. A UNO's boot loader takes
-    /// more than a second of it.
+    /// Time for the banner after the port has been opened. A UNO's boot loader takes more than
+    /// a second of it.
     pub banner: Duration,
-    /// For an answer. `save` takes the longest, a third of a second.
+    /// Time for an answer. `save` takes the longest, a third of a second.
     pub answer: Duration,
 }
 
@@ -171,7 +171,7 @@ impl<P: Read + Write> Link<P> {
     ///
     /// # Errors
     /// As [`Link::ask`], and if the robot refuses.
-    pub fn tell(&mut self, line: &str) -> Result<Reply, LinkError> {
+    pub fn command(&mut self, line: &str) -> Result<Reply, LinkError> {
         let reply = self.ask(line)?;
         let line = line.to_owned();
         if let Some(reason) = reply.answer.strip_prefix("err ") {
@@ -346,9 +346,9 @@ mod tests {
     #[test]
     fn a_banner_behind_what_a_reset_has_cut_off_is_one() {
         for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
-            let said = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
-            let said: &'static str = said.leak();
-            let mut link = Script::link(&[Some(said)]);
+            let bytes = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
+            let bytes: &'static str = bytes.leak();
+            let mut link = Script::link(&[Some(bytes)]);
             let banner = link.greet().expect("it greets");
             assert_eq!(
                 banner.as_deref(),
@@ -404,7 +404,7 @@ mod tests {
     fn a_refusal_names_the_line_and_the_reason() {
         let mut link = Script::link(&[Some(HELLO), Some("err 3 trim must be -20..20\r\n")]);
         link.greet().expect("it is a lizard");
-        let error = link.tell("trim 1 50").expect_err("it is refused");
+        let error = link.command("trim 1 50").expect_err("it is refused");
         assert_eq!(
             error.to_string(),
             "the robot refuses `trim 1 50`: 3 trim must be -20..20"

@@ -9,7 +9,7 @@ pub mod calibrate;
 pub mod calibration;
 pub mod connect;
 #[cfg(test)]
-mod double;
+pub mod double;
 pub mod file;
 pub mod find;
 mod history;
@@ -18,7 +18,6 @@ pub mod link;
 pub mod port;
 pub mod prompt;
 pub mod recorder;
-mod refusals;
 #[cfg(feature = "simulator")]
 pub mod replay;
 mod screen;

@@ -23,7 +23,7 @@ pub enum PortError {
     Missing {
         /// The port that was asked for.
         name: String,
-        /// Those that are there.
+        /// The USB serial ports that exist.
         ports: String,
     },
     /// Another program has it.
@@ -31,7 +31,7 @@ pub enum PortError {
     Busy {
         /// The port that is busy.
         name: String,
-        /// The other program.
+        /// The program that has it open.
         who: String,
     },
     /// The user may not.
@@ -40,7 +40,7 @@ pub enum PortError {
          usermod -aG dialout <user>, then log in again"
     )]
     Forbidden(String),
-    /// It is something else.
+    /// The file is no serial port.
     #[error("{0} is no serial port")]
     NoPort(String),
     /// The system's own reason.
@@ -118,8 +118,8 @@ fn lasting_holder(name: &str) -> Option<String> {
     }
 }
 
-/// A program that has the port open, where the system says so: two programs at one
-/// port take bytes from each other. Processes of other users are not seen.
+/// Another program that has the port open, if the system tells: two programs at one port take
+/// bytes from each other. Processes of other users are not visible.
 fn holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
     let own = std::process::id().to_string();

@@ -1,4 +1,4 @@
-//! The line that a person types, with the lines typed before.
+//! The input line of the console, with its history.
 
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use tui_input::Input;
@@ -14,7 +14,7 @@ pub enum Outcome {
     Edited,
     /// A line, to be sent.
     Line(String),
-    /// The person wants to leave.
+    /// The user leaves.
     Leave,
     /// The program is to stop until the shell lets it go on.
     Stop,

@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::session::Said;
 use super::status::angles;
 use crate::Failure;
+#[cfg(feature = "simulator")]
 use crate::shared::plain::plain;
 use crate::shared::{files, json};
 
@@ -39,13 +39,13 @@ pub enum Event {
         /// The robot's first line, unless it was not reset.
         banner: Option<String>,
     },
-    /// A person's line.
+    /// A line of the user.
     Sent(String),
     /// The robot's answer to it.
     Answer(String),
     /// A line that begins with `#`.
     Note(String),
-    /// An answer to `status`, which the program asked for.
+    /// An answer to the program's own `status`.
     Status(String),
     /// A report of `watch`.
     Pose {
@@ -99,7 +99,7 @@ impl<W: Write> Recorder<W> {
         if is_pose { Ok(()) } else { self.flush() }
     }
 
-    /// Puts all that was written into the file.
+    /// Flushes all lines into the file.
     ///
     /// # Errors
     /// As [`Recorder::write`].
@@ -113,7 +113,17 @@ impl<W: Write> Recorder<W> {
 }
 
 impl Event {
+    /// The event of a line that begins with `#`: a pose, or a note.
+    #[must_use]
+    pub fn of_note(line: &str) -> Self {
+        match pose(line) {
+            Some((frame, angles)) => Self::Pose { frame, angles },
+            None => Self::Note(line.to_owned()),
+        }
+    }
+
     /// The event with its texts fit for a terminal: a file may hold anything.
+    #[cfg(feature = "simulator")]
     #[must_use]
     pub fn plain(self) -> Self {
         match self {
@@ -131,20 +141,6 @@ impl Event {
             Self::Note(line) => Self::Note(plain(&line)),
             Self::Status(line) => Self::Status(plain(&line)),
             Self::Pose { .. } | Self::Gone => self,
-        }
-    }
-}
-
-impl From<Said> for Event {
-    fn from(said: Said) -> Self {
-        match said {
-            Said::Sent(line) => Self::Sent(line),
-            Said::Answer(line) => Self::Answer(line),
-            Said::Status(line) => Self::Status(line),
-            Said::Note(line) => match pose(&line) {
-                Some((frame, angles)) => Self::Pose { frame, angles },
-                None => Self::Note(line),
-            },
         }
     }
 }
@@ -172,9 +168,9 @@ mod tests {
                 port: "p".to_owned(),
                 banner: None,
             },
-            Said::Sent("walk".to_owned()).into(),
-            Said::Note("# t=7 pose=1.00,2.00,3.00,4.50".to_owned()).into(),
-            Said::Note("# fault: x".to_owned()).into(),
+            Event::Sent("walk".to_owned()),
+            Event::of_note("# t=7 pose=1.00,2.00,3.00,4.50"),
+            Event::of_note("# fault: x"),
             Event::Gone,
         ];
         for (n, event) in events.iter().enumerate() {
@@ -211,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disk_that_is_full_is_said_with_the_name_of_the_file() {
+    fn a_full_disk_is_reported_with_the_name_of_the_file() {
         let full: &mut [u8] = &mut [0; 10];
         let mut recorder = Recorder::new("a.jsonl".to_owned(), full, Instant::now());
         let event = Event::Sent("walk".to_owned());

@@ -98,7 +98,7 @@ impl Screen {
         self.out.flush()
     }
 
-    /// Takes the two lines away; the cursor is where they began.
+    /// Erases the two lines and puts the cursor at their beginning.
     fn erase(&mut self) -> io::Result<()> {
         if let Some(columns) = self.drawn.take() {
             let (width, _) = terminal::size()?;

@@ -1,63 +1,50 @@
-//! The dialogue: whose turn it is, what is shown, and what is recorded.
+//! The dialogue with the robot: the next line to send, the lines to show, and the events to
+//! record.
 //!
 //! The robot answers each line once and in order, and prints other lines in between. The
 //! line at the bottom of the console asks for `status` twice a second; these answers are
-//! not shown, and a person's line never waits for more than one of them.
+//! not shown, and a user's line never waits for more than one of them. A program that sends a
+//! script has to learn that a line was refused, so failed lines are counted.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+use super::recorder::Event;
 use super::status::Status;
+use crate::Failure;
 
 /// Interval between two questions for the robot's status.
 const POLL: Duration = Duration::from_millis(500);
 /// Time that an answer may take.
 const PATIENCE: Duration = Duration::from_millis(2000);
 
-/// A line of the dialogue, for a record.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Said {
-    /// The person to the robot.
-    Sent(String),
-    /// The robot's answer to that.
-    Answer(String),
-    /// The robot, unasked, or before an answer.
-    Note(String),
-    /// The robot's answer to `status`, which the program asked for.
-    Status(String),
-}
-
-/// The origin of a question to the robot.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Asked {
-    Person(String),
-    Poll,
-    Watch,
-}
-
-/// A question that the robot has not answered; its text is for the person.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Unanswered {
-    /// A line of the person.
-    #[error("(no answer to `{0}`)")]
+/// A line that waits for its answer.
+#[derive(Debug)]
+enum Question {
+    /// A line of the user.
     Line(String),
-    /// A question of this program.
-    #[error("(the robot does not answer)")]
-    Program,
+    /// `status`, by this program.
+    Status,
+    /// `watch`, by this program.
+    Watch,
 }
 
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
-    waiting: Option<(Asked, Instant)>,
+    waiting: Option<(Question, Instant)>,
     queue: VecDeque<String>,
     polls: bool,
     next_poll: Instant,
-    /// The program asks for poses by `watch`, until the person does.
+    /// True while the program asks for poses by `watch`, until the user does.
     watches: bool,
     watch_due: bool,
     status: Option<Status>,
-    said: Vec<Said>,
+    events: Vec<Event>,
+    sent: usize,
+    failed: usize,
+    /// The first line that failed, and the reason.
+    first_failed: Option<(String, String)>,
 }
 
 impl Session {
@@ -73,12 +60,15 @@ impl Session {
             watches,
             watch_due: watches,
             status: None,
-            said: Vec::new(),
+            events: Vec::new(),
+            sent: 0,
+            failed: 0,
+            first_failed: None,
         }
     }
 
-    /// The person's next line.
-    pub fn say(&mut self, line: &str) {
+    /// Queues a line of the user.
+    pub fn queue(&mut self, line: &str) {
         if line.split_whitespace().next() == Some("watch") {
             self.watches = false;
         }
@@ -86,23 +76,24 @@ impl Session {
     }
 
     /// The line to send now, if there is one.
-    pub fn due(&mut self, now: Instant) -> Option<String> {
+    pub fn next_line(&mut self, now: Instant) -> Option<String> {
         if self.waiting.is_some() {
             return None;
         }
-        let (asked, line) = if self.watch_due {
+        let (question, line) = if self.watch_due {
             self.watch_due = false;
-            (Asked::Watch, "watch 1".to_owned())
+            (Question::Watch, "watch 1".to_owned())
         } else if let Some(line) = self.queue.pop_front() {
-            self.said.push(Said::Sent(line.clone()));
-            (Asked::Person(line.clone()), line)
+            self.sent += 1;
+            self.events.push(Event::Sent(line.clone()));
+            (Question::Line(line.clone()), line)
         } else if self.polls && now >= self.next_poll {
             self.next_poll = now + POLL;
-            (Asked::Poll, "status".to_owned())
+            (Question::Status, "status".to_owned())
         } else {
             return None;
         };
-        self.waiting = Some((asked, now));
+        self.waiting = Some((question, now));
         Some(line)
     }
 
@@ -110,7 +101,7 @@ impl Session {
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let shown = Some(line.to_owned());
         if line.starts_with('#') {
-            self.said.push(Said::Note(line.to_owned()));
+            self.events.push(Event::of_note(line));
             if line.starts_with("# lizard ") {
                 // The board has restarted, and has forgotten the question.
                 self.waiting = None;
@@ -121,28 +112,49 @@ impl Session {
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
         match self.waiting.take() {
-            Some((Asked::Poll, _)) if status.is_some() => {
-                self.said.push(Said::Status(line.to_owned()));
-                None
+            Some((Question::Status, _)) if status.is_some() => {
+                self.events.push(Event::Status(line.to_owned()));
+                return None;
             }
-            Some((Asked::Watch, _)) => None,
-            _ => {
-                self.said.push(Said::Answer(line.to_owned()));
-                shown
-            }
+            Some((Question::Watch, _)) => return None,
+            Some((Question::Line(sent), _)) if line.starts_with("err ") => self.fail(sent, line),
+            _ => {}
         }
+        self.events.push(Event::Answer(line.to_owned()));
+        shown
     }
 
-    /// The question whose answer has not come in time.
-    pub fn overdue(&mut self, now: Instant) -> Option<Unanswered> {
-        let (_, since) = self.waiting.as_ref()?;
-        if now.saturating_duration_since(*since) < PATIENCE {
-            return None;
-        }
-        Some(match self.waiting.take()?.0 {
-            Asked::Person(line) => Unanswered::Line(line),
-            Asked::Poll | Asked::Watch => Unanswered::Program,
+    /// The message about a question whose answer has not come in time.
+    pub fn overdue(&mut self, now: Instant) -> Option<String> {
+        let is_late = |since: Instant| now.saturating_duration_since(since) >= PATIENCE;
+        let (question, _) = self.waiting.take_if(|(_, since)| is_late(*since))?;
+        Some(match question {
+            Question::Line(line) => {
+                let message = format!("(no answer to `{line}`)");
+                self.fail(line, "no answer");
+                message
+            }
+            Question::Status | Question::Watch => "(the robot does not answer)".to_owned(),
         })
+    }
+
+    fn fail(&mut self, line: String, why: &str) {
+        self.failed += 1;
+        self.first_failed.get_or_insert((line, why.to_owned()));
+    }
+
+    /// Succeeds if the robot accepted all lines.
+    ///
+    /// # Errors
+    /// It did not; the sentence names the first such line.
+    pub fn verdict(&self) -> Result<(), Failure> {
+        let Some((line, why)) = &self.first_failed else {
+            return Ok(());
+        };
+        Err(Failure::Impossible(format!(
+            "the robot did not take {} of {} lines, the first `{line}`: {why}",
+            self.failed, self.sent
+        )))
     }
 
     /// True if no answer is outstanding and no line is queued.
@@ -157,9 +169,9 @@ impl Session {
         self.status.as_ref()
     }
 
-    /// Returns the lines since the previous call.
-    pub fn take_said(&mut self) -> Vec<Said> {
-        std::mem::take(&mut self.said)
+    /// Returns the events since the previous call.
+    pub fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
     }
 }
 
@@ -173,23 +185,23 @@ mod tests {
     fn a_persons_line_is_sent_when_the_answer_before_it_has_come() {
         let now = Instant::now();
         let mut session = Session::new(now, true, false);
-        assert_eq!(session.due(now).as_deref(), Some("status"));
-        session.say("walk");
-        session.say("speed 50");
-        assert_eq!(session.due(now), None, "the status has not come");
-        assert_eq!(session.receive(STATUS), None, "nobody asked for it");
-        assert_eq!(session.due(now).as_deref(), Some("walk"));
+        assert_eq!(session.next_line(now).as_deref(), Some("status"));
+        session.queue("walk");
+        session.queue("speed 50");
+        assert_eq!(session.next_line(now), None, "the status has not come");
+        assert_eq!(session.receive(STATUS), None, "the user did not ask for it");
+        assert_eq!(session.next_line(now).as_deref(), Some("walk"));
         assert_eq!(session.receive("# fault: x").as_deref(), Some("# fault: x"));
-        assert_eq!(session.due(now), None);
+        assert_eq!(session.next_line(now), None);
         assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
-        assert_eq!(session.due(now).as_deref(), Some("speed 50"));
+        assert_eq!(session.next_line(now).as_deref(), Some("speed 50"));
         assert_eq!(
             session.receive("ok speed 50").as_deref(),
             Some("ok speed 50")
         );
         assert!(session.is_idle());
-        assert_eq!(session.due(now), None, "the next status is not due");
-        assert_eq!(session.due(now + POLL).as_deref(), Some("status"));
+        assert_eq!(session.next_line(now), None, "the next status is not due");
+        assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
         assert!(session.status().is_some_and(Status::walks));
     }
 
@@ -197,8 +209,8 @@ mod tests {
     fn a_status_that_the_person_asks_for_is_shown() {
         let now = Instant::now();
         let mut session = Session::new(now, false, false);
-        session.say("status");
-        session.due(now);
+        session.queue("status");
+        session.next_line(now);
         assert_eq!(session.receive(STATUS).as_deref(), Some(STATUS));
     }
 
@@ -206,15 +218,15 @@ mod tests {
     fn after_a_reset_nothing_is_waited_for() {
         let now = Instant::now();
         let mut session = Session::new(now, false, true);
-        assert_eq!(session.due(now).as_deref(), Some("watch 1"));
+        assert_eq!(session.next_line(now).as_deref(), Some("watch 1"));
         session.receive("ok watch 1");
-        session.say("walk");
-        session.due(now);
+        session.queue("walk");
+        session.next_line(now);
         session.receive("# lizard 0.2.0");
         assert_eq!(
-            session.due(now).as_deref(),
+            session.next_line(now).as_deref(),
             Some("watch 1"),
-            "asked for anew"
+            "asked for again"
         );
     }
 
@@ -222,52 +234,79 @@ mod tests {
     fn poses_are_shown_only_if_the_person_asked_for_them() {
         let now = Instant::now();
         let mut session = Session::new(now, false, true);
-        session.due(now);
+        session.next_line(now);
         session.receive("ok watch 1");
         assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
-        session.say("watch 50");
-        session.due(now);
+        session.queue("watch 50");
+        session.next_line(now);
         session.receive("ok watch 50");
         assert!(session.receive("# t=50 pose=1,2,3,4").is_some());
     }
 
     #[test]
-    fn a_missing_answer_is_said_once_and_the_next_line_is_sent() {
+    fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
         let now = Instant::now();
         let mut session = Session::new(now, false, false);
-        session.say("walk");
-        session.say("stop");
-        session.due(now);
+        session.queue("walk");
+        session.queue("stop");
+        session.next_line(now);
         assert_eq!(session.overdue(now), None);
         let later = now + PATIENCE;
         assert_eq!(
-            session.overdue(later).map(|line| line.to_string()),
-            Some("(no answer to `walk`)".to_owned())
+            session.overdue(later).as_deref(),
+            Some("(no answer to `walk`)")
         );
         assert_eq!(session.overdue(later), None);
-        assert_eq!(session.due(later).as_deref(), Some("stop"));
+        assert_eq!(session.next_line(later).as_deref(), Some("stop"));
     }
 
     #[test]
-    fn everything_said_is_kept_in_order() {
+    fn every_event_is_kept_in_order() {
         let now = Instant::now();
         let mut session = Session::new(now, true, false);
-        session.say("walk");
-        session.due(now);
+        session.queue("walk");
+        session.next_line(now);
         session.receive("# note");
         session.receive("err 1 no");
-        session.due(now);
+        session.next_line(now);
         session.receive(STATUS);
-        let said = session.take_said();
+        let events = session.take_events();
         assert_eq!(
-            said,
+            events,
             [
-                Said::Sent("walk".to_owned()),
-                Said::Note("# note".to_owned()),
-                Said::Answer("err 1 no".to_owned()),
-                Said::Status(STATUS.to_owned()),
+                Event::Sent("walk".to_owned()),
+                Event::Note("# note".to_owned()),
+                Event::Answer("err 1 no".to_owned()),
+                Event::Status(STATUS.to_owned()),
             ]
         );
-        assert!(session.take_said().is_empty());
+        assert!(session.take_events().is_empty());
+    }
+
+    #[test]
+    fn lines_that_fail_are_counted_once_and_the_first_is_named() {
+        let now = Instant::now();
+        let mut session = Session::new(now, false, false);
+        let mut ask = |line: &str, answer: Option<&str>| {
+            session.queue(line);
+            session.next_line(now);
+            match answer {
+                Some(answer) => drop(session.receive(answer)),
+                None => drop(session.overdue(now + PATIENCE)),
+            }
+            session.verdict().map_err(|failure| failure.to_string())
+        };
+        assert_eq!(ask("walk", Some("ok walk")), Ok(()));
+        let first =
+            |count| format!("the robot did not take {count} lines, the first `fly`: err 1 no");
+        assert_eq!(ask("fly", Some("err 1 no")), Err(first("1 of 2")));
+        assert_eq!(ask("swim", Some("err 2 no")), Err(first("2 of 3")));
+        assert_eq!(ask("stop", None), Err(first("3 of 4")));
+        session.receive("err 3 late");
+        assert!(
+            session
+                .verdict()
+                .is_err_and(|it| it.to_string() == first("3 of 4"))
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! The terminal itself: whether it is still there, and leaving it for a while.
+//! The terminal: detecting that it was closed, and suspending the program.
 
 use std::io::{self, IsTerminal};
 use std::sync::Once;
@@ -18,7 +18,7 @@ const PATIENCE: u32 = 10;
 
 /// Ends the program two seconds after its terminal has gone, if it has not ended by itself:
 /// a terminal that goes at the very moment when a key is waited for is waited for without
-/// end. Nothing is half written then: files are written whole.
+/// end. No file is half written then: each is written at once.
 pub fn end_when_gone() {
     let look = || {
         let mut gone = 0;
@@ -43,7 +43,7 @@ pub fn stop() -> io::Result<()> {
     signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)
 }
 
-/// Nothing: this system has no such thing.
+/// Does nothing: only Unix can suspend a program.
 ///
 /// # Errors
 /// None.

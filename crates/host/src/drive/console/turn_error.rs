@@ -5,31 +5,14 @@ use std::io;
 use super::link::LinkError;
 use crate::Failure;
 
-/// The connection or the terminal has failed.
-#[derive(Debug)]
+/// A failure of the connection, the terminal or the recording.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
 pub enum TurnError {
     /// The connection to the board.
-    Link(LinkError),
+    Link(#[from] LinkError),
     /// The terminal cannot be read or written.
-    Io(io::Error),
-    /// The file of the session.
-    File(Failure),
-}
-
-impl From<LinkError> for TurnError {
-    fn from(error: LinkError) -> Self {
-        Self::Link(error)
-    }
-}
-
-impl From<io::Error> for TurnError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
-impl From<Failure> for TurnError {
-    fn from(failure: Failure) -> Self {
-        Self::File(failure)
-    }
+    Io(#[from] io::Error),
+    /// The file of the session cannot be written.
+    File(#[from] Failure),
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::stk500::{Board, Kind};
 
-/// The board, its flash, and what is to go wrong.
+/// A simulated board: its flash, and the faults to inject.
 pub struct Double {
     /// All 32 KiB; the boot loader itself is a few bytes at its start here.
     pub flash: Vec<u8>,
@@ -16,10 +16,10 @@ pub struct Double {
     pub kind: Kind,
     /// The chip signature that the loader reports.
     pub signature: [u8; 3],
-    /// A program that talks on until the reset, and what is heard of it afterwards.
+    /// Bytes sent by a running program until the reset, which are received afterwards.
     pub garbage: Vec<u8>,
-    /// So many calls are not heard after each reset.
-    pub deaf: usize,
+    /// The number of calls that are ignored after each reset.
+    pub ignored_calls: usize,
     /// The loader never answers.
     pub mute: bool,
     /// The number of the byte to the board that is lost, counted from 0.
@@ -28,22 +28,22 @@ pub struct Double {
     pub lost_from: Option<usize>,
     /// Bits that are stuck at 0.
     pub worn: Option<(usize, u8)>,
-    /// The port vanishes when so many pages have been written.
+    /// The number of written pages after which the port vanishes.
     pub unplugged_after: Option<usize>,
-    /// Of pages written, in their order.
+    /// The addresses of written pages, in order.
     pub written: Vec<usize>,
     /// The number of resets so far.
     pub resets: usize,
     /// True if the last command started the program in flash.
     pub left: bool,
-    /// Bytes on their way to the board so far, those that were lost among them.
+    /// The number of bytes sent to the board so far, lost ones included.
     pub received: usize,
-    /// Bytes from the board so far, likewise.
+    /// The number of bytes sent by the board so far, lost ones included.
     pub sent: usize,
     /// The number of bytes that ATmegaBOOT did not understand since the reset.
     errors: usize,
     listening: bool,
-    unheard: usize,
+    calls_to_ignore: usize,
     address: usize,
     command: Vec<u8>,
     out: VecDeque<u8>,
@@ -55,7 +55,7 @@ impl Double {
         Self::of(Kind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
     }
 
-    /// An old Nano, likewise.
+    /// An old Nano with blank flash.
     pub fn old_nano() -> Self {
         Self::of(Kind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
     }
@@ -69,7 +69,7 @@ impl Double {
             errors: 0,
             signature: [0x1e, 0x95, 0x0f],
             garbage: Vec::new(),
-            deaf: 0,
+            ignored_calls: 0,
             mute: false,
             lost_to: None,
             lost_from: None,
@@ -81,14 +81,14 @@ impl Double {
             received: 0,
             sent: 0,
             listening: false,
-            unheard: 0,
+            calls_to_ignore: 0,
             address: 0,
             command: Vec::new(),
             out: VecDeque::new(),
         }
     }
 
-    /// The same with these bytes from address 0.
+    /// A blank board with these bytes from address 0.
     pub fn with(program: &[u8]) -> Self {
         let mut double = Self::blank();
         double.flash[..program.len()].copy_from_slice(program);
@@ -171,7 +171,7 @@ impl Board for Double {
         self.resets += 1;
         self.errors = 0;
         self.listening = !self.mute && baud == self.kind.baud();
-        self.unheard = self.deaf;
+        self.calls_to_ignore = self.ignored_calls;
         self.left = false;
         self.command.clear();
         self.out.clear();
@@ -209,8 +209,8 @@ impl Write for Double {
                 continue;
             }
             self.command.push(*byte);
-            if self.unheard > 0 && self.command == *b"0 " {
-                self.unheard -= 1;
+            if self.calls_to_ignore > 0 && self.command == *b"0 " {
+                self.calls_to_ignore -= 1;
                 self.command.clear();
             }
             if !self.command.is_empty() {

@@ -39,12 +39,12 @@ pub enum Program {
     Lizard {
         /// The version mark in the code.
         mark: Mark,
-        /// It is not the code that is to be written, though it may have its version.
+        /// True if it is not the code that is to be written, though it may have its version.
         differs: bool,
     },
     /// A program that is no lizard firmware.
     Other {
-        /// Up to its last byte; none where only its beginning was read.
+        /// The size up to the last byte; none if only the first page was read.
         bytes: Option<usize>,
     },
 }
@@ -54,7 +54,7 @@ pub enum Program {
 pub enum TheirRobot {
     /// Nothing was ever written there.
     None,
-    /// Its name and hash.
+    /// A valid robot, by its name and hash.
     Named(String),
     /// One that was not written to its end, was damaged, or is of another format.
     Damaged,
@@ -166,11 +166,7 @@ mod tests {
 
     #[test]
     fn a_lizard_is_named_with_its_robot() {
-        let robot = |name: &str| {
-            let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-            Robot::load(std::path::Path::new(&path)).expect("it is right")
-        };
-        let [paper, large] = ["paper", "large"].map(robot);
+        let [paper, large] = ["paper", "large"].map(crate::shared::robot_file::named);
         let image = file::image(&paper).expect("it fits");
         let alone = file::robot_alone(&paper).expect("it fits");
         let mut flash = image.bytes().to_vec();

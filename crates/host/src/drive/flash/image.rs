@@ -34,12 +34,12 @@ const ROBOT: usize = START as usize;
 
 const _: () = assert!(ROBOT.is_multiple_of(PAGE), "code and robot share no page");
 
-/// A page of flash that an image fills, or a part of which it fills.
+/// A page of flash that an image fills completely or in part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Page {
-    /// Of its first byte.
+    /// The address of its first byte.
     pub address: usize,
-    /// [`BLANK`] where the image has none.
+    /// The page's bytes; [`BLANK`] outside the image.
     pub bytes: [u8; PAGE],
 }
 
@@ -82,7 +82,7 @@ pub enum ImageError {
     BootLoader {
         /// Counted from 1.
         line: usize,
-        /// Of its last byte.
+        /// The address of its last byte.
         address: usize,
     },
 }

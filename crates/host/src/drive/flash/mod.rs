@@ -115,8 +115,8 @@ fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
     port.is_some_and(|port| !port.is_arduinos())
 }
 
-/// Writes the board and says what is done, with a bar meanwhile. Returns the board, its
-/// firmware starting.
+/// Writes the board, with a progress bar and a summary. Returns the board, whose firmware
+/// starts.
 fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
     let bar = bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board, Patience::default());
@@ -162,7 +162,7 @@ fn summary(done: Done, time: Duration) -> String {
     }
 }
 
-/// To whom nothing can be said any more, the board is written all the same.
+/// Prints a line. A closed standard output does not stop the upload.
 fn println(line: &str) {
     let _ = writeln!(io::stdout(), "{line}");
 }

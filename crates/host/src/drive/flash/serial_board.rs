@@ -12,12 +12,12 @@ use crate::drive::console::port::{self, PortError};
 /// Time for which the reset line is pulled.
 const PULL: Duration = Duration::from_millis(50);
 
-/// An open port, which can be opened again.
+/// A port that can be reopened.
 pub struct SerialBoard {
     name: String,
     /// None for the moment between closing and opening.
     port: Option<Box<dyn SerialPort>>,
-    /// It was just opened, which resets a board as well.
+    /// True just after opening, which resets a board as well.
     fresh: bool,
 }
 
@@ -38,7 +38,7 @@ impl SerialBoard {
         self.port.as_mut().ok_or_else(|| ErrorKind::NotFound.into())
     }
 
-    /// Pulls the lines from which boards make a reset: DTR on a UNO, RTS on some copies.
+    /// Toggles the lines that reset a board: DTR on a UNO, RTS on some copies.
     fn pull(&mut self) -> io::Result<()> {
         let port = self.port()?;
         for level in [false, true] {

@@ -44,7 +44,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The speed of the serial line at which it listens.
+    /// The speed of the serial line.
     #[must_use]
     pub fn baud(self) -> u32 {
         match self {
@@ -76,14 +76,14 @@ pub trait Board: Read + Write {
 /// Time limits for answers of a boot loader.
 #[derive(Debug, Clone, Copy)]
 pub struct Patience {
-    /// After a reset: the loader blinks and does not listen. What is sent meanwhile overflows
-    /// its receiver, and half a command makes it give up.
+    /// After a reset: the loader blinks and does not listen. Bytes sent meanwhile overflow its
+    /// receiver, and half a command makes it give up.
     pub blinks: Duration,
-    /// For the answer to one call.
+    /// Time for the answer to one call.
     pub call: Duration,
-    /// After the first answer, for those to earlier calls that are late.
+    /// Time after the first answer, for late answers to earlier calls.
     pub quiet: Duration,
-    /// For an answer to any other command. Writing a page takes about 20 ms.
+    /// Time for an answer to any other command. Writing a page takes about 20 ms.
     pub answer: Duration,
 }
 
@@ -147,7 +147,7 @@ impl<B: Board> Loader<B> {
         Self { board, patience }
     }
 
-    /// The connection, with all that has come and was not yet read.
+    /// Returns the connection, with all bytes that were not read.
     pub fn into_board(self) -> B {
         self.board
     }
@@ -240,14 +240,14 @@ impl<B: Board> Loader<B> {
                 return Ok(true);
             }
             last = byte;
-            // A board that never stops talking would hold this up for ever.
+            // A board that never stops talking would block this loop.
             if Instant::now() > end {
                 return Ok(false);
             }
         }
     }
 
-    /// Lets time pass; what comes meanwhile is dropped.
+    /// Lets time pass and drops all bytes received meanwhile.
     fn pass_over(&mut self, time: Duration) -> Result<(), Trouble> {
         let end = Instant::now() + time;
         let mut bytes = [0; 256];
@@ -265,7 +265,7 @@ impl<B: Board> Loader<B> {
         Ok(byte[0])
     }
 
-    /// Fills `bytes` and reads no more: what follows may be for somebody else.
+    /// Fills `bytes` and reads no more: further bytes may be for another reader.
     fn take(&mut self, mut bytes: &mut [u8], end: Instant) -> Result<(), Trouble> {
         while !bytes.is_empty() {
             let count = self.read(bytes)?;

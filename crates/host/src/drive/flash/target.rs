@@ -23,11 +23,11 @@ pub enum Model {
 pub struct Target {
     /// The model that the user has named.
     pub model: Option<Model>,
-    /// It has a USB chip that UNOs have as well as Nanos.
+    /// True if it has a USB chip that UNOs have as well as Nanos.
     pub may_be_nano: bool,
 }
 
-/// An image reaches into what may be the boot section of a Nano.
+/// An image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT} before its boot section{}. \
          Nothing was written", .end, if *.in_doubt {
@@ -36,14 +36,14 @@ pub struct Target {
     ". Gaits can be left out of robot.toml until it fits"
 })]
 pub struct TooLong {
-    /// Behind the image's last byte.
+    /// The address behind the image's last byte.
     end: usize,
     /// The board may also be a UNO.
     in_doubt: bool,
 }
 
 impl Target {
-    /// Boot loaders that it may have, in the order in which they are called.
+    /// The boot loaders that the board may have, in the order in which they are called.
     #[must_use]
     pub fn loaders(self) -> &'static [Kind] {
         match self.model {

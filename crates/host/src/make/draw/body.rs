@@ -7,7 +7,7 @@ use lizard_kinematics::Vector;
 use lizard_robot::{LegPlace, Plate};
 use svg::node::element::{Circle, Group, Line};
 
-use crate::shared::ink::{DARK, SERVO, circle, fixed, line, rectangle};
+use crate::shared::ink::{DARK, SERVO, circle, edged, fixed, line, rectangle};
 
 const FRAME: &str = "#f4f1ea";
 const EDGE: &str = "#b8b0a0";
@@ -19,9 +19,9 @@ const RIM: f64 = 0.6;
 
 /// A page onto which the robot is drawn.
 pub struct Sheet<At> {
-    /// From mm in the chassis frame to the page.
+    /// The projection from mm in the chassis frame to the page.
     pub at: At,
-    /// Of a mm on the page.
+    /// The length of a mm on the page.
     pub scale: f64,
     /// The robot's turn on the page, deg counter-clockwise.
     pub turn: f64,
@@ -40,9 +40,11 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
 
     /// A disc with an edge.
     pub fn disc(&self, at: Vector, mm: f64, fill: &str) -> Circle {
-        circle((self.at)(at), mm * self.scale, fill)
-            .set("stroke", DARK)
-            .set("stroke-width", 0.6 * self.scale)
+        edged(
+            circle((self.at)(at), mm * self.scale, fill),
+            DARK,
+            0.6 * self.scale,
+        )
     }
 
     /// A rectangle about a middle.

@@ -7,8 +7,8 @@ use lizard_robot::servo::NAMES;
 use svg::node::element::{Group, Polygon, Polyline};
 
 use crate::shared::ink::{
-    Anchor, DARK, GREY, PLACES, SERVO, circle, curve, fixed, line, page, rectangle, text, text_end,
-    text_middle, text_start,
+    Anchor, DARK, GREY, PLACES, SERVO, circle, curve, edged, fixed, line, page, rectangle, text,
+    text_end, text_middle, text_start,
 };
 
 const SIZE: (f64, f64) = (700.0, 640.0);
@@ -70,7 +70,7 @@ fn on_page(at: Vector, scale: f64) -> (f64, f64) {
     (MIDDLE.0 + scale * at.x, MIDDLE.1 - scale * at.y)
 }
 
-/// From a place on the page, so far in a direction.
+/// The point at a distance from another in some direction, on the page.
 fn toward(from: (f64, f64), degrees: f64, far: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
     (from.0 + far * cos, from.1 - far * sin)
@@ -110,12 +110,11 @@ fn chassis(robot: &Robot) -> Group {
     let top = cranks[0].0.y + 9.0;
     let corner = on_page(Vector::new(-half, top), scale);
     let size = (2.0 * half * scale, 2.0 * top * scale);
-    let mut group = Group::new().add(
-        rectangle(corner, size, "#f4f1ea")
-            .set("rx", 12)
-            .set("stroke", "#b8b0a0")
-            .set("stroke-width", 1.5),
-    );
+    let mut group = Group::new().add(edged(
+        rectangle(corner, size, "#f4f1ea").set("rx", 12),
+        "#b8b0a0",
+        1.5,
+    ));
     for (servo, (shaft, _)) in cranks.into_iter().enumerate() {
         // The body reaches from the shaft towards the middle.
         let upper = if shaft.y > 0.0 {
@@ -155,11 +154,7 @@ fn crank(robot: &Robot, servo: usize) -> Group {
     Group::new()
         .add(line(from, (from.0 + 36.0, from.1), DARK, 1.2).set("stroke-dasharray", "3 3"))
         .add(line(from, to, colour, 11.0).set("id", format!("crank-{}", NAMES[servo])))
-        .add(
-            circle(to, 6.5, "white")
-                .set("stroke", DARK)
-                .set("stroke-width", 2.0),
-        )
+        .add(edged(circle(to, 6.5, "white"), DARK, 2.0))
         .add(arrow(from, 22.0, 0.0, angle, DARK))
         .add(circle(from, 8.0, DARK))
         .add(circle(from, 3.0, "white"))
@@ -271,11 +266,7 @@ fn rose() -> Group {
     let caption = (middle.0, middle.1 - 84.0);
     let mut group = Group::new()
         .add(text_middle("angles, seen from above", caption, 14.0))
-        .add(
-            circle(middle, 46.0, "none")
-                .set("stroke", GREY)
-                .set("stroke-width", 1.2),
-        )
+        .add(edged(circle(middle, 46.0, "none"), GREY, 1.2))
         .add(arrow(middle, 30.0, 0.0, 70.0, DARK));
     for (degrees, words, anchor, off) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),

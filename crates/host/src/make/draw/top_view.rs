@@ -5,7 +5,7 @@ use lizard_robot::{LegPlace, Robot};
 use svg::node::element::{Group, Path};
 
 use super::body::Sheet;
-use crate::shared::ink::{DARK, SERVO, circle, page};
+use crate::shared::ink::{DARK, SERVO, circle, edged, page};
 
 pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
 /// Pixels of a mm, unless the robot is too large for the page.
@@ -14,7 +14,7 @@ const PIXELS_PER_MM: f64 = 3.1;
 const MARGIN: (f64, f64) = (80.0, 28.0);
 /// A head's skin reaches so far beyond its point, mm; a tail's less.
 pub(super) const SKIN_BEYOND: f64 = 30.0;
-/// From the skin to the name of what it is of, mm.
+/// Distance from the skin to its label, mm.
 pub(super) const NAME_BEYOND: f64 = 6.0;
 /// Half the length of the plate for which the skin is drawn, mm.
 const SKIN_LENGTH: f64 = 80.4;
@@ -76,7 +76,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// From the chassis frame to the page.
+    /// The point on the page for a point in the chassis frame.
     pub(super) fn page(&self, joint: Joint) -> (f64, f64) {
         (
             SIZE.0 / 2.0 + self.scale * joint.x,
@@ -215,11 +215,11 @@ impl<'a> View<'a> {
                 .add(circle(self.page(shaft), 3.4 * self.scale, DARK))
                 .add(circle(self.page(shaft), 1.2 * self.scale, "white"));
         }
-        group.add(
-            circle(self.page(point), 3.4 * self.scale, "#f0e442")
-                .set("stroke", DARK)
-                .set("stroke-width", 2.5),
-        )
+        group.add(edged(
+            circle(self.page(point), 3.4 * self.scale, "#f0e442"),
+            DARK,
+            2.5,
+        ))
     }
 
     pub(super) fn foot(&self, servo: usize) -> Joint {

@@ -4,7 +4,7 @@ use svg::node::element::{Group, Text};
 
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    Anchor, DARK, GREY, PANEL, circle, fixed, rectangle, text, text_middle, text_start,
+    Anchor, DARK, GREY, PANEL, circle, edged, fixed, rectangle, text, text_middle, text_start,
 };
 
 /// Pixels between neighbouring pins, a tenth of an inch.
@@ -22,7 +22,8 @@ const LOWER_ROW: f64 = 1.0;
 const POWER: (f64, [&str; 7]) = (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
 const REFERENCES: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
 
-/// Of the pins beside the upper header's GND, and of its other half.
+/// Places of D13, D7 and A0, from which the other pins are counted, in tenths of an inch from
+/// the left edge.
 const D13: f64 = 11.4;
 const D7: f64 = 18.0;
 const A0: f64 = 20.0;
@@ -63,12 +64,11 @@ impl Uno {
     /// The board; the pins of `used` stand out.
     pub fn draw(&self, used: &[u8]) -> Group {
         let size = (BOARD.0 * PITCH, BOARD.1 * PITCH);
-        let mut group = Group::new().add(
-            rectangle(self.corner, size, "#dfeaec")
-                .set("rx", 8)
-                .set("stroke", DARK)
-                .set("stroke-width", 1.5),
-        );
+        let mut group = Group::new().add(edged(
+            rectangle(self.corner, size, "#dfeaec").set("rx", 8),
+            DARK,
+            1.5,
+        ));
         group = self.sockets(group);
         for number in 0..=19 {
             let name = pin_name(number);
@@ -96,9 +96,11 @@ impl Uno {
     /// Sockets, chip and LED.
     fn sockets(&self, group: Group) -> Group {
         let block = |x: f64, top: f64, size: (f64, f64), fill| {
-            rectangle(self.at(x, top), (size.0 * PITCH, size.1 * PITCH), fill)
-                .set("stroke", DARK)
-                .set("stroke-width", 1.2)
+            edged(
+                rectangle(self.at(x, top), (size.0 * PITCH, size.1 * PITCH), fill),
+                DARK,
+                1.2,
+            )
         };
         let led = self.at(9.4, 13.6);
         group
@@ -144,7 +146,5 @@ impl Uno {
 /// A hole of a header.
 fn hole(at: (f64, f64), is_used: bool) -> svg::node::element::Circle {
     let fill = if is_used { DARK } else { PANEL };
-    circle(at, 4.0, fill)
-        .set("stroke", DARK)
-        .set("stroke-width", 1.2)
+    edged(circle(at, 4.0, fill), DARK, 1.2)
 }

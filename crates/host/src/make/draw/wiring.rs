@@ -8,8 +8,8 @@ use super::route::{GAP, Path, below, beside, between_rows};
 use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    BROWN, DARK, GREY, ORANGE, PLACES, RED, SERVO, circle, cross, curve, line, page, rectangle,
-    text_end, text_middle, text_start,
+    BROWN, DARK, GREY, ORANGE, PLACES, RED, SERVO, circle, cross, curve, edged, line, page,
+    rectangle, text_end, text_middle, text_start,
 };
 
 const WIDTH: f64 = 700.0;
@@ -31,7 +31,7 @@ const BODY: (f64, f64) = (50.0, 92.0);
 /// A servo's wires leave it this far from its middle.
 const LEAD: f64 = 14.0;
 
-/// Its signal goes down this far right of its middle.
+/// Distance of a signal wire to the right of its servo's middle.
 const ASIDE: f64 = 42.0;
 
 /// A pull-down resistor's body: its middle's height and its size.
@@ -172,12 +172,11 @@ fn resistor(x: f64) -> Group {
     let (width, height) = RESISTOR_SIZE;
     let corner = (x - width / 2.0, RESISTOR - height / 2.0);
     Group::new()
-        .add(
-            rectangle(corner, RESISTOR_SIZE, "#f3e3c3")
-                .set("rx", 2)
-                .set("stroke", DARK)
-                .set("stroke-width", 1.5),
-        )
+        .add(edged(
+            rectangle(corner, RESISTOR_SIZE, "#f3e3c3").set("rx", 2),
+            DARK,
+            1.5,
+        ))
         .add(text_start(
             "10 k\u{3a9}",
             (x + width - 1.0, RESISTOR + 4.0),
@@ -193,18 +192,14 @@ fn body(servo: usize, place: usize, pin: u8) -> Group {
     let below = TOP + BODY.1;
     Group::new()
         .add(rectangle(corner, BODY, "white").set("rx", 5))
-        .add(
+        .add(edged(
             rectangle(corner, BODY, colour)
                 .set("rx", 5)
-                .set("fill-opacity", 0.18)
-                .set("stroke", colour)
-                .set("stroke-width", 2),
-        )
-        .add(
-            circle((x, TOP + 27.0), 15.0, "white")
-                .set("stroke", colour)
-                .set("stroke-width", 2),
-        )
+                .set("fill-opacity", 0.18),
+            colour,
+            2,
+        ))
+        .add(edged(circle((x, TOP + 27.0), 15.0, "white"), colour, 2))
         .add(circle((x, TOP + 27.0), 5.0, DARK))
         .add(text_middle(NAMES[servo], (x, below - 18.0), 20.0).set("font-weight", "bold"))
         .add(text_middle(PLACES[servo], (x - 2.0, below + 17.0), 13.0))
@@ -223,12 +218,11 @@ fn supply() -> Group {
     let size = (WIDTH - 8.0 - RAILS.1, PLUS - GROUND + 48.0);
     let middle = RAILS.1 + size.0 / 2.0 + 6.0;
     Group::new()
-        .add(
-            rectangle((RAILS.1, GROUND - 24.0), size, "#eeeeee")
-                .set("rx", 6)
-                .set("stroke", DARK)
-                .set("stroke-width", 1.5),
-        )
+        .add(edged(
+            rectangle((RAILS.1, GROUND - 24.0), size, "#eeeeee").set("rx", 6),
+            DARK,
+            1.5,
+        ))
         .add(text_start("\u{2212}", (RAILS.1 + 8.0, GROUND + 6.0), 18.0))
         .add(text_start("+", (RAILS.1 + 8.0, PLUS + 6.0), 18.0))
         .add(text_middle("supply", (middle, PLUS - 32.0), 15.0))
@@ -237,12 +231,11 @@ fn supply() -> Group {
         .add(text_end("+5 V", (RAILS.0 - 6.0, PLUS - 2.0), 13.0))
         .add(text_end("(red)", (RAILS.0 - 6.0, PLUS + 14.0), 13.0))
         .add(line((can, GROUND), (can, PLUS), DARK, 2.0))
-        .add(
-            rectangle((can - half, top), (2.0 * half, bottom - top), "#dddddd")
-                .set("rx", 3)
-                .set("stroke", DARK)
-                .set("stroke-width", 1.5),
-        )
+        .add(edged(
+            rectangle((can - half, top), (2.0 * half, bottom - top), "#dddddd").set("rx", 3),
+            DARK,
+            1.5,
+        ))
         .add(rectangle((can - half, top), (2.0 * half, 9.0), DARK).set("rx", 2))
         .add(text_start("1000 µF", (can + half + 6.0, PLUS - 32.0), 13.0))
         .add(text_start("10 V", (can + half + 6.0, PLUS - 15.0), 13.0))

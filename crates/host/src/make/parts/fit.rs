@@ -49,9 +49,9 @@ impl Spreads for Args {
 struct Pair<'a> {
     first: &'a str,
     second: &'a str,
-    /// At least so far apart, mm.
+    /// The proved least distance, mm.
     proved: f64,
-    /// So far at a pose that the guard accepts, mm.
+    /// The distance at a pose that the guard accepts, mm.
     seen: Option<f64>,
     /// The pose at which they meet: A1 to A4, deg.
     pose: Option<[f64; 4]>,
@@ -67,7 +67,7 @@ struct Report<'a> {
     reason: Option<String>,
     apart: Vec<Pair<'a>>,
     meeting: Vec<Pair<'a>>,
-    /// From and to, deg, A1 to A4.
+    /// The ranges of A1 to A4, deg.
     ranges: [[f64; 2]; 4],
     pairs: usize,
     regions: u64,

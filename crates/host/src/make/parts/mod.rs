@@ -56,7 +56,7 @@ struct Listed {
     instead_of: Option<String>,
     /// The bodies that are made so, by their names in the assembly.
     bodies: Vec<String>,
-    /// Of one, mm^3.
+    /// The volume of one piece, mm^3.
     volume: f64,
     files: Vec<String>,
 }
@@ -114,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         files.extend(papers(&assembly, &bill, &pose)?);
         weight = bill
             .differs(&robot.ground().body)
-            .then(|| said(&bill, &robot));
+            .then(|| weight_note(&bill, &robot));
     }
     write(&args.folder, &files)?;
     let mut out = io::stdout().lock();
@@ -139,7 +139,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// The lines for a robot.toml whose weight is not that of the parts.
-fn said(bill: &Bill, robot: &Robot) -> String {
+fn weight_note(bill: &Bill, robot: &Robot) -> String {
     let Body { mass, centre } = robot.ground().body;
     format!(
         "The parts weigh {:.0} g, and their mass centre is {} the middle of the plate; robot.toml has {mass} g and \

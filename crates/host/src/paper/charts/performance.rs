@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, Scale, VIRIDIS, title};
+use super::plot::{Axis, Plot, Scale, VIRIDIS};
 use crate::paper::design::{Point, Proportions, SUM};
-use crate::shared::ink::{circle, line, page, text_start};
+use crate::shared::ink::{circle, edged, line, page, text_start, title};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL: f64 = 340.0;
@@ -63,14 +63,8 @@ pub fn performance(points: &[Point], step: f64) -> String {
             y: (-step / 2.0, SUM + step / 2.0),
         };
         let axes = (
-            Axis {
-                step: 0.1,
-                name: "r1, crank",
-            },
-            Axis {
-                step: 0.1,
-                name: if i == 0 { "r2, coupler" } else { "" },
-            },
+            Axis::new(0.1, "r1, crank"),
+            Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" }),
         );
         group = plot.grid(group, &axes.0, &axes.1);
         group = wide.map(group, (count + 1, count + 1), |x, y| {
@@ -84,16 +78,8 @@ pub fn performance(points: &[Point], step: f64) -> String {
         }
         let (x, y) = plot.at(Proportions::PAPER.r1, Proportions::PAPER.r2);
         group = group
-            .add(
-                circle((x, y), 7.0, "none")
-                    .set("stroke", "white")
-                    .set("stroke-width", 5.0),
-            )
-            .add(
-                circle((x, y), 7.0, "none")
-                    .set("stroke", "#d55e00")
-                    .set("stroke-width", 2.5),
-            );
+            .add(edged(circle((x, y), 7.0, "none"), "white", 5.0))
+            .add(edged(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
         group = plot.axes(group, &axes.0, &axes.1);
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
         group = scale.key(

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use svg::node::element::{Group, Path, Polyline};
 
 use crate::shared::ink::{
-    Anchor, DARK, GREY, GRID, curve, line, rectangle, text, text_end, text_middle, text_start,
+    DARK, GRID, curve, edged, line, rectangle, text_end, text_middle, text_start,
 };
 
 /// Viridis in ten bands: even steps in lightness, so that it reads in grey and
@@ -45,6 +45,13 @@ pub struct Axis<'a> {
     pub name: &'a str,
 }
 
+impl<'a> Axis<'a> {
+    /// An axis with ticks at multiples of `step`.
+    pub const fn new(step: f64, name: &'a str) -> Self {
+        Self { step, name }
+    }
+}
+
 impl Plot {
     /// The place of a point on the page.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
@@ -80,11 +87,7 @@ impl Plot {
     /// Frame, ticks, numbers and names.
     pub fn axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         let (right, bottom) = self.end();
-        group = group.add(
-            rectangle(self.corner, self.size, "none")
-                .set("stroke", DARK)
-                .set("stroke-width", 1.0),
-        );
+        group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
         for value in ticks(self.x, x.step) {
             let at = self.at(value, 0.0).0;
             group = group
@@ -230,13 +233,6 @@ impl Scale {
             .add(rectangle(corner, (22.0, height), "none").set("stroke", DARK))
             .add(text_start(name, (corner.0, corner.1 - 14.0), 15.0))
     }
-}
-
-/// A page's title and the line below it.
-pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
-    group
-        .add(text_start(words, (left, 40.0), 24.0).set("font-weight", "bold"))
-        .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
 /// A short line and its meaning.

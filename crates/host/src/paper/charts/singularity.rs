@@ -5,8 +5,8 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, title};
-use crate::shared::ink::{DARK, circle, cross, line, page, rectangle, text_start};
+use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry};
+use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text_start, title};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);
@@ -36,14 +36,8 @@ pub fn singularity(robot: &Robot) -> String {
     };
     let axes = |step| {
         (
-            Axis {
-                step,
-                name: "theta1 (A1), deg",
-            },
-            Axis {
-                step,
-                name: "theta4 (A2), deg",
-            },
+            Axis::new(step, "theta1 (A1), deg"),
+            Axis::new(step, "theta4 (A2), deg"),
         )
     };
     let left = Plot {
@@ -69,11 +63,11 @@ pub fn singularity(robot: &Robot) -> String {
     // Where the right panel lies in the left one.
     let corner = left.at(near.x.0, near.y.1);
     let end = left.at(near.x.1, near.y.0);
-    group = group.add(
-        rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none")
-            .set("stroke", DARK)
-            .set("stroke-width", 2.0),
-    );
+    group = group.add(edged(
+        rectangle(corner, (end.0 - corner.0, end.1 - corner.1), "none"),
+        DARK,
+        2.0,
+    ));
     for (i, (_, path)) in paths.iter().enumerate() {
         let (colour, dashes) = STYLES[i % STYLES.len()];
         if path.len() > 1 {
@@ -197,7 +191,7 @@ fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     }
 }
 
-/// True if every point of either path is close to the other.
+/// True if the two paths are close to each other everywhere.
 fn same(one: &[(f64, f64)], two: &[(f64, f64)]) -> bool {
     let near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()

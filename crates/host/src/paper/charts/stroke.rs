@@ -3,8 +3,8 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, SHUT, entry, title};
-use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start};
+use super::plot::{Axis, Plot, SHUT, entry};
+use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start, title};
 use crate::shared::number::tidy;
 
 const COLUMNS: usize = 4;
@@ -59,14 +59,8 @@ pub fn stroke(robot: &Robot) -> String {
 
 fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
     let axes = (
-        Axis {
-            step: 0.25,
-            name: "phase",
-        },
-        Axis {
-            step: 15.0,
-            name: if plot.corner.0 < PITCH.0 { "s, mm" } else { "" },
-        },
+        Axis::new(0.25, "phase"),
+        Axis::new(15.0, if plot.corner.0 < PITCH.0 { "s, mm" } else { "" }),
     );
     group = plot.grid(group, &axes.0, &axes.1);
     for (from, to) in [

@@ -4,19 +4,13 @@ use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry, title};
+use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry};
 use crate::paper::design::{CLAIM, Performance, lci};
-use crate::shared::ink::{DARK, GREY, circle, page, text_start};
+use crate::shared::ink::{DARK, GREY, circle, edged, page, text_start, title};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
-const MM: Axis<'static> = Axis {
-    step: 20.0,
-    name: "x, mm from the middle of l0",
-};
-const MM_UP: Axis<'static> = Axis {
-    step: 20.0,
-    name: "y, mm",
-};
+const MM: Axis<'static> = Axis::new(20.0, "x, mm from the middle of l0");
+const MM_UP: Axis<'static> = Axis::new(20.0, "y, mm");
 const RED: &str = "#d55e00";
 const BLUE: &str = "#0072b2";
 
@@ -146,9 +140,11 @@ pub fn conditioning(robot: &Robot) -> String {
 
 /// A circle of the plot.
 fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
-    circle(plot.at(centre.x, centre.y), radius * plot.scale(), "none")
-        .set("stroke", colour)
-        .set("stroke-width", width)
+    edged(
+        circle(plot.at(centre.x, centre.y), radius * plot.scale(), "none"),
+        colour,
+        width,
+    )
 }
 
 /// The head's closed paths that gaits give by points.
@@ -179,11 +175,7 @@ fn mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         group = group.add(plot.curve(&points, DARK, 4.0));
         for (i, (x, y)) in points.into_iter().enumerate() {
             let fill = if i % 4 == 0 { BLUE } else { "white" };
-            group = group.add(
-                circle(plot.at(x, y), 6.0, fill)
-                    .set("stroke", DARK)
-                    .set("stroke-width", 2.0),
-            );
+            group = group.add(edged(circle(plot.at(x, y), 6.0, fill), DARK, 2.0));
         }
     }
     group

@@ -12,7 +12,7 @@ use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 
 use crate::shared::json;
-use crate::shared::pose_args::length;
+use crate::shared::pose_args::Quantity;
 use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
@@ -47,28 +47,28 @@ pub struct Args {
     #[arg(long, value_name = "MM", value_parser = base)]
     l0: Option<f64>,
     /// Crank; give two or three of r1, r2, r3 [default: 0.3]
-    #[arg(long, value_parser = share)]
+    #[arg(long, value_parser = Quantity::SHARE.parser())]
     r1: Option<f64>,
     /// Coupler [default: 0.5]
-    #[arg(long, value_parser = share)]
+    #[arg(long, value_parser = Quantity::SHARE.parser())]
     r2: Option<f64>,
     /// Half the base [default: 0.1]
-    #[arg(long, value_parser = share)]
+    #[arg(long, value_parser = Quantity::SHARE.parser())]
     r3: Option<f64>,
-    /// Print the performance charts over the whole triangle, as CSV
+    /// Print the performance charts over the complete triangle, as CSV
     #[arg(long, conflicts_with = "search")]
     chart: bool,
     /// Rank all designs that keep the servos' travel and the margins
     #[arg(long)]
     search: bool,
     /// Step of the grid of --chart and --search
-    #[arg(long, default_value_t = 0.02, value_parser = step)]
+    #[arg(long, default_value_t = 0.02, value_parser = within(0.002, 0.2, "0.002 to 0.2"))]
     step: f64,
     /// Sweep that --search requires of every servo, degrees to either side
-    #[arg(long, default_value_t = 20.0, value_parser = sweep)]
+    #[arg(long, default_value_t = 20.0, value_parser = within(1.0, 60.0, "1 to 60 degrees"))]
     sweep: f64,
     /// Shortest link that --search allows, mm; two M3 joints need about this length
-    #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = length)]
+    #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = Quantity::LENGTH.parser())]
     shortest: f64,
     /// Number of designs that --search prints
     #[arg(long, default_value_t = 12)]
@@ -92,32 +92,22 @@ impl Spreads for Args {
     }
 }
 
-fn step(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(step) if (0.002..=0.2).contains(&step) => Ok(step),
-        _ => Err("it must be 0.002 to 0.2".to_string()),
+/// A parser of numbers in a range.
+fn within(
+    least: f64,
+    most: f64,
+    range: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.parse::<f64>() {
+        Ok(value) if (least..=most).contains(&value) => Ok(value),
+        _ => Err(format!("it must be {range}")),
     }
 }
 
 fn base(text: &str) -> Result<f64, String> {
-    match length(text) {
+    match Quantity::LENGTH.parser()(text) {
         Ok(l0) if l0 < 0.001 => Err("it must be at least 0.001 mm".to_string()),
         other => other,
-    }
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(share) if share.is_finite() => Ok(share),
-        Ok(_) => Err("it is not a finite number".to_string()),
-        Err(_) => Err("it is not a number".to_string()),
-    }
-}
-
-fn sweep(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(sweep) if (1.0..=60.0).contains(&sweep) => Ok(sweep),
-        _ => Err("it must be 1 to 60 degrees".to_string()),
     }
 }
 

@@ -1,10 +1,9 @@
-//! Beyond the paper: which proportions would serve this robot best?
+//! A search for the proportions that serve this robot best, beyond the paper.
 //!
-//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index
-//! afterwards. Here every point of the triangle becomes a robot with the given base. Its
-//! cranks are mounted at the neutral angle that leaves them most sweep, and all margins
-//! and the servos' travel limit that sweep. All four servos may be anywhere within it at
-//! once, so any gait of that amplitude is safe.
+//! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index afterwards.
+//! Here every point of the triangle becomes a robot with the given base. Its cranks are mounted
+//! at the neutral angle with the largest sweep, which all margins and the servos' travel limit.
+//! All four servos may be anywhere within it at once, so any gait of that amplitude is safe.
 
 use indicatif::ProgressBar;
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};

@@ -3,7 +3,7 @@
 
 use super::sample::Sample;
 
-/// By how much a form misses at a sample; `None` where it has no real value.
+/// The error of a form at a sample; `None` if it has no real value.
 pub type Miss = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
@@ -67,7 +67,7 @@ impl Equation {
 /// The errors of a form over all samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misses {
-    /// Largest miss where there is a real value.
+    /// The largest error among samples with a real value.
     pub worst: f64,
     /// Share of the samples without one.
     pub unreal: f64,
@@ -93,7 +93,7 @@ impl Misses {
         }
     }
 
-    /// True if nothing but rounding was found.
+    /// True if only rounding errors were found.
     pub fn holds(&self) -> bool {
         self.worst < Self::ROUNDING && self.unreal == 0.0
     }

@@ -7,7 +7,7 @@ use lizard_kinematics::{End, Vector};
 use super::equation::Equation;
 use super::sample::{Sample, cis};
 
-/// In the paper's order.
+/// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "4.1 head, left arm",

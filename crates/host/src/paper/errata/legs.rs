@@ -5,7 +5,7 @@ use lizard_kinematics::{Leg, Vector};
 use super::equation::Equation;
 use super::sample::{Sample, apart, cis};
 
-/// In the paper's order.
+/// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "4.2 leg loops",

@@ -44,7 +44,7 @@ pub struct Args {
 /// Samples of docs/errata.md.
 pub const SAMPLES: u32 = 20_000;
 
-/// One equation with what was measured.
+/// An equation with its measured errors.
 #[derive(Serialize)]
 pub struct Entry {
     place: &'static str,
@@ -57,8 +57,8 @@ pub struct Entry {
     unit: &'static str,
     /// The worst miss at a place that deserves a closer look, and that place.
     aside: Option<(f64, &'static str)>,
-    /// With right-hand angles clockwise from -x; null where that reading does
-    /// not arise.
+    /// True if it holds with right-hand angles clockwise from -x; null if that reading does not
+    /// arise.
     holds_clockwise: Option<bool>,
     corrected: Option<&'static str>,
     corrected_worst: Option<f64>,
@@ -133,7 +133,7 @@ impl Entry {
         }
     }
 
-    /// The worst miss in words; rounding is not told apart from rounding.
+    /// The largest error in words; all rounding errors count as equal.
     fn miss(&self) -> String {
         let mut words = self.plain_miss();
         if let Some((worst, place)) = self.aside {

@@ -32,7 +32,7 @@ pub fn paper_lizard() -> Lizard {
     }
 }
 
-/// A solved pose, and random numbers for what is not about a pose.
+/// A solved pose, and random numbers for equations that are not about a pose.
 pub struct Sample {
     /// The robot of all samples.
     pub lizard: Lizard,

@@ -7,7 +7,7 @@ use lizard_kinematics::End;
 use super::equation::Equation;
 use super::sample::Sample;
 
-/// In the paper's order.
+/// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "5.1 shape of K",

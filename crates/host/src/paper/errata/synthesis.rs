@@ -9,11 +9,25 @@ use super::sample::{Sample, TABLE, cis};
 use crate::paper::design::{CLAIM, Proportions, SUM, lci};
 use crate::paper::mobility;
 
-/// In the paper's order.
+/// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
-    Equation::new("2.1 mobility of the body", "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16", "freedoms against the rank of the constraints", |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs())),
-    Equation::new("2.2 mobility of a leg", "M = 1", "freedoms against the rank of the constraints", |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs())),
-    Equation::new("3.1 dimensional factor", "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9", "mm", |s| {
+    Equation::new(
+        "2.1 mobility of the body",
+        "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
+        "freedoms against the rank of the constraints",
+        |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs()),
+    ),
+    Equation::new(
+        "2.2 mobility of a leg",
+        "M = 1",
+        "freedoms against the rank of the constraints",
+        |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs()),
+    ),
+    Equation::new(
+        "3.1 dimensional factor",
+        "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9",
+        "mm",
+        |s| {
             let (d, p) = (10.0 + 100.0 * s.random[0], Proportions::PAPER);
             let bars = p.at_scale(d);
             let sum = bars.crank_left + bars.coupler_left + bars.base / 2.0;
@@ -22,15 +36,31 @@ pub const EQUATIONS: &[Equation] = &[
                     .abs()
                     .max((p.scale_for_base(bars.base) - d).abs()),
             )
-        }),
-    Equation::new("3.1 design space", "r3 < 0.45 assures r1 + r2 > r3", "D", |s| {
+        },
+    ),
+    Equation::new(
+        "3.1 design space",
+        "r3 < 0.45 assures r1 + r2 > r3",
+        "D",
+        |s| {
             let r3 = 0.45 * s.random[0];
             Some((r3 - (SUM - r3)).max(0.0))
-        }),
-    Equation::new("3.1.2 workspace circles (all four)", "(x11 ± l0/2)² + y11 = (l1 ± l2)²", "mm in radius", |s| circles(s, |y| y)).corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
-            circles(s, |y| y * y)
-        }),
-    Equation::new("3.1.3 maximal inscribed circle", "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)", "mm", |s| {
+        },
+    ),
+    Equation::new(
+        "3.1.2 workspace circles (all four)",
+        "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
+        "mm in radius",
+        |s| circles(s, |y| y),
+    )
+    .corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
+        circles(s, |y| y * y)
+    }),
+    Equation::new(
+        "3.1.3 maximal inscribed circle",
+        "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
+        "mm",
+        |s| {
             let bars = s.lizard.end(End::Head);
             let (sum, difference) = (
                 bars.crank_left + bars.coupler_left,
@@ -49,22 +79,47 @@ pub const EQUATIONS: &[Equation] = &[
             // It is inscribed, and no other centre has more room.
             let other = clearance(sum * (2.0 * s.random[0] - 1.0), sum * s.random[1]);
             Some((clearance(0.0, y) - r).abs().max(other - r))
-        }),
-    Equation::new("3.1.4 conditioning", "LCI > 0.7 inside the inscribed circle", "of LCI short", |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0))).corrected("LCI > 0.7 inside the concentric circle of half the radius; over the whole circle as a mean only",
-            |s| Some((CLAIM - lci_at(s, 0.5)).max(0.0))),
-    Equation::new("3.2 table of links", "l12, l13, l16, l18 = 45 (l16 = 30 before)", "links without a length", |_| Some(missing(|i, _| i))).corrected("l12, l13, l17, l18 = 45", |_| {
-            Some(missing(
-                |i, length| if i == 16 && length == 45.0 { 17 } else { i },
-            ))
-        }),
-    Equation::new("3.2 legs", "the parallelogram does not operate in the singularity zone", "of the margin 0.3 short", |s| {
+        },
+    ),
+    Equation::new(
+        "3.1.4 conditioning",
+        "LCI > 0.7 inside the inscribed circle",
+        "of LCI short",
+        |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0)),
+    )
+    .corrected(
+        "LCI > 0.7 inside the concentric circle of half the radius; \
+         over the whole circle as a mean only",
+        |s| Some((CLAIM - lci_at(s, 0.5)).max(0.0)),
+    ),
+    Equation::new(
+        "3.2 table of links",
+        "l12, l13, l16, l18 = 45 (l16 = 30 before)",
+        "links without a length",
+        |_| Some(missing(|i, _| i)),
+    )
+    .corrected("l12, l13, l17, l18 = 45", |_| {
+        Some(missing(
+            |i, length| if i == 16 && length == 45.0 { 17 } else { i },
+        ))
+    }),
+    Equation::new(
+        "3.2 legs",
+        "the parallelogram does not operate in the singularity zone",
+        "of the margin 0.3 short",
+        |s| {
             let (least, flat) = (0.3, 360.0 * s.random[0]);
             Some((least - flat.to_radians().sin().abs()).max(0.0))
-        }).corrected("change points at theta_lg = 0 and 180; the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
-            |s| {
-                let theta: f64 = 90.0 + 72.5 * (2.0 * s.random[0] - 1.0);
-                Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
-            }),
+        },
+    )
+    .corrected(
+        "change points at theta_lg = 0 and 180; \
+         the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
+        |s| {
+            let theta: f64 = 90.0 + 72.5 * (2.0 * s.random[0] - 1.0);
+            Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
+        },
+    ),
 ];
 
 /// A point on the rim of an arm's reach, put into a circle equation whose y

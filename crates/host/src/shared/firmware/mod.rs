@@ -23,9 +23,9 @@ pub(crate) use simulated::{code_bytes, of_robot};
 #[cfg(feature = "simulator")]
 mod simulated;
 
-/// The code of the firmware in Intel HEX, up to where the robot's section begins.
+/// The code of the firmware in Intel HEX, up to the robot's section.
 ///
-/// `make code-image` writes the file anew, and a test compares it with what the source builds.
+/// `make code-image` writes the file, and a test compares it with a build of the source.
 pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
 
 /// A robot's name and hash, as its banner says them.

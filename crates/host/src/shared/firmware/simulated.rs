@@ -10,7 +10,7 @@ use super::{CODE, named, robot_in};
 use crate::shared::files::reading;
 use crate::{Failure, RobotFile};
 
-/// An image to run, and where it is from.
+/// An image to run, and its source.
 #[derive(Debug, Clone)]
 pub struct Firmware {
     /// The file, or that it is this program's own.
@@ -68,8 +68,11 @@ impl From<FirmwareError> for Failure {
     }
 }
 
-/// The firmware to run for a robot: the file given, which must have this robot in it, or the
-/// code inside this program with this robot. `file` is where the robot was read from.
+/// The firmware to run for a robot: the given file, which must have this robot in it, or the
+/// code inside this program with this robot. `file` is the robot's source.
+///
+/// An image without a robot's section is no lizard's and is accepted: running it shows what it
+/// does.
 ///
 /// An image that has no robot's section is no lizard's and is let through: what it does is
 /// seen when it runs.
@@ -123,8 +126,8 @@ pub fn inside(robot: &Robot) -> Image {
     image
 }
 
-/// The program of an ELF or HEX file with this robot in the place of the one that it has;
-/// as it is where it has none.
+/// The program of an ELF or HEX file with this robot in place of its own; unchanged if it has
+/// none.
 ///
 /// # Errors
 /// It cannot be read, or is no program of an AVR.

@@ -9,9 +9,9 @@ use super::Figures;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// It may be this large.
+    /// The largest allowed value.
     AtMost(f64),
-    /// It may be this small.
+    /// The smallest allowed value.
     AtLeast(f64),
     /// There is no budget for it.
     None,
@@ -22,7 +22,7 @@ pub enum Bound {
 pub struct Row {
     /// The name of the figure.
     pub what: &'static str,
-    /// In which unit.
+    /// The unit of the figure.
     pub unit: &'static str,
     /// The figure, if it could be measured.
     pub measured: Option<f64>,
@@ -51,9 +51,10 @@ impl Row {
 pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 16 MHz) with four servos at a constant \
      1500 us; its float solve is theta2 and theta3 of head and tail";
 
-/// Cycles from the tick to the end of its slot, where the next frame is taken.
+/// Cycles from the tick to the end of its slot, when the next frame is taken.
 const IN_TIME: f64 = 63_000.0;
-/// Of these, what interrupts leave to main while the line is saturated both ways.
+/// The share of these cycles that interrupts leave to main while the line is saturated both
+/// ways.
 const LEFT_TO_MAIN: f64 = 0.87;
 /// Cycles of the control tick, mean and worst.
 const TICK: [f64; 2] = [5_000.0, 10_000.0];

@@ -18,13 +18,13 @@ pub struct Exactness {
     pub period: u64,
     /// The most servo pins high at once.
     pub pins_high: u32,
-    /// The step in which widths vary, cycles; nothing if they do not.
+    /// The step in which widths vary, cycles; none if they do not vary.
     pub step: Option<u64>,
 }
 
 impl Exactness {
-    /// Of all pulses so far of the firmware of `robot`, where no more than the first `commands` of the bytes
-    /// sent have been commands.
+    /// Measures all pulses so far of the firmware of `robot`, if at most the first `commands`
+    /// bytes sent were commands.
     ///
     /// # Errors
     /// The board has sent no pulse.
@@ -40,14 +40,14 @@ impl Exactness {
         let count = (board.uno.cycle() - opens(first)) / FRAME;
         let sent = frames(&edges, pins, first, count);
         let received = &board.uno.received_by_uno()[..commands];
-        let asked = core_run::play(*robot, received, first, sent.len());
-        let known = banner.as_deref() == asked.written.lines().next();
+        let commanded = core_run::play(*robot, received, first, sent.len());
+        let known = banner.as_deref() == commanded.written.lines().next();
 
         let mut error = [i64::MAX, i64::MIN];
         let (mut period, mut step) = (0, 0);
-        for (frame, asked) in sent.iter().zip(&asked.widths) {
-            for (width, asked) in frame.widths.iter().zip(asked) {
-                let difference = width.unwrap_or(0) as i64 - i64::from(*asked);
+        for (frame, commanded) in sent.iter().zip(&commanded.widths) {
+            for (width, commanded) in frame.widths.iter().zip(commanded) {
+                let difference = width.unwrap_or(0) as i64 - i64::from(*commanded);
                 error = [error[0].min(difference), error[1].max(difference)];
             }
         }

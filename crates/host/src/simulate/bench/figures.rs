@@ -32,8 +32,7 @@ pub struct Figures {
     pub static_ram: u16,
     /// Fewest bytes ever between the stack and static data.
     pub stack_spare: u16,
-    /// The same for the deepest stack that the code allows, worked out and not
-    /// measured.
+    /// The same for the deepest stack that the code allows, computed instead of measured.
     pub stack_margin: i32,
     /// Mean cycles of the control tick, interrupts left out, in the gait in which they are
     /// the most.
@@ -112,7 +111,7 @@ const LONG_LINES: [&str; 20] = [
 ];
 /// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
 const SERVO_VECTORS: [u8; 2] = [11, 12];
-/// And those of USART_RX and USART_UDRE.
+/// Data sheet numbers of USART_RX and USART_UDRE.
 const SERIAL_VECTORS: [u8; 2] = [18, 19];
 /// Cycles from the end of an instruction to a handler's first: 4 of the interrupt
 /// and 3 of the jump in the vector table.
@@ -121,7 +120,7 @@ const ENTRY: u64 = 7;
 const LONG: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF. `progress` gets what is being measured.
+    /// Measures an ELF. `progress` receives the name of each measurement.
     ///
     /// # Errors
     /// A firmware that cannot be loaded, dies, or does not answer.
@@ -229,8 +228,7 @@ fn command(gait: &str) -> String {
     gait.replace('-', " ")
 }
 
-/// A board that has done the same for a time on an idle line, and the cycles that
-/// took.
+/// A board after a time under one command on an idle line, and the cycles spent.
 struct Steady {
     board: SimulatedBoard,
     cycles: u64,
@@ -327,7 +325,7 @@ fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, B
     Ok(board)
 }
 
-/// Times a function while the robot does one thing after the other: the calls of each.
+/// Times a function under one command after another; returns the calls of each.
 fn times(
     mut board: SimulatedBoard,
     function: &str,

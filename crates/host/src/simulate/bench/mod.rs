@@ -38,7 +38,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// A row and whether it keeps to its budget, for `--json`.
+/// A row with its verdict, for `--json`.
 #[derive(serde::Serialize)]
 struct Judged<'a> {
     #[serde(flatten)]

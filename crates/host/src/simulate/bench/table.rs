@@ -1,4 +1,4 @@
-//! The budgets as a table for people.
+//! The table of budgets for people.
 
 use std::io::{self, Write};
 

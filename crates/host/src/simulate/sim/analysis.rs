@@ -1,4 +1,4 @@
-//! Frames read back into servo angles, and what can be said about them.
+//! Servo angles read back from frames, and the figures computed from them.
 
 use std::collections::HashMap;
 
@@ -76,16 +76,16 @@ pub struct Safety {
 pub struct Leg {
     /// The command in effect.
     pub command: String,
-    /// From this many seconds since power-on.
+    /// The beginning, seconds since power-on.
     pub from: f64,
-    /// To this many.
+    /// The end, seconds since power-on.
     pub to: f64,
-    /// Forward, mm, seen from where it began; nothing if that depends on a tie, two
-    /// feet against two.
+    /// Distance forward from its own beginning, mm; none if it depends on a tie, two feet
+    /// against two.
     pub forward: Option<f64>,
-    /// To the left, mm, likewise.
+    /// Distance to the left, mm; none if it depends on a tie.
     pub left: Option<f64>,
-    /// Counter-clockwise, deg, likewise.
+    /// Turn counter-clockwise, deg; none if it depends on a tie.
     pub turn: Option<f64>,
 }
 
@@ -310,7 +310,8 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// From frame number `n`. A frame in which the robot rests moves nothing.
+    /// The movement from frame number `n` to the next. A frame in which the robot rests moves
+    /// nothing.
     fn from(&mut self, n: usize) -> Travel {
         /// Pairs that are kept, some megabytes.
         const KEPT: usize = 100_000;
@@ -331,7 +332,7 @@ impl Steps<'_> {
     }
 }
 
-/// One way and then another, the second seen from where the first ends.
+/// Two paths one after the other; the second is relative to the end of the first.
 fn followed_by(first: Travel, second: Travel) -> Travel {
     let (sin, cos) = first.turn.to_radians().sin_cos();
     Travel {

@@ -32,7 +32,7 @@ const READING_TAKES: u64 = 3_000;
 /// The robot wakes within this many frames of power-on.
 const WAKES: usize = 500;
 
-/// The firmware's main on such a board.
+/// The firmware's main loop on a virtual board.
 struct CoreRun {
     running: Running,
 }
@@ -66,7 +66,7 @@ impl CoreRun {
         widths
     }
 
-    /// When lines and bytes that wait for room are written and taken.
+    /// The cycle at which waiting lines are written and waiting bytes are taken.
     fn retry(&self) -> Option<u64> {
         let board = &self.running.board;
         let waits = board.waiting() > 0 || self.running.has_output();
@@ -79,7 +79,7 @@ impl CoreRun {
 pub struct Commands {
     /// Widths in cycles, 0 for no pulse, of each frame from A1's first pulse on.
     pub widths: Vec<[u16; 4]>,
-    /// All that it writes, `late` and `rx_lost` left at 0.
+    /// The core's output, with `late` and `rx_lost` left at 0.
     pub written: String,
 }
 

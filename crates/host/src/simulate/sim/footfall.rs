@@ -12,15 +12,15 @@ const STILL: f64 = 4.0;
 /// The movement of a foot from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// It moves back: in a forward gait it pushes the body on.
+    /// The foot moves back: in a forward gait it pushes the body on.
     Stance,
-    /// It moves forward.
+    /// The foot moves forward.
     Swing,
-    /// It stands still.
+    /// The foot stands still.
     Still,
 }
 
-/// A time, in seconds, during which a foot does the same.
+/// A time span in which a foot keeps its movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// The movement of the foot.

@@ -13,9 +13,9 @@ pub(super) const SLOT: u64 = FRAME / 5;
 /// The servo pulses of one frame, in servo order A1, A2, A3, A4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
-    /// Cycle at which A1's pulse starts, or would.
+    /// Cycle at which A1's pulse starts, or would start.
     pub start: u64,
-    /// Cycle at which each pulse starts, `None` without one.
+    /// Cycle at which each pulse starts; none without a pulse.
     pub starts: [Option<u64>; 4],
     /// Width of each pulse in cycles of 62.5 ns.
     pub widths: [Option<u64>; 4],

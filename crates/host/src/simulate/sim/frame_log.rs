@@ -104,7 +104,7 @@ impl FrameReader {
         }
     }
 
-    /// The whole frames up to a cycle.
+    /// Finishes the log with the complete frames up to a cycle.
     #[must_use]
     pub fn finish(mut self, cycle: u64) -> FrameLog {
         let whole = if self.started {

@@ -5,7 +5,7 @@ use simulated_uno::SerialByte;
 /// A line that the robot has sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// Cycle at which it ended.
+    /// The cycle at which the line ended.
     pub cycle: u64,
     /// Its text without the line end.
     pub text: String,

@@ -107,7 +107,7 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Runs the firmware and shows what came of it.
+/// Runs the firmware and prints the results.
 ///
 /// # Errors
 /// No firmware, a wrong script, a firmware that dies, a file that cannot be

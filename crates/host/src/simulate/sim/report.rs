@@ -27,7 +27,7 @@ pub struct Report<'a> {
     pub servos: Vec<ServoReport>,
     /// Margins and strokes of every pose sent.
     pub safety: Safety,
-    /// Predicted way, command by command; the last is the whole run.
+    /// The predicted path of each command; the last entry is the complete run.
     pub way: Vec<Leg>,
     /// The most servo pins high at once.
     pub most_pins_high: u32,
@@ -51,7 +51,7 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Prints the report for people, the dialogue left out.
+    /// Prints the report for people, without the dialogue.
     ///
     /// # Errors
     /// Writing failed.

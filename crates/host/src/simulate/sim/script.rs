@@ -14,32 +14,24 @@ pub struct Step {
 pub struct Script {
     /// The commands in order of time.
     pub steps: Vec<Step>,
-    /// When the run ends, ms since power-on.
+    /// The end of the run, ms since power-on.
     pub end_ms: u64,
 }
 
-/// An invalid line of a script.
+/// An invalid line of a script; lines are counted from 1.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {problem}")]
-pub struct ScriptError {
-    /// Line of the script, from 1.
-    pub line: usize,
-    /// The problem with the line.
-    pub problem: ScriptProblem,
-}
-
-/// A problem with a line of a script.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ScriptProblem {
+pub enum ScriptError {
     /// The line does not begin with a time.
-    #[error("it begins with `{0}`, not with a time in whole milliseconds")]
-    Time(String),
+    #[error("line {0}: it begins with `{1}`, not with a time in whole milliseconds")]
+    Time(usize, String),
     /// There is nothing after the time.
-    #[error("no command follows the time")]
-    Silent,
-    /// It comes before the line above it.
-    #[error("{now} ms comes before the {before} ms of the command above")]
+    #[error("line {0}: no command follows the time")]
+    Silent(usize),
+    /// The line's time is before that of the line above.
+    #[error("line {line}: {now} ms comes before the {before} ms of the command above")]
     Backwards {
+        /// The number of the line.
+        line: usize,
         /// The time of this line.
         now: u64,
         /// The time of the line before.
@@ -88,23 +80,21 @@ impl Script {
             if line.is_empty() || line.starts_with('#') {
                 continue;
             }
-            let fault = |problem| ScriptError {
-                line: index + 1,
-                problem,
-            };
+            let number = index + 1;
             let (time, command) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
             let ms = time
                 .parse()
-                .map_err(|_| fault(ScriptProblem::Time(time.to_owned())))?;
+                .map_err(|_| ScriptError::Time(number, time.to_owned()))?;
             let command = command.trim();
             if command.is_empty() {
-                return Err(fault(ScriptProblem::Silent));
+                return Err(ScriptError::Silent(number));
             }
             if let Some(last) = steps.last().filter(|last| last.ms > ms) {
-                return Err(fault(ScriptProblem::Backwards {
+                return Err(ScriptError::Backwards {
+                    line: number,
                     now: ms,
                     before: last.ms,
-                }));
+                });
             }
             steps.push(step(ms, command));
         }

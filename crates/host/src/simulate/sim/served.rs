@@ -58,8 +58,8 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
     }
 }
 
-/// The message when the chip stops. A board as sold has nothing in flash where its
-/// firmware would begin, so it stops as soon as the boot loader hands over.
+/// The message when the chip stops. A new board has nothing in flash at the firmware's address,
+/// so it stops as soon as the boot loader hands over.
 fn ended(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(

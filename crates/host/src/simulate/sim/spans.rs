@@ -9,9 +9,9 @@ use super::script::Script;
 pub struct Span {
     /// The command in effect.
     pub command: String,
-    /// Seconds since power-on at which it was sent.
+    /// Time since power-on at which it was sent, s.
     pub from: f64,
-    /// Seconds since power-on at which the next one was sent, or the run ended.
+    /// Time since power-on at which the next one was sent or the run ended, s.
     pub to: f64,
 }
 

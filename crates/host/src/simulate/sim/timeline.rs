@@ -1,4 +1,4 @@
-//! Servo angles over time, and below them which foot pushes and which returns.
+//! The picture of a run: servo angles over time, and which foot pushes or returns.
 
 use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
@@ -9,7 +9,7 @@ use super::spans::Span;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
     Anchor, DARK, GREY, GRID, PANEL, PLACES, SERVO, curve, line, page, rectangle, text,
-    text_middle, text_start,
+    text_middle, text_start, title,
 };
 
 const WIDTH: f64 = 1280.0;
@@ -36,7 +36,7 @@ pub struct Caption {
     pub axis: &'static str,
 }
 
-/// Of a run on the simulated UNO.
+/// The caption of a run on the simulated UNO.
 pub const SIMULATED: Caption = Caption {
     title: "Servo angles and footfalls, measured on the simulated UNO",
     note: "degrees in the chassis frame, read back from every pulse; dashed: the neutral angle",
@@ -54,7 +54,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
         seconds: end.max(0.1),
     };
     let reach = chart.reach();
-    let mut group = chart.title(Group::new());
+    let mut group = title(Group::new(), LEFT, caption.title, caption.note);
     group = chart.commands(group);
     for servo in 0..4 {
         group = chart.strip(group, servo, reach);
@@ -77,14 +77,7 @@ impl Chart<'_> {
         LEFT + (WIDTH - LEFT - RIGHT) * seconds / self.seconds
     }
 
-    fn title(&self, group: Group) -> Group {
-        let Caption { title, note, .. } = self.caption;
-        group
-            .add(text_start(title, (LEFT, 40.0), 24.0).set("font-weight", "bold"))
-            .add(text(note, (LEFT, 66.0), 15.0, GREY, Anchor::Start))
-    }
-
-    /// The band that says which command is in effect.
+    /// The band with the command in effect.
     fn commands(&self, mut group: Group) -> Group {
         for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
             let (x, end) = (self.x(*from), self.x(*to));
@@ -105,7 +98,7 @@ impl Chart<'_> {
         ))
     }
 
-    /// A line down the whole picture where a command is given.
+    /// A line across the complete picture at each command.
     fn marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);

@@ -26,7 +26,7 @@ use report::Report;
 /// Runs the image on the simulated UNO and gives its pulses to servos that turn the
 /// linkage; springs pull the legs, and the contact model computes how the body moves.
 /// Without a script, every gait of robot.toml walks for some cycles. The table compares
-/// each gait's last whole cycle with the prediction of `lizard gaits`.
+/// each gait's last complete cycle with the prediction of `lizard gaits`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard twin

@@ -62,8 +62,8 @@ impl Replay {
         tally
     }
 
-    /// The frames of the last whole cycle under a command, if it is a gait's and
-    /// there was one cycle before it.
+    /// The frames of the last complete cycle under a command, if it is a gait's and a cycle
+    /// came before it.
     #[must_use]
     pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self

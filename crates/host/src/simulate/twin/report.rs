@@ -12,7 +12,7 @@ use crate::shared::number::tidy;
 
 /// A row for each command.
 pub struct Report {
-    /// In order of time.
+    /// The rows in order of time.
     pub rows: Vec<Row>,
 }
 
@@ -21,14 +21,14 @@ pub struct Report {
 pub struct Row {
     /// The command as it was sent.
     pub command: String,
-    /// Its first frame's and its end's time since power-on, s.
+    /// The time of its first frame and of its end, s since power-on.
     pub seconds: [f64; 2],
     /// The complete path under the command.
     pub way: Way,
-    /// The gait's last whole cycle, and what is predicted for one.
+    /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// The rest is of the last whole cycle where there is one, else of all frames:
-    /// how far the feet slid over the floor, mm, servo order.
+    /// The remaining figures are of the last complete cycle if there is one, else of all
+    /// frames: the distance that each foot slid over the floor, mm, servo order.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,
@@ -42,7 +42,7 @@ pub struct Row {
     pub servo_error: f64,
 }
 
-/// A way; null is what depends on a tie.
+/// A path; null for a part that depends on a tie.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Way {
     /// Distance forward, mm.
@@ -60,10 +60,10 @@ pub struct Cycle {
     pub way: Way,
     /// The path that the contact model predicts for ideal servos.
     pub predicted: Way,
-    /// mm/s from the cycle's beginning to its end; null where the way depends on a tie.
+    /// Mean speed over the cycle, mm/s; null if the path depends on a tie.
     pub speed: Option<f64>,
-    /// Its way over that of rigid legs, by the prediction; null where legs are rigid
-    /// or there is none to compare.
+    /// Distance relative to rigid legs, by the prediction; null if legs are rigid or there is
+    /// none to compare.
     pub share_of_rigid: Option<f64>,
 }
 
@@ -221,7 +221,7 @@ impl Report {
     }
 }
 
-/// A part of a way with its sign, without that of a zero; a dash where it is unknown.
+/// A part of a path with its sign, except for zero; a dash if it is unknown.
 #[must_use]
 pub fn known(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {

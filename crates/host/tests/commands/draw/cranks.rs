@@ -4,7 +4,7 @@ use lizard_host::draw::horns;
 use lizard_robot::Robot;
 
 use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, files, paper, said};
+use super::files::{SERVOS, files, paper, value_of};
 
 #[test]
 fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
@@ -35,7 +35,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
             "{name}"
         );
         for servo in SERVOS {
-            let neutral: f64 = said(&text, servo, "neutral").parse().expect("degrees");
+            let neutral: f64 = value_of(&text, servo, "neutral").parse().expect("degrees");
             let crank = drawing.path(&format!("crank-{servo}"));
             assert!(
                 turned(neutral, direction(&crank)).abs() < 0.02,
@@ -55,7 +55,7 @@ fn direction(line: &[Point]) -> f64 {
     y.atan2(x).to_degrees()
 }
 
-/// By how much one turns counter-clockwise from one direction to another.
+/// The counter-clockwise turn from one direction to another.
 fn turned(from: f64, to: f64) -> f64 {
     (to - from + 180.0).rem_euclid(360.0) - 180.0
 }
@@ -65,7 +65,7 @@ fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
     for (name, text) in files() {
         let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
         let (sits, should) = (drawing.path("sits"), drawing.path("should"));
-        let neutral: f64 = said(&text, "A1", "neutral").parse().expect("degrees");
+        let neutral: f64 = value_of(&text, "A1", "neutral").parse().expect("degrees");
         assert!(turned(neutral, direction(&should)).abs() < 0.02, "{name}");
         let words = drawing.0.iter().map(|element| element.words.as_str());
         let trims: Vec<&str> = words

@@ -25,7 +25,7 @@ pub fn files() -> Vec<(String, String)> {
 
 /// The value of a servo's key in a robot file, read as text: the first line with this key after
 /// the servo's table begins.
-pub fn said<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
+pub fn value_of<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
     let (_, table) = text
         .split_once(&format!("[servo.{servo}]"))
         .expect("a servo");

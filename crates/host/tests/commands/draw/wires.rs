@@ -4,7 +4,7 @@ use lizard_host::draw::wiring;
 use lizard_robot::Robot;
 
 use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, files, paper, said};
+use super::files::{SERVOS, files, paper, value_of};
 
 /// The paper's robot with other pins.
 fn with_pins(pins: [&str; 4]) -> String {
@@ -12,7 +12,7 @@ fn with_pins(pins: [&str; 4]) -> String {
     for (servo, pin) in SERVOS.into_iter().zip(pins) {
         let before = format!(
             "[servo.{servo}]\npin = \"{}\"",
-            said(&paper(), servo, "pin")
+            value_of(&paper(), servo, "pin")
         );
         assert!(text.contains(&before));
         text = text.replace(&before, &format!("[servo.{servo}]\npin = \"{pin}\""));
@@ -46,7 +46,7 @@ fn a_signal_ends_at_the_pin_that_the_file_names() {
     for (name, text) in files().into_iter().chain(many) {
         let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
         for servo in SERVOS {
-            let pin = said(&text, servo, "pin");
+            let pin = value_of(&text, servo, "pin");
             let end = *drawing
                 .path(&format!("signal-{servo}"))
                 .last()

@@ -22,19 +22,19 @@ const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
 /// The longest wait for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
-/// Between two looks at the robot.
+/// Interval between two questions for the robot's status.
 const LOOK: Duration = Duration::from_millis(25);
 
 /// A key that means something here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
-    /// To the next step.
+    /// Go to the next step.
     Next,
-    /// To the step before.
+    /// Go to the previous step.
     Back,
     /// Leave; nothing is changed.
     Leave,
-    /// Do what the step is about.
+    /// Perform the action of the step.
     Act,
     /// The answer is yes.
     Yes,
@@ -55,7 +55,7 @@ pub struct Guide<'a, P> {
     /// The neutral angles, degrees.
     neutral: [f64; 4],
     at: usize,
-    /// By how much the servo of this step has been moved, if it has.
+    /// The angle by which the servo of this step was moved, if it was.
     moved: Option<f64>,
     /// True if scales and limits are skipped.
     left_out: bool,
@@ -64,13 +64,13 @@ pub struct Guide<'a, P> {
 }
 
 impl<'a, P: Read + Write> Guide<'a, P> {
-    /// Asks the robot what it has, and lets it stand.
+    /// Reads the robot's calibration, and lets it stand.
     ///
     /// # Errors
     /// No answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
         let before = Calibration::ask(link)?;
-        link.tell("stand")?;
+        link.command("stand")?;
         let pose = settle(link)?;
         Ok(Self {
             link,
@@ -157,7 +157,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Gives the robot what it had before, and lets it stand.
+    /// Restores the calibration of the beginning, and lets the robot stand.
     fn leave(&mut self) -> Result<(), LinkError> {
         match self.stand() {
             // The supply may be too low for it. That is no reason to stay.
@@ -171,7 +171,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn save(&mut self) -> Result<(), LinkError> {
-        self.link.tell("save")?;
+        self.link.command("save")?;
         self.before = self.now.clone();
         self.go(self.at + 1)
     }
@@ -185,7 +185,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         match STEPS[to] {
             Step::Horns => {
                 self.stand()?;
-                self.link.tell("center")?;
+                self.link.command("center")?;
                 settle(self.link)?;
             }
             _ if self.step() == Step::Save => {}
@@ -196,7 +196,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn stand(&mut self) -> Result<(), LinkError> {
-        self.link.tell("stand")?;
+        self.link.command("stand")?;
         self.walks = false;
         self.moved = None;
         settle(self.link)?;
@@ -220,20 +220,20 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         refusal.map_or(Ok(()), Err)
     }
 
-    /// Moves one servo so far from its middle, the others in theirs.
+    /// Moves one servo by an angle from its neutral pose, the others to theirs.
     fn turn_to(&mut self, servo: usize, by: f64) -> Result<(), LinkError> {
         let mut pose = self.neutral;
         pose[servo] = (pose[servo] + by).rem_euclid(360.0);
         let [a1, a2, a3, a4] = pose;
         self.link
-            .tell(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))?;
+            .command(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))?;
         self.moved = Some(by);
         settle(self.link)?;
         Ok(())
     }
 
     /// Sets the scale with which a servo that was moved turns by this many degrees more. Its
-    /// middle stays where it is, so its trim counts in the new degrees.
+    /// neutral pulse stays, so its trim is converted to the new degrees.
     fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let Some(by) = self.moved else {
             self.message = "Press the space bar first, and look where it points.".to_owned();
@@ -245,11 +245,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         set.scale = hundredths(old_scale * (1.0 + degrees / by));
         set.trim = hundredths(old_trim * old_scale / set.scale);
         let (n, scale, trim) = (servo + 1, set.scale, set.trim);
-        self.link.tell(&format!("scale {n} {scale:.2}"))?;
+        self.link.command(&format!("scale {n} {scale:.2}"))?;
         if trim != old_trim
-            && let Err(error) = self.link.tell(&format!("trim {n} {trim:.2}"))
+            && let Err(error) = self.link.command(&format!("trim {n} {trim:.2}"))
         {
-            self.link.tell(&format!("scale {n} {old_scale:.2}"))?;
+            self.link.command(&format!("scale {n} {old_scale:.2}"))?;
             return Err(error);
         }
         self.now = next;
@@ -265,7 +265,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         *end = hundredths((*end + degrees.signum()).rem_euclid(360.0));
         let [min, max] = set.limit;
         self.link
-            .tell(&format!("limit {} {min:.2} {max:.2}", servo + 1))?;
+            .command(&format!("limit {} {min:.2} {max:.2}", servo + 1))?;
         self.now = next;
         Ok(())
     }
@@ -286,9 +286,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         // The horn stays where it is: the same pulse is now the opposite trim.
         set.trim = -set.trim;
         let (dir, trim) = (set.dir.sign(), set.trim);
-        self.link.tell(&format!("dir {n} {dir}"))?;
+        self.link.command(&format!("dir {n} {dir}"))?;
         if trim != 0.0 {
-            self.link.tell(&format!("trim {n} {trim:.2}"))?;
+            self.link.command(&format!("trim {n} {trim:.2}"))?;
         }
         self.now = next;
         settle(self.link)?;
@@ -302,7 +302,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         let set = next.servo.at(servo);
         set.trim = hundredths(set.trim + degrees);
         let line = format!("trim {} {:.2}", servo + 1, set.trim);
-        self.link.tell(&line)?;
+        self.link.command(&line)?;
         self.now = next;
         Ok(())
     }
@@ -312,7 +312,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             return self.stand();
         }
         let gait = self.first_gait()?;
-        self.link.tell(&gait)?;
+        self.link.command(&gait)?;
         self.walks = true;
         self.message = format!("The robot does `{gait}`.");
         Ok(())
@@ -320,7 +320,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     /// `walk`, or the first gait that the robot has besides `stand`.
     fn first_gait(&mut self) -> Result<String, LinkError> {
-        let help = self.link.tell("help")?;
+        let help = self.link.command("help")?;
         let gaits = help
             .notes
             .iter()
@@ -342,7 +342,7 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let end = Instant::now() + MOTION;
     let mut last: Option<Status> = None;
     loop {
-        let reply = link.tell("status")?;
+        let reply = link.command("status")?;
         let now = Status::parse(&reply.answer);
         let Some((now, pose)) = now.and_then(|now| now.pose.map(|pose| (now, pose))) else {
             return Err(LinkError::Unclear {

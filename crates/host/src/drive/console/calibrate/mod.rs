@@ -1,5 +1,5 @@
-//! `lizard calibrate`: a person with a screwdriver in the other hand, one key at a
-//! time.
+//! `lizard calibrate`: a guided calibration, one key at a time, for a user who holds a
+//! screwdriver.
 
 mod guide;
 
@@ -43,7 +43,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Err(Failure::Input(words.to_owned()));
     }
     let finder = args.connect.finder("calibrate")?;
-    let (mut board, _) = finder.meet()?;
+    let (mut board, _) = finder.open_and_greet()?;
     let ended = Guide::new(&mut board.link).map_err(TurnError::from);
     let ended = ended.and_then(|mut guide| with_keys(&mut guide));
     match ended {
@@ -67,8 +67,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Shows the steps until the person is done; whether it was saved. A person whose
-/// terminal goes away leaves.
+/// Shows the steps until the user is done; true if the calibration was saved. Closing the
+/// terminal cancels it.
 fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     match steps(guide) {
         Err(TurnError::Io(_)) if !terminal::is_there() => {
@@ -82,7 +82,7 @@ fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
 fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     let mut page = Page::new()?;
     let mut shown = None;
-    let mut heard = Instant::now();
+    let mut last_read = Instant::now();
     loop {
         let view = guide.view();
         if shown.as_ref() != Some(&view) {
@@ -92,18 +92,18 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
         if !terminal::is_there() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
-        // Asked without waiting: a terminal that is closed while it is waited for keeps
-        // the one who waits busy for ever.
+        // Polled without waiting: crossterm never returns from a wait for a terminal that is
+        // closed meanwhile.
         if !event::poll(Duration::ZERO)? {
-            if heard.elapsed() >= TURN {
+            if last_read.elapsed() >= TURN {
                 guide.idle()?;
-                heard = Instant::now();
+                last_read = Instant::now();
             }
             std::thread::sleep(LOOK);
             continue;
         }
         match event::read()? {
-            Event::Key(key) if stops(key) => {
+            Event::Key(key) if is_suspend(key) => {
                 page.leave()?;
                 terminal::stop()?;
                 page.enter()?;
@@ -123,7 +123,7 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
 }
 
 /// True if a key is Ctrl-Z, which suspends the program.
-fn stops(key: KeyEvent) -> bool {
+fn is_suspend(key: KeyEvent) -> bool {
     key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
@@ -150,7 +150,7 @@ fn meaning(key: KeyEvent) -> Option<Key> {
     })
 }
 
-/// A whole terminal for one step. It is as before when this is dropped.
+/// The full screen for one step. Dropping it restores the terminal.
 struct Page(Stdout);
 
 impl Page {

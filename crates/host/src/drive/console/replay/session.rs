@@ -11,7 +11,7 @@ use crate::simulate::sim::spans::{self, Span};
 
 /// Milliseconds of a frame.
 const FRAME_MS: u64 = 20;
-/// Frames without a report for which the pose is taken to be the last one.
+/// The longest gap in frames over which the last reported pose is assumed.
 const HELD: usize = 50;
 /// Frames by which the robot's count and this machine's clock may differ. A line may
 /// come late; a simulated robot falls behind where the machine is too slow.
@@ -22,7 +22,7 @@ const LONGEST_MS: u64 = 86_400_000;
 /// The reason why a file is not a valid session.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SessionError {
-    /// It is another file, or of another format.
+    /// The file is no session, or one of another format.
     #[error("this is no session of `lizard console --record`: its first line has no \"{FORMAT}\"")]
     Format,
     /// A line is no event.
@@ -87,13 +87,13 @@ impl Session {
         }
     }
 
-    /// When the last event happened, ms.
+    /// The time of the last event, ms.
     pub(super) fn end_ms(&self) -> u64 {
         self.entries.last().map_or(0, |last| last.ms)
     }
 
     /// The pulses that make the poses, frame by frame since the session began: none
-    /// while the robot rested or said nothing.
+    /// while the robot rested or was silent.
     pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut resting = false;
@@ -182,7 +182,7 @@ impl Session {
     }
 }
 
-/// Frames begin where milliseconds do.
+/// A frame is a whole number of milliseconds.
 const _: () = assert!(crate::simulate::sim::frame::FRAME == FRAME_MS * CYCLES_PER_MS);
 
 #[cfg(test)]

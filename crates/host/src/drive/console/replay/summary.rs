@@ -6,7 +6,7 @@ use super::super::recorder::Event;
 use super::super::status::Status;
 use super::session::Session;
 
-/// Prints how long it was, what was asked, what was close, what went wrong.
+/// Prints the session's length, commands, smallest margin, supplies and problems.
 pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     let entries = &session.entries;
     let count = |is: fn(&Event) -> bool| entries.iter().filter(|entry| is(&entry.event)).count();

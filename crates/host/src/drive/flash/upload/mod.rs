@@ -5,8 +5,8 @@
 //! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
 //! other pages are written and read back, and that first page comes last.
 //!
-//! A robot alone is written likewise: the first page of its section is made blank, and comes
-//! last. The firmware then meets either a whole robot or none, for which it has a fault and
+//! A robot alone is written in the same way: the first page of its section is made blank, and
+//! comes last. The firmware then finds either a valid robot or none, for which it has a fault and
 //! moves no servo. Since the code stays, it must be code that reads this robot: its mark
 //! ([`lizard_core::numbers::mark`]) is read before anything is written.
 //!
@@ -47,9 +47,9 @@ pub enum Step {
 pub enum Event<'a> {
     /// The contents of the board's flash, reported once.
     Found(Found),
-    /// So many pages of so many are done.
+    /// The number of finished pages, and of all.
     Progress(Step, usize, usize),
-    /// The board is reset, and all begins again.
+    /// The board is reset for another attempt.
     Again {
         /// The reason for another attempt.
         trouble: &'a Trouble,
@@ -79,7 +79,7 @@ pub enum UploadError {
          start of this command"
     )]
     Nobody,
-    /// Not the chip of a UNO.
+    /// The chip is not that of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
     /// A robot alone, and no code that it could be written behind.
@@ -99,7 +99,7 @@ pub enum UploadError {
         /// The version mark of its code.
         mark: Mark,
     },
-    /// It would reach into the boot section.
+    /// The image would reach into the boot section.
     #[error(transparent)]
     TooLong(#[from] TooLong),
     /// A byte was written twice and is still another.
@@ -108,7 +108,7 @@ pub enum UploadError {
          {read:#04x}. The flash is worn out, or the supply too weak. {left}"
     )]
     NotKept {
-        /// Of the byte.
+        /// The address of the byte.
         address: usize,
         /// The byte that was written.
         written: u8,
@@ -169,15 +169,15 @@ pub fn upload<B: Board>(
     loader: &mut Loader<B>,
     image: &Image,
     target: Target,
-    tell: &mut dyn FnMut(Event<'_>),
+    report: &mut dyn FnMut(Event<'_>),
 ) -> Result<Done, UploadError> {
     let mut upload = Upload {
         loader,
         image,
         target,
-        tell,
+        report,
         answered: false,
-        told: false,
+        reported: false,
         left: Left::AsBefore,
     };
     let mut written = vec![false; BOOT / PAGE];
@@ -193,13 +193,13 @@ pub fn upload<B: Board>(
             Err(Stop::Trouble(trouble)) => trouble,
         };
         if attempt == ATTEMPTS || !trouble.may_pass() {
-            return Err(upload.broken(trouble));
+            return Err(upload.failure(trouble));
         }
         let next = match upload.answered {
             true => kind,
             false => loaders.clone().next().unwrap_or(kind),
         };
-        (upload.tell)(Event::Again {
+        (upload.report)(Event::Again {
             trouble: &trouble,
             called: kind,
             next,
@@ -229,16 +229,17 @@ struct Upload<'a, B> {
     loader: &'a mut Loader<B>,
     image: &'a Image,
     target: Target,
-    tell: &'a mut dyn FnMut(Event<'_>),
+    report: &'a mut dyn FnMut(Event<'_>),
     /// The loader has answered once.
     answered: bool,
     /// True if the board's contents were reported.
-    told: bool,
+    reported: bool,
     left: Left,
 }
 
 impl<B: Board> Upload<'_, B> {
-    /// From a reset to the start of the program. Marks what it writes.
+    /// Makes one attempt, from the reset to the start of the program. Marks the pages that it
+    /// writes.
     fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), Stop> {
         self.loader.call(kind)?;
         self.answered = true;
@@ -248,7 +249,7 @@ impl<B: Board> Upload<'_, B> {
         }
         let room = self.target.has_room(self.image, kind);
         room.map_err(|error| Stop::Error(error.into()))?;
-        let flash = self.look(kind.start())?;
+        let flash = self.read_flash(kind.start())?;
         let mut goal = self.image.pages();
         goal.retain(|page| flash[page.range()] != page.bytes);
         if !goal.is_empty() {
@@ -264,8 +265,8 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    /// The page without which the others do nothing: where the chip starts, or where the
-    /// robot's section begins.
+    /// The page that makes the others effective: that of address 0, or the first of the robot's
+    /// section.
     fn first_page(&self) -> Page {
         let mut pages = self.image.pages();
         pages.swap_remove(0)
@@ -289,9 +290,9 @@ impl<B: Board> Upload<'_, B> {
         self.write(&[first])
     }
 
-    /// Reads flash, all of it but the boot loader, and says what is there. Of the code, a
-    /// robot alone needs only the first page.
-    fn look(&mut self, boot: usize) -> Result<Vec<u8>, Stop> {
+    /// Reads flash up to the boot loader and reports its contents. For a robot alone, the first
+    /// page is enough of the code.
+    fn read_flash(&mut self, boot: usize) -> Result<Vec<u8>, Stop> {
         let mut flash = vec![BLANK; BOOT];
         if self.image.is_robot_alone() {
             self.read(&mut flash, 0..1)?;
@@ -303,17 +304,17 @@ impl<B: Board> Upload<'_, B> {
         }
         let found = Found::in_flash(&flash, self.image);
         if self.image.is_robot_alone() {
-            self.fits(&found)?;
+            self.check_code(&found)?;
         }
-        if !self.told {
-            self.told = true;
-            (self.tell)(Event::Found(found));
+        if !self.reported {
+            self.reported = true;
+            (self.report)(Event::Found(found));
         }
         Ok(flash)
     }
 
     /// Checks that the code in flash can read the robot that is to be written behind it.
-    fn fits(&self, found: &Found) -> Result<(), Stop> {
+    fn check_code(&self, found: &Found) -> Result<(), Stop> {
         let found = found.clone();
         Err(Stop::Error(match found.program {
             Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
@@ -328,7 +329,7 @@ impl<B: Board> Upload<'_, B> {
             let address = page * PAGE;
             let read = self.loader.read_page(address)?;
             flash[address..address + PAGE].copy_from_slice(&read);
-            (self.tell)(Event::Progress(Step::Reading, done + 1, of));
+            (self.report)(Event::Progress(Step::Reading, done + 1, of));
         }
         Ok(())
     }
@@ -337,7 +338,7 @@ impl<B: Board> Upload<'_, B> {
     fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
         for (done, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes)?;
-            (self.tell)(Event::Progress(Step::Writing, done + 1, pages.len()));
+            (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
         }
         for (done, page) in pages.iter().enumerate() {
             let mut read = self.loader.read_page(page.address)?;
@@ -353,7 +354,7 @@ impl<B: Board> Upload<'_, B> {
                     left: self.left,
                 }));
             }
-            (self.tell)(Event::Progress(Step::Verifying, done + 1, pages.len()));
+            (self.report)(Event::Progress(Step::Verifying, done + 1, pages.len()));
         }
         Ok(())
     }
@@ -363,7 +364,7 @@ impl<B: Board> Upload<'_, B> {
         Ok(self.loader.write_page(address, bytes)?)
     }
 
-    fn broken(&self, trouble: Trouble) -> UploadError {
+    fn failure(&self, trouble: Trouble) -> UploadError {
         match trouble {
             Trouble::Silent if !self.answered => UploadError::Nobody,
             trouble => UploadError::Broken {

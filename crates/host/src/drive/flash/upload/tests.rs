@@ -1,10 +1,8 @@
 //! An upload to a board whose boot loader is played.
 
-use std::path::Path;
 use std::time::Duration;
 
 use lizard_core::numbers::mark::AT;
-use lizard_robot::Robot;
 
 use super::super::double::Double;
 use super::super::stk500::Patience;
@@ -12,6 +10,7 @@ use super::super::target::Model;
 use super::*;
 use crate::drive::flash::file;
 use crate::shared::firmware::robot_in;
+use crate::shared::robot_file::named as robot;
 
 mod alone;
 mod nano;
@@ -33,7 +32,7 @@ fn with_image() -> Double {
     Double::with(image().bytes())
 }
 
-/// An upload, what it has told, and the board afterwards.
+/// The result of an upload, its events, and the board afterwards.
 struct Run {
     result: Result<Done, UploadError>,
     found: Vec<String>,
@@ -49,7 +48,7 @@ fn run_with(board: Double, image: &Image) -> Run {
     run_as(board, image, Target::default())
 }
 
-/// With what is known of the board.
+/// Uploads to a board with these known facts.
 fn run_as(board: Double, image: &Image, target: Target) -> Run {
     let patience = Patience {
         blinks: Duration::ZERO,
@@ -74,7 +73,7 @@ fn run_as(board: Double, image: &Image, target: Target) -> Run {
 }
 
 impl Run {
-    /// The board has the image, was told to start it, and has its boot loader.
+    /// Checks that the board has the image, was told to start it, and has its boot loader.
     fn is_right(&self) -> Done {
         let done = *self.result.as_ref().expect("it is written");
         let (flash, blank) = (&self.board.flash, Double::blank().flash);
@@ -95,16 +94,9 @@ impl Run {
     }
 }
 
-/// A file of robots/.
-fn robot(name: &str) -> Robot {
-    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
-    Robot::load(robots.join(name).with_extension("toml")).expect("it is right")
-}
-
 /// A board with the firmware and this robot.
 fn with_robot(name: &str) -> Double {
-    let image = file::image(&robot(name)).expect("it fits");
-    Double::with(image.bytes())
+    Double::with(whole(name).bytes())
 }
 
 fn alone(name: &str) -> Image {
@@ -161,7 +153,7 @@ fn only_pages_that_differ_are_written() {
 #[test]
 fn a_loader_that_hears_only_the_third_call_is_waited_for() {
     let mut board = Double::blank();
-    board.deaf = 2;
+    board.ignored_calls = 2;
     let run = run(board);
     run.is_right();
     assert_eq!(run.board.resets, 1);

@@ -10,12 +10,12 @@ pub enum Effect {
     Pop,
     Call(u32),
     Jump(u32),
-    /// To here or to the next instruction.
+    /// Continues here or at the next instruction.
     Branch(u32),
-    /// To the next instruction or over it.
+    /// Continues at the next instruction or behind it.
     Skip,
     Return,
-    /// `ijmp`, `icall` and their extended kin.
+    /// An indirect jump or call: `ijmp`, `icall` and their extended forms.
     Indirect,
     /// Enables interrupts: `sei`.
     EnableInterrupts,
@@ -25,7 +25,7 @@ pub enum Effect {
     StackFromPointer,
     /// The stack pointer gets something else.
     StackFromOther,
-    /// r29:r28 changes by so much.
+    /// Adds a constant to r29:r28.
     AddToPointer(i16),
     /// The low half of a 16-bit subtraction from it: `subi r28`.
     SubtractLow(u8),

@@ -43,11 +43,11 @@ pub struct StackError {
 /// The worst depths, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StackDepth {
-    /// Of the program from reset on, without interrupts.
+    /// The depth of the program from reset on, without interrupts.
     pub main: u16,
-    /// Of the deepest interrupt, its return address included; 0 without interrupts.
+    /// The depth of the deepest interrupt, with its return address; 0 without interrupts.
     pub handler: u16,
-    /// Of the deepest interrupt that lets others in and never returns; 0 without one.
+    /// The depth of the deepest interrupt that enables others and never returns; 0 without one.
     pub last: u16,
     /// First address of SRAM that the stack may use.
     floor: u16,

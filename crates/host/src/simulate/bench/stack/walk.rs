@@ -13,9 +13,9 @@ const RETURN_ADDRESS: i32 = 2;
 /// The context in which the analysed code runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Context {
-    /// From reset on.
+    /// The program from reset on.
     Main,
-    /// As an interrupt's handler, with interrupts off.
+    /// An interrupt's handler, with interrupts off.
     Interrupt,
 }
 
@@ -36,7 +36,7 @@ struct State {
     /// Bytes pushed since the function's beginning.
     depth: i32,
     pointer: Pointer,
-    /// Of a subtraction from r29:r28 whose high half is still to come.
+    /// The low half of a subtraction from r29:r28 whose high half follows.
     low: u8,
     /// The constant that the previous instruction loaded into r26.
     room: Option<u8>,
@@ -66,7 +66,7 @@ impl Shared {
     }
 }
 
-/// The functions walked so far.
+/// The functions analysed so far.
 pub struct Walk<'a> {
     image: &'a Image,
     flash: &'a [u8],
@@ -79,7 +79,8 @@ pub struct Walk<'a> {
 /// The effect of a function on the stack.
 #[derive(Debug, Clone, Copy)]
 pub struct Function {
-    /// The most bytes in it and all that it calls, its own return address left out.
+    /// The most bytes of stack in the function and all that it calls, without its own return
+    /// address.
     pub depth: u16,
     /// True if the function returns. Code behind a call of one that does not return is not its
     /// caller's.
@@ -99,7 +100,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Walks through the function at `entry` and all that it calls.
+    /// Analyses the function at `entry` and all functions that it calls.
     pub fn function(&mut self, entry: u32) -> Result<Function, StackError> {
         match self.known.get(&entry) {
             Some(Some(function)) => return Ok(*function),

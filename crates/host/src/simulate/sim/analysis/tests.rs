@@ -1,4 +1,4 @@
-//! Frames made by hand, and what is found in them.
+//! Hand-made frames and the figures computed from them.
 
 use super::*;
 

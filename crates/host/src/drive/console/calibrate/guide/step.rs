@@ -16,7 +16,7 @@ pub(super) enum Step {
     Saved,
 }
 
-/// All of them, in the order of a calibration.
+/// All steps in the order of a calibration.
 pub(super) const STEPS: [Step; 22] = [
     Step::Begin,
     Step::Horns,

@@ -67,8 +67,8 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
     let left = Calibration::ask(&mut link).expect("it answers");
     assert_eq!(left.servo.a1.trim, 0.9);
-    link.tell("factory").expect("it is taken");
-    link.tell("load").expect("it was saved");
+    link.command("factory").expect("it is taken");
+    link.command("load").expect("it was saved");
     let kept = Calibration::ask(&mut link).expect("it answers");
     assert_eq!(kept.servo.a1.trim, 0.9);
     assert_eq!(kept.servo.a2.trim, -0.5);
@@ -94,8 +94,8 @@ fn who_leaves_at_any_step_leaves_everything_as_it_was() {
         .collect();
     for length in [1, 4, 13, 19] {
         let mut link = robot();
-        link.tell("trim 1 2.50").expect("it is taken");
-        link.tell("boot walk").expect("it is taken");
+        link.command("trim 1 2.50").expect("it is taken");
+        link.command("boot walk").expect("it is taken");
         let before = Calibration::ask(&mut link).expect("it answers");
         let mut guide = Guide::new(&mut link).expect("it answers");
         press(&mut guide, &way[..length]);
@@ -112,7 +112,7 @@ fn who_leaves_at_any_step_leaves_everything_as_it_was() {
 #[test]
 fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
     let mut link = robot();
-    link.tell("trim 1 3").expect("it is taken");
+    link.command("trim 1 3").expect("it is taken");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
     assert_eq!(guide.now.servo.a1.trim, -3.0);
@@ -170,7 +170,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
 }
 
 #[test]
-fn one_can_go_back_and_a_refused_trim_is_said_and_changes_nothing() {
+fn one_can_go_back_and_a_refused_trim_is_shown_and_changes_nothing() {
     let mut link = robot();
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Back, Key::Next, Key::Next]);
@@ -203,7 +203,7 @@ fn to_scales() -> Vec<Key> {
 #[test]
 fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     let mut link = robot();
-    link.tell("trim 1 2.00").expect("it is taken");
+    link.command("trim 1 2.00").expect("it is taken");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &to_scales());
     assert!(

@@ -1,6 +1,7 @@
 //! A robot that is written alone, behind the code that the board has.
 
 use super::*;
+use crate::drive::console::double::PAPER;
 
 #[test]
 fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_last() {
@@ -11,7 +12,7 @@ fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_
     assert_eq!(done.written, pages.len(), "each byte of the robots differs");
     let order = [&pages[..], &[0x6e00]].concat();
     assert_eq!(run.board.written, order);
-    let whole = file::image(&robot("unequal")).expect("it fits");
+    let whole = self::whole("unequal");
     assert!(run.board.flash[..whole.end()] == *whole.bytes());
     assert!(run.board.left, "the firmware is started");
     let [found] = &run.found[..] else {
@@ -22,11 +23,9 @@ fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_
 
 #[test]
 fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/paper.toml");
-    let text = std::fs::read_to_string(path).expect("it is there");
-    let slower = text.replacen("period = 1.25", "period = 1.5", 1);
-    assert_ne!(slower, text);
-    let slower = Robot::parse(&slower).expect("it is right");
+    let slower = PAPER.replacen("period = 1.25", "period = 1.5", 1);
+    assert_ne!(slower, PAPER);
+    let slower = lizard_robot::Robot::parse(&slower).expect("it is right");
     let run = run_with(
         with_robot("paper"),
         &file::robot_alone(&slower).expect("it fits"),
@@ -75,7 +74,7 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
 #[test]
 fn any_one_byte_that_is_lost_while_a_robot_is_written_is_made_up_for() {
     let (before, paper) = (with_robot("own-gaits").flash, alone("paper"));
-    let right = file::image(&robot("paper")).expect("it fits");
+    let right = self::whole("paper");
     let whole = run_with(Double::with(&before), &paper).board;
     let is_right = |run: &Run, at: usize| {
         assert!(run.result.is_ok(), "byte {at}: {}", run.words());

@@ -1,183 +1,17 @@
-//! `lizard console` and its kin as a user meets them, with a simulated UNO at a
+//! `lizard console` and the other commands for a board as a user meets them, with a simulated UNO at a
 //! pseudo terminal. Time is real here, so a test is a few seconds long.
 #![cfg(target_os = "linux")]
 
+mod fixture;
+
 use std::fs::{self, File};
 use std::io::{Read, Write};
-use std::os::fd::OwnedFd;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
-use std::time::Duration;
+use std::path::Path;
+use std::process::{Child, Stdio};
 
 use lizard_time_limit::LIMIT;
-use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
-use rustix::termios::{Winsize, tcsetwinsize};
 
-/// The robot of the simulated board, as the other tests find it: the file that
-/// `LIZARD_ROBOT` names, seen from the root of the project, or robot.toml.
-fn robot() -> PathBuf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    root.join(given.unwrap_or_else(|| "robot.toml".into()))
-}
-
-fn lizard(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(arguments);
-    if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
-        command.arg("--robot").arg(robot());
-    }
-    command
-        .current_dir(folder)
-        .env("XDG_STATE_HOME", folder)
-        .env("TERM", "xterm");
-    command
-}
-
-/// Standard output, standard error, exit code.
-fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = LIMIT
-        .output(&mut lizard(folder, arguments), input.as_bytes())
-        .expect("the program ends");
-    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    (text(stdout), text(stderr), status.code())
-}
-
-/// `lizard sim --pty`: a board with an EEPROM that lasts as long as it runs.
-struct Uno {
-    child: Child,
-    link: PathBuf,
-}
-
-impl Uno {
-    fn at(folder: &Path) -> Self {
-        let link = folder.join("uno");
-        let name = link.display().to_string();
-        let child = lizard(folder, &["sim", "--pty", &name])
-            .stdout(Stdio::null())
-            .spawn()
-            .expect("the program starts");
-        let mut uno = Self { child, link };
-        LIMIT.until("a board of `lizard sim --pty`, or its end", || {
-            uno.link.exists() || uno.has_ended()
-        });
-        assert!(!uno.has_ended(), "no board, run `make firmware`");
-        uno
-    }
-
-    fn port(&self) -> String {
-        self.link.display().to_string()
-    }
-
-    fn has_ended(&mut self) -> bool {
-        self.child.try_wait().expect("it is ours").is_some()
-    }
-}
-
-impl Drop for Uno {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = LIMIT.end_of(&mut self.child);
-        let _ = fs::remove_file(&self.link);
-    }
-}
-
-/// A pseudo terminal: our end, and the one for a program.
-fn terminal() -> (File, OwnedFd, PathBuf) {
-    let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
-    let ours = ours.expect("a pseudo terminal");
-    unlockpt(&ours).expect("it is ours");
-    let path = ptsname(&ours, Vec::new()).expect("it has a name");
-    let path = PathBuf::from(path.to_string_lossy().into_owned());
-    let theirs = File::options()
-        .read(true)
-        .write(true)
-        .open(&path)
-        .expect("it opens");
-    (File::from(ours), theirs.into(), path)
-}
-
-/// [`terminal`], 100 columns wide.
-fn wide_terminal() -> (File, OwnedFd) {
-    let (ours, theirs, _) = terminal();
-    let size = Winsize {
-        ws_row: 30,
-        ws_col: 100,
-        ws_xpixel: 0,
-        ws_ypixel: 0,
-    };
-    tcsetwinsize(&theirs, size).expect("it takes a size");
-    (ours, theirs)
-}
-
-/// A program at a terminal of its own, 100 columns wide.
-struct AtTerminal {
-    child: Child,
-    keys: File,
-    seen: std::sync::mpsc::Receiver<Vec<u8>>,
-    text: String,
-}
-
-impl AtTerminal {
-    fn start(mut command: Command) -> Self {
-        let (ours, theirs) = wide_terminal();
-        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
-        let child = command
-            .stdin(end())
-            .stdout(end())
-            .stderr(end())
-            .spawn()
-            .expect("the program starts");
-        let mut screen = ours.try_clone().expect("another of it");
-        let (send, seen) = std::sync::mpsc::channel();
-        std::thread::spawn(move || {
-            let mut bytes = [0; 4096];
-            while let Ok(count @ 1..) = screen.read(&mut bytes) {
-                if send.send(bytes[..count].to_vec()).is_err() {
-                    break;
-                }
-            }
-        });
-        Self {
-            child,
-            keys: ours,
-            seen,
-            text: String::new(),
-        }
-    }
-
-    fn press(&mut self, keys: &str) {
-        self.keys.write_all(keys.as_bytes()).expect("it takes keys");
-    }
-
-    /// Waits until the screen has shown this, after what was waited for before.
-    fn wait_for(&mut self, words: &str) {
-        let (mut found, mut ended) = (None, false);
-        LIMIT.comes(|| {
-            ended = loop {
-                match self.seen.try_recv() {
-                    Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
-                    Err(reason) => break reason == TryRecvError::Disconnected,
-                }
-            };
-            found = self.text.find(words);
-            found.is_some() || ended
-        });
-        let Some(at) = found else {
-            panic!("waited up to {LIMIT} for `{words}`, but {:?}", self.text);
-        };
-        self.text.drain(..at + words.len());
-    }
-
-    fn exit_code(mut self) -> Option<i32> {
-        LIMIT.end_of(&mut self.child).expect("it ends").code()
-    }
-}
+use fixture::{AtTerminal, Device, Uno, lizard, run, wide_terminal};
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
@@ -340,8 +174,7 @@ fn a_kept_session_is_drawn_and_summed_up() {
 fn a_port_that_another_program_has_open_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::at(folder.path());
-    let other = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
-    let mut other = other;
+    let mut other = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
     other.wait_for("# lizard ");
     let (_, error, code) = run(folder.path(), &["backup", "a.toml", &uno.port()], "");
     let who = format!("is open in lizard (process {})", other.child.id());
@@ -354,23 +187,12 @@ fn a_port_that_another_program_has_open_is_refused() {
 #[test]
 fn what_is_no_lizard_is_named_by_what_it_says() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut ours, theirs, path) = terminal();
-    // Else this test would be the program that has the port open.
-    drop(theirs);
-    let (heard, until) = mpsc::channel::<()>();
-    let talks = std::thread::spawn(move || {
-        let pause = Duration::from_millis(50);
-        while until.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
-            // Nobody may have it open.
-            let _ = ours.write_all(b"Grbl 1.1h ['$' for help]\r\n");
-        }
+    let device = Device::start(|line| {
+        // Nobody may have it open.
+        let _ = line.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
-    let port = path.display().to_string();
-    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &port], "");
-    drop(heard);
-    LIMIT
-        .within("the end of what talks", || talks.join())
-        .expect("it has ended");
+    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &device.port], "");
+    device.stop();
     assert_eq!(code, Some(1), "{error}");
     let words = "this is no lizard: it says `Grbl 1.1h ['$' for help]`";
     assert!(error.contains(words), "{error}");
@@ -383,33 +205,19 @@ fn what_is_no_lizard_is_named_by_what_it_says() {
 #[test]
 fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut ours, theirs, path) = terminal();
-    drop(theirs);
-    let (heard, until) = mpsc::channel::<()>();
-    let board = std::thread::spawn(move || {
-        let pause = Duration::from_millis(20);
-        let mut asked: Vec<u8> = Vec::new();
-        // Nobody may have it open; then reading fails.
-        while until.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
-            let mut bytes = [0; 64];
-            let count = ours.read(&mut bytes).unwrap_or_default();
-            asked.extend(&bytes[..count]);
-            if asked == b"status\n" {
-                let _ = ours.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
-            }
+    let mut asked: Vec<u8> = Vec::new();
+    let device = Device::start(move |line| {
+        let mut bytes = [0; 64];
+        // If nobody has it open, reading fails.
+        let count = line.read(&mut bytes).unwrap_or_default();
+        asked.extend(&bytes[..count]);
+        if asked == b"status\n" {
+            let _ = line.write_all(b"ok gait=rest pose=1,2,3,4 fault=none\r\n");
         }
     });
-    let arguments = [
-        "console",
-        "--record",
-        "a.jsonl",
-        &path.display().to_string(),
-    ];
+    let arguments = ["console", "--record", "a.jsonl", &device.port];
     let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
-    drop(heard);
-    LIMIT
-        .within("the end of the board", || board.join())
-        .expect("it has ended");
+    device.stop();
     assert_eq!(code, Some(1), "{error}");
     let words = "lizard: the robot did not take 3 of 3 lines, the first `walk`: no answer\n";
     assert!(error.ends_with(words), "{error}");
@@ -588,9 +396,7 @@ fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
         person.child.try_wait().expect("it is ours").is_some()
     });
     LIMIT.comes(|| {
-        while let Ok(bytes) = person.seen.try_recv() {
-            person.text.push_str(&String::from_utf8_lossy(&bytes));
-        }
+        person.read();
         person.text.contains("\x1b[?2004l")
     });
     assert!(!person.text.contains("goes on"), "{:?}", person.text);
@@ -599,7 +405,7 @@ fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
 #[test]
 fn what_a_robots_file_says_cannot_command_the_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = include_str!("../../../robots/paper.toml");
+    let text = include_str!("../../../../robots/paper.toml");
     let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
     fs::write(folder.path().join("bad.toml"), text).expect("it is written");
     let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");

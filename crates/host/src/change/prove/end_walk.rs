@@ -1,0 +1,197 @@
+//! The pairs of positions of an end, decided by the guard and by geometry.
+
+use lizard_core::guard::five_bar::EndMargins;
+use lizard_core::numbers::cells::Cells;
+use lizard_core::numbers::part;
+use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
+use lizard_robot::{CellMaps, CoreRobot, Robot};
+
+use super::positions::Positions;
+use super::rows::{Share, columns, eight_by_eight, lanes, rows_of, sine, splat};
+use super::tally::{STEPS_BAND, Tally, margin_band};
+
+/// The pairs of an end.
+pub struct EndWalk<'a> {
+    fixed: lizard_core::guard::five_bar::FiveBar<'a>,
+    exact: FiveBar,
+    /// Type-2 and type-1, as robot.toml and as the firmware has them.
+    limits: [f64; 2],
+    fixed_limits: [i16; 2],
+    /// The least margin of a leg, as the firmware has it.
+    fixed_leg: i16,
+    end: End,
+    cells: Cells<'a>,
+    margin_band: f64,
+    crossing_band: f64,
+}
+
+impl<'a> EndWalk<'a> {
+    pub fn new(robot: &Robot, guard: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
+        let limits = guard.limits();
+        let [margin_band, crossing_band] = bands(robot, end);
+        let map = match end {
+            End::Head => &maps.head,
+            End::Tail => &maps.tail,
+        };
+        Self {
+            fixed: guard.end(part(end)),
+            exact: robot.lizard().end(end),
+            limits: [robot.limits().type2, robot.limits().type1],
+            fixed_limits: [limits.type2.0, limits.type1.0],
+            fixed_leg: limits.leg.0,
+            end,
+            cells: map.cells(),
+            margin_band,
+            crossing_band,
+        }
+    }
+
+    pub fn walk(
+        &self,
+        [left, right]: [&Positions; 2],
+        share: Share,
+        cut: usize,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Tally {
+        rows_of(left, cut, progress, |row| {
+            let mut tally = Tally::default();
+            let crank = splat(left.exact[row]);
+            eight_by_eight(columns(share, row, right.fixed.len()), |eight, count| {
+                let other = lanes(&right.exact, eight);
+                let pose = self.exact.shape(AssemblyMode::Ahead, crank, other);
+                let closes = self.exact.closes(&pose);
+                let Lanes(type2) = pose.type2;
+                let Lanes(type1_left) = pose.type1_left();
+                let Lanes(type1_right) = pose.type1_right();
+                let Lanes(across) = pose.gap.x;
+                for lane in 0..count {
+                    let column = eight[lane];
+                    let truth = EndTruth {
+                        closes: closes[lane],
+                        type2: type2[lane],
+                        type1: [type1_left[lane], type1_right[lane]],
+                        across: across[lane],
+                    };
+                    let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
+                    let place = || {
+                        format!(
+                            "{} at {:.4} and {:.4} deg",
+                            self.end.name(),
+                            left.degrees[row],
+                            right.degrees[column]
+                        )
+                    };
+                    self.compare(&mut tally, margins, &truth, place);
+                    let [sweep, other] = [left.sweep(row), right.sweep(column)];
+                    // Their rows are A1 and A3, their columns A2 and A4.
+                    let held = match self.end {
+                        End::Head => self.cells.hold(sweep, other),
+                        End::Tail => self.cells.hold(other, sweep),
+                    };
+                    if held {
+                        let legs = [left.fixed[row], right.fixed[column]];
+                        let accepted = self.accepts(margins)
+                            && legs.iter().all(|leg| leg.sin >= self.fixed_leg);
+                        tally.certify(accepted, place);
+                    }
+                }
+            });
+            tally
+        })
+    }
+
+    /// True if the guard accepts an end with these margins.
+    #[inline(always)]
+    fn accepts(&self, margins: EndMargins) -> bool {
+        let [type2, type1] = self.fixed_limits;
+        margins.type2.0 >= type2 && margins.type1_left.0 >= type1 && margins.type1_right.0 >= type1
+    }
+
+    #[inline(always)]
+    fn compare(
+        &self,
+        tally: &mut Tally,
+        margins: EndMargins,
+        truth: &EndTruth,
+        place: impl Fn() -> String,
+    ) {
+        tally.pairs += 1;
+        let fixed = self.accepts(margins);
+        let EndMargins {
+            type2,
+            type1_left,
+            type1_right,
+        } = margins;
+        // Where the couplers fold, no other margin matters.
+        if truth.closes && truth.type2 > self.limits[0] - self.margin_band {
+            Tally::raise(&mut tally.type2, (sine(type2.0).abs() - truth.type2).abs());
+            for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
+                Tally::raise(&mut tally.type1, (sine(fixed.0) - exact).abs());
+            }
+        }
+        let (clear, crossed) = truth.clear_by(self.limits);
+        let exact = clear >= 0.0 && crossed > 0.0;
+        if fixed != exact {
+            // Of what decides, how far it is beyond its limit.
+            let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
+            let (by, band) = if by_crossing {
+                (crossed.abs(), self.crossing_band)
+            } else {
+                (clear.abs(), self.margin_band)
+            };
+            tally.differ(by_crossing, by, band, || {
+                format!(
+                    "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
+                    place(),
+                    if fixed { "safe" } else { "unsafe" },
+                    if exact { "safe" } else { "unsafe" },
+                    sine(type2.0),
+                    sine(type1_left.0),
+                    sine(type1_right.0),
+                    truth.type2,
+                    truth.type1[0],
+                    truth.type1[1],
+                    truth.across,
+                )
+            });
+        }
+    }
+}
+
+/// An end at a pair of angles, in floating point.
+struct EndTruth {
+    closes: bool,
+    type2: f64,
+    type1: [f64; 2],
+    /// The distance from the left crank tip to the right one across the end, mm.
+    across: f64,
+}
+
+impl EndTruth {
+    /// The clearances: of the least margin above its limit, a sine; and of the crank tips from
+    /// crossing, mm.
+    #[inline(always)]
+    fn clear_by(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
+        if !self.closes {
+            return (-least2, self.across);
+        }
+        let type1 = self.type1[0].min(self.type1[1]) - least1;
+        ((self.type2 - least2).min(type1), self.across)
+    }
+}
+
+/// The bands of an end in which decisions may differ: a sine around the limit of a margin, and
+/// mm around the crossing of its crank tips.
+pub fn bands(robot: &Robot, end: End) -> [f64; 2] {
+    let step = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
+    let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step);
+    [band, STEPS_BAND * step]
+}
+
+/// The core's name of an end.
+fn part(end: End) -> part::End {
+    match end {
+        End::Head => part::End::Head,
+        End::Tail => part::End::Tail,
+    }
+}

@@ -1,0 +1,94 @@
+//! Rows and columns of positions, walked on all cores and eight columns at a time.
+
+use lizard_core::numbers::units::ONE_Q15;
+use lizard_kinematics::{Lanes, Vector};
+use rayon::prelude::*;
+
+use super::positions::Positions;
+use super::tally::Tally;
+
+/// Columns that floating point takes at once.
+pub const LANES: usize = 8;
+
+/// Pieces that the rows of an end or a side are cut into.
+pub const CUTS: usize = 64;
+
+/// A sample of the pairs: in each row, the pairs whose column has a certain remainder modulo
+/// `one_in`. The remainder differs from row to row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// One pair in N is checked; at least 1.
+    pub one_in: u32,
+    /// Offset of the selected pairs, below `one_in`.
+    pub offset: u32,
+}
+
+impl Share {
+    /// The sample that contains all pairs.
+    pub const ALL: Self = Self {
+        one_in: 1,
+        offset: 0,
+    };
+}
+
+/// The columns of a row that belong to a share.
+pub fn columns(share: Share, row: usize, count: usize) -> impl Iterator<Item = usize> {
+    let first = (row + share.offset as usize) % share.one_in as usize;
+    (first..count).step_by(share.one_in as usize)
+}
+
+/// Walks the rows of a piece on all cores.
+pub fn rows_of(
+    first: &Positions,
+    cut: usize,
+    progress: &(dyn Fn(u64) + Sync),
+    row: impl Fn(usize) -> Tally + Sync,
+) -> Tally {
+    let rows = first.fixed.len();
+    (rows * cut / CUTS..rows * (cut + 1) / CUTS)
+        .into_par_iter()
+        .map(|index| {
+            let tally = row(index);
+            progress(1);
+            tally
+        })
+        .reduce(Tally::default, Tally::and)
+}
+
+/// The columns of a row, eight at a time; the last ones are repeated.
+pub fn eight_by_eight(
+    mut columns: impl Iterator<Item = usize>,
+    mut take: impl FnMut([usize; LANES], usize),
+) {
+    loop {
+        let mut eight = [0; LANES];
+        let mut count = 0;
+        for column in columns.by_ref().take(LANES) {
+            eight[count..].fill(column);
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        take(eight, count);
+    }
+}
+
+#[inline]
+pub fn lanes(of: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
+    Vector::new(
+        Lanes(columns.map(|column| of[column].x)),
+        Lanes(columns.map(|column| of[column].y)),
+    )
+}
+
+#[inline]
+pub fn splat(vector: Vector) -> Vector<Lanes<LANES>> {
+    Vector::new(Lanes([vector.x; LANES]), Lanes([vector.y; LANES]))
+}
+
+/// A margin of the firmware as a sine.
+#[inline]
+pub fn sine(q15: i16) -> f64 {
+    f64::from(q15) / f64::from(ONE_Q15)
+}

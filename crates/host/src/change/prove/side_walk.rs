@@ -1,0 +1,108 @@
+//! The pairs of positions of a side, and the positions of a leg, decided by the guard and by
+//! geometry.
+
+use lizard_core::guard::trig::Direction;
+use lizard_core::numbers::cells::Cells;
+use lizard_core::numbers::part;
+use lizard_kinematics::{End, Lanes, Side, Slider};
+use lizard_robot::{CellMaps, CoreRobot, Robot};
+
+use super::positions::Positions;
+use super::rows::{Share, columns, eight_by_eight, lanes, rows_of, sine, splat};
+use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
+
+/// The pairs of a side.
+pub struct SideWalk<'a> {
+    side: Side,
+    cells: Cells<'a>,
+    fixed: lizard_core::numbers::slider::Slider,
+    exact: Slider,
+    stroke: [f64; 2],
+    steps_per_mm: f64,
+}
+
+impl<'a> SideWalk<'a> {
+    pub fn new(robot: &Robot, guard: &CoreRobot, maps: &'a CellMaps, side: Side) -> Self {
+        let (fixed, map) = match side {
+            Side::Left => (guard.side(part::Side::Left), &maps.left),
+            Side::Right => (guard.side(part::Side::Right).mirrored(), &maps.right),
+        };
+        Self {
+            side,
+            cells: map.cells(),
+            fixed,
+            exact: robot.lizard().side(side),
+            stroke: [robot.limits().stroke_min, robot.limits().stroke_max],
+            steps_per_mm: f64::from(1u32 << fixed.scale.bits),
+        }
+    }
+
+    pub fn walk(
+        &self,
+        [front, rear]: [&Positions; 2],
+        share: Share,
+        cut: usize,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Tally {
+        let turned = |direction: Direction| match self.side {
+            Side::Left => direction,
+            Side::Right => direction.mirrored(),
+        };
+        let band = STEPS_BAND / self.steps_per_mm;
+        rows_of(front, cut, progress, |row| {
+            let mut tally = Tally::default();
+            let crank = turned(front.fixed[row]);
+            let front_arm = splat(self.side.front_arm(front.exact[row]));
+            eight_by_eight(columns(share, row, rear.fixed.len()), |eight, count| {
+                // Positions are in the frame of their end, arms in the chassis'.
+                let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
+                let pose = self.exact.shape(self.side.rear_arm(crank_rear), front_arm);
+                let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
+                for lane in 0..count {
+                    let column = eight[lane];
+                    tally.pairs += 1;
+                    let length_sq = self.fixed.length_sq(&crank, &turned(rear.fixed[column]));
+                    let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
+                    Tally::raise(&mut tally.travel, (length - d[lane]).abs());
+                    let fixed = self.fixed.allows(length_sq);
+                    if self.cells.hold(front.sweep(row), rear.sweep(column)) {
+                        tally.certify(fixed, || {
+                            format!(
+                                "{} side at {:.4} and {:.4} deg",
+                                self.side, front.degrees[row], rear.degrees[column]
+                            )
+                        });
+                    }
+                    let [min, max] = self.stroke;
+                    let clear = (s[lane] - min).min(max - s[lane]);
+                    if fixed != (clear >= 0.0) {
+                        tally.differ(true, clear.abs(), band, || {
+                            format!(
+                                "at {:.4} and {:.4} deg the slider is {length:.5} mm long by the guard, {:.5} by floating point",
+                                front.degrees[row], rear.degrees[column], d[lane]
+                            )
+                        });
+                    }
+                }
+            });
+            tally
+        })
+    }
+}
+
+/// The positions of one leg.
+pub fn leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
+    let mut tally = Tally::default();
+    let least = guard.limits().leg.0;
+    for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
+        tally.pairs += 1;
+        Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
+        let clear = exact.y - robot.limits().leg;
+        if (fixed.sin >= least) != (clear >= 0.0) {
+            tally.differ(false, clear.abs(), MARGIN_BAND, || {
+                format!("at {:.4} deg", positions.degrees[position])
+            });
+        }
+    }
+    tally
+}

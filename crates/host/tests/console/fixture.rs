@@ -1,0 +1,215 @@
+//! Simulated boards, terminals and devices for the tests of the console.
+
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use lizard_time_limit::LIMIT;
+use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
+use rustix::termios::{Winsize, tcsetwinsize};
+
+/// The robot of the simulated board, as the other tests find it: the file that
+/// `LIZARD_ROBOT` names, seen from the root of the project, or robot.toml.
+fn robot() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    root.join(given.unwrap_or_else(|| "robot.toml".into()))
+}
+
+pub fn lizard(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(arguments);
+    if arguments.iter().any(|word| ["sim", "--sim"].contains(word)) {
+        command.arg("--robot").arg(robot());
+    }
+    command
+        .current_dir(folder)
+        .env("XDG_STATE_HOME", folder)
+        .env("TERM", "xterm");
+    command
+}
+
+/// Standard output, standard error, exit code.
+pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = LIMIT
+        .output(&mut lizard(folder, arguments), input.as_bytes())
+        .expect("the program ends");
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    (text(stdout), text(stderr), status.code())
+}
+
+/// `lizard sim --pty`: a board with an EEPROM that lasts as long as it runs.
+pub struct Uno {
+    child: Child,
+    link: PathBuf,
+}
+
+impl Uno {
+    pub fn at(folder: &Path) -> Self {
+        let link = folder.join("uno");
+        let name = link.display().to_string();
+        let child = lizard(folder, &["sim", "--pty", &name])
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let mut uno = Self { child, link };
+        LIMIT.until("a board of `lizard sim --pty`, or its end", || {
+            uno.link.exists() || uno.has_ended()
+        });
+        assert!(!uno.has_ended(), "no board, run `make firmware`");
+        uno
+    }
+
+    pub fn port(&self) -> String {
+        self.link.display().to_string()
+    }
+
+    fn has_ended(&mut self) -> bool {
+        self.child.try_wait().expect("it is ours").is_some()
+    }
+}
+
+impl Drop for Uno {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = LIMIT.end_of(&mut self.child);
+        let _ = fs::remove_file(&self.link);
+    }
+}
+
+/// A pseudo terminal: our end, and the one for a program.
+pub fn terminal() -> (File, OwnedFd, PathBuf) {
+    let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
+    let ours = ours.expect("a pseudo terminal");
+    unlockpt(&ours).expect("it is ours");
+    let path = ptsname(&ours, Vec::new()).expect("it has a name");
+    let path = PathBuf::from(path.to_string_lossy().into_owned());
+    let theirs = File::options()
+        .read(true)
+        .write(true)
+        .open(&path)
+        .expect("it opens");
+    (File::from(ours), theirs.into(), path)
+}
+
+/// [`terminal`], 100 columns wide.
+pub fn wide_terminal() -> (File, OwnedFd) {
+    let (ours, theirs, _) = terminal();
+    let size = Winsize {
+        ws_row: 30,
+        ws_col: 100,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    };
+    tcsetwinsize(&theirs, size).expect("it takes a size");
+    (ours, theirs)
+}
+
+/// A program at a terminal of its own, 100 columns wide.
+pub struct AtTerminal {
+    pub child: Child,
+    pub keys: File,
+    seen: Receiver<Vec<u8>>,
+    pub text: String,
+}
+
+impl AtTerminal {
+    pub fn start(mut command: Command) -> Self {
+        let (ours, theirs) = wide_terminal();
+        let end = || Stdio::from(theirs.try_clone().expect("another of it"));
+        let child = command
+            .stdin(end())
+            .stdout(end())
+            .stderr(end())
+            .spawn()
+            .expect("the program starts");
+        let mut screen = ours.try_clone().expect("another of it");
+        let (send, seen) = mpsc::channel();
+        std::thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while let Ok(count @ 1..) = screen.read(&mut bytes) {
+                if send.send(bytes[..count].to_vec()).is_err() {
+                    break;
+                }
+            }
+        });
+        Self {
+            child,
+            keys: ours,
+            seen,
+            text: String::new(),
+        }
+    }
+
+    pub fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).expect("it takes keys");
+    }
+
+    /// Reads the screen's output so far; true at its end.
+    pub fn read(&mut self) -> bool {
+        loop {
+            match self.seen.try_recv() {
+                Ok(bytes) => self.text.push_str(&String::from_utf8_lossy(&bytes)),
+                Err(reason) => return reason == TryRecvError::Disconnected,
+            }
+        }
+    }
+
+    /// Waits until the screen shows these words after those of the previous wait.
+    pub fn wait_for(&mut self, words: &str) {
+        let (mut found, mut ended) = (None, false);
+        LIMIT.comes(|| {
+            ended = self.read();
+            found = self.text.find(words);
+            found.is_some() || ended
+        });
+        let Some(at) = found else {
+            panic!("waited up to {LIMIT} for `{words}`, but {:?}", self.text);
+        };
+        self.text.drain(..at + words.len());
+    }
+
+    pub fn exit_code(mut self) -> Option<i32> {
+        LIMIT.end_of(&mut self.child).expect("it ends").code()
+    }
+}
+
+/// A device at a pseudo terminal that is no simulated board, in a thread of its own.
+pub struct Device {
+    pub port: String,
+    end: mpsc::Sender<()>,
+    thread: JoinHandle<()>,
+}
+
+impl Device {
+    /// A device that calls `act` with its end of the line, again and again.
+    pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
+        let (mut ours, theirs, path) = terminal();
+        // Else this test would be the program that has the port open.
+        drop(theirs);
+        let (end, ended) = mpsc::channel::<()>();
+        let thread = std::thread::spawn(move || {
+            let pause = Duration::from_millis(20);
+            while ended.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+                act(&mut ours);
+            }
+        });
+        let port = path.display().to_string();
+        Self { port, end, thread }
+    }
+
+    pub fn stop(self) {
+        drop(self.end);
+        let ended = LIMIT.within("the end of the device", || self.thread.join());
+        ended.expect("it has ended");
+    }
+}
