@@ -48,8 +48,8 @@ fn cell(at: usize) -> &'static Byte {
     unsafe { &*(&raw const KEPT).cast::<Byte>().add(at) }
 }
 
-/// Why the program begins, and what it did until then; from now on it runs. Once,
-/// with interrupts off, before the watchdog starts.
+/// Returns the cause of the reset and the state from before it, and marks the program as
+/// running. Once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
     let register = cpu.mcusr().read();
     let flags = Flags {
@@ -63,12 +63,12 @@ pub fn restart(cpu: &CPU) -> Restart {
     kept::begin(&Ram, flags)
 }
 
-/// Keeps what the servos do.
+/// Stores the servos' state.
 pub fn keep(stance: &Stance, brown_outs: u8) {
     kept::keep(&Ram, stance, brown_outs);
 }
 
-/// From the watchdog's interrupt: the program has hung.
+/// Marks the program as hung; called by the watchdog's interrupt.
 pub fn mark_hung() {
     kept::mark_hung(&Ram);
 }

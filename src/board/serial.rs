@@ -13,8 +13,8 @@ use lizard_core::console::line::GARBLED;
 
 use servo_pulses::cells::{Byte, Counter};
 
-/// A whole line: main may look away for 64 bytes, 89 000 cycles, seven times what
-/// a frame may take.
+/// Room for a complete line: main may be busy for 64 bytes, 89 000 cycles, seven times the
+/// limit of a frame.
 const RECEIVE: usize = 64;
 
 /// The longest line of the console fits, and numbers modulo 256 are the cheapest.
@@ -52,7 +52,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Bytes that fit.
+    /// The number of bytes that fit in.
     fn room(&self) -> u8 {
         Self::CAPACITY - self.head.get().wrapping_sub(self.tail.get())
     }
@@ -109,12 +109,12 @@ pub fn read() -> Option<u8> {
     RECEIVED.take()
 }
 
-/// Whether [`read`] would give a byte.
+/// True if [`read`] would return a byte.
 pub fn pending() -> bool {
     !RECEIVED.is_empty()
 }
 
-/// Whether bytes wait to be sent.
+/// True while bytes wait to be sent.
 pub fn sending() -> bool {
     !TO_SEND.is_empty()
 }

@@ -1,4 +1,4 @@
-//! What an AVR can do and Rust does not reach.
+//! AVR features that Rust does not reach by itself.
 //!
 //! The firmware's core is plain Rust without `unsafe`, so that it runs and is tested on
 //! any machine. Two features of this processor need more than that: its second address

@@ -205,7 +205,7 @@ impl World {
                 break;
             }
             let step = self.running.main.step(&mut self.running.board);
-            if step != Step::Worked || self.running.board.memory.is_asked_in_vain() {
+            if step != Step::Worked || self.running.board.memory.was_polled_busy() {
                 // It is read when there is time for it.
                 break;
             }

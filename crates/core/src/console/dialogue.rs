@@ -27,19 +27,19 @@ pub const LONGEST_LINE: u8 = 250;
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Output {
-    /// What robot this is, once after power-on.
+    /// The firmware's version and the robot's name, once after power-on.
     Banner,
     /// The answer to the last line received, or a part of it.
     Answer(Answer),
     /// A notice that comes without a command.
     Notice(Notice),
-    /// Why the guard holds the robot.
+    /// The reason for which the guard holds the robot.
     Held,
     /// The pose, as `watch` asked for it.
     Report,
 }
 
-/// Somebody at the other end of a serial line.
+/// The console at one serial line: the line being received, and the answer being written.
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
@@ -55,7 +55,7 @@ impl Default for Console {
 }
 
 impl Console {
-    /// The banner is not yet written, and nothing has come.
+    /// A console that has received nothing; it writes the banner first.
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
@@ -65,7 +65,7 @@ impl Console {
         }
     }
 
-    /// A frame has passed.
+    /// Advances the timer of `watch` by a frame.
     pub fn frame(&mut self) {
         self.watch.frame();
     }
@@ -80,11 +80,11 @@ impl Console {
     // Out of line, as the next: half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
-        control.byte_came();
+        control.note_byte();
         let Some(ended) = self.line.push(byte) else {
             return;
         };
-        control.line_came();
+        control.note_line();
         let answer = match ended {
             Ended::Line => self.obey(control),
             Ended::TooLong => Err(Answer::Misread(Misread::TooLong)),
@@ -93,8 +93,8 @@ impl Console {
         self.answer = answer.unwrap_or_else(Some);
     }
 
-    /// Does what the line says. No answer yet where the memory has to do something
-    /// first: then [`Console::done`] has to follow.
+    /// Executes the line. Returns no answer while the EEPROM is still being written: then
+    /// [`Console::done`] has to follow.
     #[inline(never)]
     fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
@@ -121,7 +121,7 @@ impl Console {
         })
     }
 
-    /// What was to be done later has been done, or not.
+    /// Reports the outcome of an order that had to wait for the EEPROM.
     pub fn done(&mut self, outcome: Result<(), Refusal>) {
         self.answer = Some(match outcome {
             Ok(()) => Answer::Done,
@@ -129,10 +129,10 @@ impl Console {
         });
     }
 
-    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
-    /// is, once after power-on; an answer or a part of it; a notice; why
-    /// the guard holds the robot; the pose, as `watch` asked for it. Of the longest
-    /// line it writes one part, and the next calls the others.
+    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: the banner, once after
+    /// power-on; an answer or a part of it; a notice; the reason for which the guard holds
+    /// the robot; or the pose, as `watch` asked for it. The longest line, `status`, is written
+    /// in parts, one with each call.
     ///
     /// # Errors
     /// Those of `out`.
@@ -179,7 +179,7 @@ impl Console {
         out.write_char('\n')
     }
 
-    /// What is to be written next: the one order of everything that may wait.
+    /// The output to write next, in a fixed order of priority.
     const fn next_output(&self, control: &Control) -> Option<Output> {
         if !self.greeted {
             Some(Output::Banner)

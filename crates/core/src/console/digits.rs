@@ -1,4 +1,4 @@
-//! Numbers as text: the chip has no division worth its time, and its texts are in flash.
+//! Prints numbers without division, which is slow on the chip.
 
 use lizard_avr::flash;
 use ufmt::uWrite;

@@ -1,4 +1,4 @@
-//! How the console's lines are written.
+//! Prints the lines of the console.
 
 use ufmt::uWrite;
 
@@ -22,15 +22,15 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The longest line of gaits' names, without its line end: a frame may wait for one.
+/// The longest line of gaits' names, without its line end: it delays a frame by so much.
 pub(super) const LONGEST_NAMES: u8 = 125;
 
-/// Places of the lines of `cal`.
+/// The numbers of the lines that `cal` prints.
 const CAL_BOOT: u8 = 4;
 const CAL_DEADMAN: u8 = 5;
 const CAL_END: u8 = 6;
 
-/// Prints a line of an answer; returns what is left of it.
+/// Prints a line of an answer; returns the part that is still to be printed.
 #[inline(never)]
 pub(super) fn answer<W>(
     out: &mut W,
@@ -87,8 +87,8 @@ where
     Ok(None)
 }
 
-/// `# gaits: stand|walk|...`, as many as a line takes; returns the first that
-/// it has no room for.
+/// Prints `# gaits: stand|walk|...`, as many names as fit in a line; returns the first
+/// gait that did not fit.
 fn gaits<W>(out: &mut W, first: GaitId, robot: &Robot) -> Result<Option<GaitId>, W::Error>
 where
     W: uWrite + ?Sized,
@@ -144,7 +144,7 @@ where
     pose(out, motion)
 }
 
-/// ` margin=0.661 speed=100 frames=321`
+/// Prints ` margin=0.661 speed=100 frames=321`.
 fn margin<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
@@ -159,8 +159,8 @@ where
     digits::count(out, Text::StatusFrames, motion.frames())
 }
 
-/// ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
-/// measured.
+/// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
+/// the rail only if it is measured.
 #[inline(never)]
 fn health<W>(out: &mut W, control: &Control, counters: Counters) -> Result<(), W::Error>
 where
@@ -198,7 +198,7 @@ where
     Ok(())
 }
 
-/// A line of `cal`; false after the last one, which is `ok cal`.
+/// Prints a line of `cal`; returns false after the last one, which is `ok cal`.
 #[inline(never)]
 fn settings<W>(out: &mut W, line: u8, control: &Control) -> Result<bool, W::Error>
 where
@@ -248,7 +248,7 @@ where
     }
 }
 
-/// Prints what comes without a command.
+/// Prints a notice, a line that comes without a command.
 pub(super) fn notice<W>(out: &mut W, notice: Notice, control: &Control) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
@@ -292,7 +292,7 @@ where
     }
 }
 
-/// ` pose=`, and the chassis angles of the four servos.
+/// Prints ` pose=` and the chassis angles of the four servos.
 pub(super) fn pose<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,
@@ -301,14 +301,14 @@ where
     digits::angles(out, motion.pose(), motion.robot())
 }
 
-/// A sweep in degrees with two decimals.
+/// Prints a sweep in degrees with two decimals.
 fn sweep<W: uWrite + ?Sized>(out: &mut W, sweep: Sweep) -> Result<(), W::Error> {
     let size = Angle(sweep.0.unsigned_abs()).centideg();
     let centideg = i32::from(size);
     digits::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
-/// `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
+/// Prints `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
 pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, robot: &Robot) -> Result<(), W::Error> {
     Text::Banner.print(out)?;
     Text::Version.print(out)?;

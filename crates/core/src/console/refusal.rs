@@ -93,7 +93,7 @@ fn print_code<W: uWrite + ?Sized>(code: u8, out: &mut W) -> Result<(), W::Error>
     number(out, code.into(), 0)?;
     out.write_char(' ')
 }
-/// `A2 reaches 311.41..131.41`.
+/// Prints `A2 reaches 311.41..131.41`.
 fn print_travel<W>(servo: Servo, motion: &Motion, out: &mut W) -> Result<(), W::Error>
 where
     W: uWrite + ?Sized,

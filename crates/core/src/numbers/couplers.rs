@@ -37,7 +37,7 @@ pub struct Tables<'a> {
 }
 
 impl Tables<'_> {
-    /// None at all: nothing is known of such couplers.
+    /// No tables, so that no lean is known.
     pub const NONE: Self = Self {
         rise: None,
         stretched: None,
@@ -52,9 +52,9 @@ lizard_avr::plain! {
     pub struct Coupling {
         left: i16,
         right: i16,
-        /// `R` in steps of `s`, a quarter of the bars' squared ones.
+        /// Computes `R` in steps of `s`, a quarter of the bars' squared ones.
         reach_sq: u32,
-        /// `N`, likewise.
+        /// `N` in the same steps.
         least_sq: u32,
         /// Leading zeros of both.
         reach_zeros: u16,
@@ -63,7 +63,7 @@ lizard_avr::plain! {
 }
 
 impl Coupling {
-    /// None: they never meet.
+    /// Couplers without length, which never meet.
     pub const NONE: Self = Self {
         left: 0,
         right: 0,
@@ -108,7 +108,7 @@ pub struct Couplers<'a> {
     tables: Tables<'a>,
 }
 
-/// How the couplers lean at one distance of the crank tips, Q10.
+/// The shape of the couplers' triangle at one distance of the crank tips, Q10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lean {
     /// Twice the height of the end point over the distance of the crank tips.
@@ -118,8 +118,8 @@ pub struct Lean {
 }
 
 impl<'a> Couplers<'a> {
-    /// Couplers of these lengths, in the steps of their loop, with the tables that
-    /// belong to them; of what a table that is not there would tell, nothing is known.
+    /// Couplers of these lengths, in the steps of their loop, with their tables. A lean that
+    /// needs a missing table is not known.
     pub const fn new(lengths: Coupling, tables: Tables<'a>) -> Self {
         Self { lengths, tables }
     }
@@ -253,7 +253,7 @@ const fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i1
     if rise < 0x7fff { rise as i16 } else { 0x7fff }
 }
 
-/// `R` in steps of `s`, a quarter of the bars' squared ones.
+/// Computes `R` in steps of `s`, a quarter of the bars' squared ones.
 const fn reach_sq(left: i16, right: i16) -> u32 {
     let sum = left as u32 + right as u32;
     // Half of the sum squared; of equal couplers exactly the coupler squared.
@@ -266,7 +266,7 @@ const fn least_sq(left: i16, right: i16) -> u32 {
     difference * difference / 4
 }
 
-/// Where the rise is largest, in steps of `s`.
+/// The squared distance at which the rise is largest, in steps of `s`.
 const fn peak_sq(left: i16, right: i16) -> u32 {
     let (reach_sq, least_sq) = (reach_sq(left, right) as u64, least_sq(left, right) as u64);
     (2 * reach_sq * least_sq / (reach_sq + least_sq)) as u32

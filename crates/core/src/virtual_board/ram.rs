@@ -6,12 +6,12 @@ use core::hash::{Hash, Hasher};
 use crate::memory::kept::{self, CELLS, Cells, Flags};
 use crate::memory::restart::{Restart, Stance};
 
-/// Those bytes.
+/// The cells of [`crate::memory::kept`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ram(Cell<[u8; CELLS]>);
 
 impl Default for Ram {
-    /// Power has just come on, and the program has begun.
+    /// The cells just after power-on.
     fn default() -> Self {
         let ram = Self(Cell::new([0; CELLS]));
         ram.begin(Flags {
@@ -41,23 +41,23 @@ impl Cells for Ram {
 }
 
 impl Ram {
-    /// What a program that begins now would find.
+    /// The state that the program would find if it started now.
     #[must_use]
     pub fn found(&self, flags: Flags) -> Restart {
         kept::begin(&self.clone(), flags)
     }
 
-    /// A program begins.
+    /// Starts the program.
     pub fn begin(&self, flags: Flags) -> Restart {
         kept::begin(self, flags)
     }
 
-    /// What the servos do is kept.
+    /// Stores the servos' state.
     pub fn keep(&self, stance: &Stance, brown_outs: u8) {
         kept::keep(self, stance, brown_outs);
     }
 
-    /// The program has hung.
+    /// Marks the program as hung.
     pub fn mark_hung(&self) {
         kept::mark_hung(self);
     }

@@ -1,4 +1,4 @@
-//! What readings of the supplies make of the robot, frame by frame.
+//! Levels of the supply from readings, frame by frame.
 
 use std::vec::Vec;
 
@@ -31,7 +31,7 @@ const WITH_RAIL: Supplies = Supplies {
     ..SUPPLIES
 };
 
-/// What the converter reads of a board at `volts`, its rail at `rail` volts.
+/// The converter's reading of a board at `volts` with a rail at `rail` volts.
 fn reading(volts: f64, rail: f64) -> Reading {
     Reading {
         reference: (1.1 / volts * 1024.0) as u16,

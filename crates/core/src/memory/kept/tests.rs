@@ -41,7 +41,7 @@ impl Ram {
         ram
     }
 
-    /// What the next program finds.
+    /// The state that the next run finds.
     fn after_the_reset(&self) -> Self {
         Self::of(self.bytes.borrow().clone())
     }

@@ -1,4 +1,4 @@
-//! What is set of the servos, kept, and taken back.
+//! Settings of the servos: set, saved, and restored.
 
 use super::*;
 use crate::memory::copies::COPIES;

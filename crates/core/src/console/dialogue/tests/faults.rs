@@ -1,4 +1,4 @@
-//! What stops the robot, and where it begins.
+//! Faults stop the robot; after a reset it starts in the right state.
 
 use super::*;
 

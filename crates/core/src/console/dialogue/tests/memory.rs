@@ -1,4 +1,4 @@
-//! What is written into the EEPROM, when, and what a rest leaves there.
+//! EEPROM writes: their content, their timing, and the record of a rest.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What `status` and `watch` tell.
+//! The output of `status` and `watch`.
 
 use super::*;
 
