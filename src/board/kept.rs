@@ -4,8 +4,8 @@
 use core::arch::global_asm;
 
 use avr_device::atmega328p::CPU;
-use lizard_core::memory::kept::{self, CELLS, Cells, Flags};
-use lizard_core::memory::restart::{Restart, Stance};
+use lizard_core::memory::kept::{self, CELLS, Cells};
+use lizard_core::memory::restart::{Cause, Restart, Stance};
 
 use servo_pulses::cells::Byte;
 
@@ -52,15 +52,21 @@ fn cell(at: usize) -> &'static Byte {
 /// running. Once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
     let register = cpu.mcusr().read();
-    let flags = Flags {
-        power_on: register.porf().bit_is_set(),
-        external: register.extrf().bit_is_set(),
-        brown_out: register.borf().bit_is_set(),
-        watchdog: register.wdrf().bit_is_set(),
+    // Several may be set; none is where a boot loader has cleared them.
+    let reported = if register.porf().bit_is_set() {
+        Some(Cause::Power)
+    } else if register.wdrf().bit_is_set() {
+        Some(Cause::Watchdog)
+    } else if register.borf().bit_is_set() {
+        Some(Cause::BrownOut)
+    } else if register.extrf().bit_is_set() {
+        Some(Cause::External)
+    } else {
+        None
     };
     // The watchdog cannot be changed while WDRF is set.
     cpu.mcusr().reset();
-    kept::begin(&Ram, flags)
+    kept::begin(&Ram, reported)
 }
 
 /// Stores the servos' state.

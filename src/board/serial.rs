@@ -6,10 +6,10 @@
 //! the other out. The handlers are short, because the servos' edges may have to wait for
 //! one of them.
 
-use core::convert::Infallible;
 
 use avr_device::atmega328p::USART0;
 use lizard_core::console::line::GARBLED;
+use lizard_core::console::output::Output;
 
 use servo_pulses::cells::{Byte, Counter};
 
@@ -134,22 +134,10 @@ pub fn lost() -> u16 {
 /// until the line has taken another, 1389 cycles at most.
 pub struct Writer;
 
-impl ufmt::uWrite for Writer {
-    type Error = Infallible;
-
-    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
-        for &byte in text.as_bytes() {
-            send(byte);
-        }
-        Ok(())
-    }
-
-    // The robot speaks ASCII. What the trait does for other characters would take as
-    // long as all else that a character needs.
+impl Output for Writer {
     #[inline(always)]
-    fn write_char(&mut self, character: char) -> Result<(), Infallible> {
-        send(character as u8);
-        Ok(())
+    fn byte(&mut self, byte: u8) {
+        send(byte);
     }
 }
 

@@ -8,12 +8,10 @@
 //! played as one, and the servos would leap. So it does while a frame that it was late
 //! with still waits to be played.
 
-use core::convert::Infallible;
-
 use lizard_avr::Region;
-use ufmt::uWrite;
 
 use crate::console::answer::Counters;
+use crate::console::output::Output;
 use crate::console::{Console, LONGEST_LINE};
 use crate::control::Control;
 use crate::control::safety::Health;
@@ -26,7 +24,7 @@ use crate::numbers::units::CYCLES_PER_US;
 /// The hardware that the main loop needs.
 pub trait Board {
     /// The serial line's other direction.
-    type Writer: uWrite<Error = Infallible>;
+    type Writer: Output;
 
     /// The memory that keeps its bytes without power.
     type Memory: Memory;
@@ -182,7 +180,7 @@ impl Main {
             }
             let counters = board.counters();
             let out = board.writer();
-            let Ok(()) = self.console.write_line(&mut self.control, out, counters);
+            self.console.write_line(&mut self.control, out, counters);
         } else if self.control.waits_for_supply() {
             return Step::Idle(self.ticks);
         } else if self.control.is_writing() {

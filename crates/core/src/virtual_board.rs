@@ -29,7 +29,6 @@ use std::collections::VecDeque;
 
 use crate::console::answer::Counters;
 use crate::control::supply::Reading;
-use crate::memory::kept::Flags;
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::pose::Pulses;
 use crate::numbers::units::{CYCLES_PER_US, Width};
@@ -202,13 +201,7 @@ impl VirtualBoard {
     /// Resets the processor: its state is lost, and main has to begin again.
     pub fn reset(&mut self, cause: Cause) {
         let power_on = cause == Cause::Power;
-        let told = !self.boot_loader;
-        let flags = Flags {
-            power_on: power_on && told,
-            external: cause == Cause::External && told,
-            brown_out: cause == Cause::BrownOut && told,
-            watchdog: cause == Cause::Watchdog && told,
-        };
+        let reported = (!self.boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
         // Whoever starts the program takes longer than that.
@@ -217,7 +210,7 @@ impl VirtualBoard {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
             converter: core::mem::take(&mut self.converter).reset(),
             boot_loader: self.boot_loader,
-            restart: ram.begin(flags),
+            restart: ram.begin(reported),
             ram,
             ..Self::new(memory)
         };
@@ -291,7 +284,7 @@ impl VirtualBoard {
     /// The servos' state that would survive a reset.
     #[must_use]
     pub fn kept(&self) -> Option<Stance> {
-        self.ram.found(Flags::default()).before
+        self.ram.found(None).before
     }
 
     /// True once the watchdog has ended the pulses.

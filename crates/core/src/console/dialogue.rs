@@ -4,12 +4,11 @@
 //! line has room for a whole line, the caller lets it write one. So nothing waits: a long
 //! list comes line by line between the frames, and a slow listener never delays a frame.
 
-use ufmt::uWrite;
-
 use crate::console::answer::{Answer, Counters};
 use crate::console::command::{self, Command, Misread};
 use crate::console::digits;
 use crate::console::line::{Ended, Line};
+use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;
 use crate::console::text::Text;
@@ -26,7 +25,7 @@ pub const LONGEST_LINE: u8 = 250;
 
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Output {
+enum Pending {
     /// The firmware's version and the robot's name, once after power-on.
     Banner,
     /// The answer to the last line received, or a part of it.
@@ -73,7 +72,7 @@ impl Console {
     /// True while a line waits to be written. No byte is to be passed on
     /// meanwhile: the answer may still need the line it answers.
     pub const fn has_output(&self, control: &Control) -> bool {
-        self.next_output(control).is_some()
+        self.next_pending(control).is_some()
     }
 
     /// Takes a byte from the serial line and executes the line that it ends.
@@ -133,64 +132,53 @@ impl Console {
     /// power-on; an answer or a part of it; a notice; the reason for which the guard holds
     /// the robot; or the pose, as `watch` asked for it. The longest line, `status`, is written
     /// in parts, one with each call.
-    ///
-    /// # Errors
-    /// Those of `out`.
     #[inline(never)]
-    pub fn write_line<W>(
-        &mut self,
-        control: &mut Control,
-        out: &mut W,
-        counters: Counters,
-    ) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
-        match self.next_output(control) {
-            None => return Ok(()),
-            Some(Output::Banner) => {
+    pub fn write_line(&mut self, control: &mut Control, out: &mut impl Output, counters: Counters) {
+        match self.next_pending(control) {
+            None => return,
+            Some(Pending::Banner) => {
                 self.greeted = true;
-                print::banner(out, control.motion().robot())?;
+                print::banner(out, control.motion().robot());
             }
-            Some(Output::Answer(answer)) => {
-                self.answer = print::answer(out, answer, &self.line, control, counters)?;
+            Some(Pending::Answer(answer)) => {
+                self.answer = print::answer(out, answer, &self.line, control, counters);
                 if matches!(answer, Answer::Status | Answer::Margin) {
-                    return Ok(());
+                    return;
                 }
             }
-            Some(Output::Notice(notice)) => {
+            Some(Pending::Notice(notice)) => {
                 control.written(notice);
-                print::notice(out, notice, control)?;
+                print::notice(out, notice, control);
             }
-            Some(Output::Held) => {
+            Some(Pending::Held) => {
                 if let Some(hazard) = control.take_held() {
-                    Text::Held.print(out)?;
-                    refusal::print_hazard(hazard, control.motion(), out)?;
+                    Text::Held.print(out);
+                    refusal::print_hazard(hazard, control.motion(), out);
                 }
             }
-            Some(Output::Report) => {
+            Some(Pending::Report) => {
                 self.watch.due = false;
-                Text::WatchTime.print(out)?;
-                digits::number(out, control.motion().frames(), 0)?;
-                print::pose(out, control.motion())?;
+                Text::WatchTime.print(out);
+                digits::number(out, control.motion().frames(), 0);
+                print::pose(out, control.motion());
             }
         }
-        out.write_char('\r')?;
-        out.write_char('\n')
+        out.byte(b'\r');
+        out.byte(b'\n');
     }
 
     /// The output to write next, in a fixed order of priority.
-    const fn next_output(&self, control: &Control) -> Option<Output> {
+    const fn next_pending(&self, control: &Control) -> Option<Pending> {
         if !self.greeted {
-            Some(Output::Banner)
+            Some(Pending::Banner)
         } else if let Some(answer) = self.answer {
-            Some(Output::Answer(answer))
+            Some(Pending::Answer(answer))
         } else if let Some(notice) = control.safety().notice() {
-            Some(Output::Notice(notice))
+            Some(Pending::Notice(notice))
         } else if control.was_held() {
-            Some(Output::Held)
+            Some(Pending::Held)
         } else if self.watch.due {
-            Some(Output::Report)
+            Some(Pending::Report)
         } else {
             None
         }

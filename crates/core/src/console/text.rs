@@ -6,7 +6,8 @@
 //! when they are printed.
 
 use lizard_avr::flash;
-use ufmt::uWrite;
+
+use crate::console::output::Output;
 
 macro_rules! texts {
     ($($name:ident = $sentence:expr;)*) => {
@@ -209,11 +210,8 @@ flash! {
 
 impl Text {
     /// Prints the sentence.
-    ///
-    /// # Errors
-    /// Those of `out`.
     #[inline(never)]
-    pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
+    pub fn print(self, out: &mut impl Output) {
         let mut part = Part::of(self as u8);
         // What follows the phrase that `part` is of.
         let mut rest = Part::NONE;
@@ -223,7 +221,7 @@ impl Text {
                 rest.left = 0;
             }
             if part.left == 0 {
-                return Ok(());
+                return;
             }
             let mut code = part.next();
             if code >= SHORT {
@@ -232,7 +230,7 @@ impl Text {
             match code.checked_sub(ALPHABET.len() as u8) {
                 None => {
                     let character = CHARACTERS.at(usize::from(code)).load();
-                    out.write_char(char::from(character & 0x7f))?;
+                    out.byte(character);
                 }
                 Some(phrase) => {
                     rest = part;
@@ -400,7 +398,7 @@ mod tests {
             (Text::Resting, "servos are resting, send stand first"),
         ] {
             let mut printed = String::new();
-            let Ok(()) = text.print(&mut printed);
+            text.print(&mut printed);
             assert_eq!(printed, expected);
             assert_eq!(usize::from(text.length()), expected.len());
         }

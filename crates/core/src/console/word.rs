@@ -1,8 +1,8 @@
 //! The words of the console.
 
 use lizard_avr::flash;
-use ufmt::uWrite;
 
+use crate::console::output::Output;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::robot::Robot;
 
@@ -138,16 +138,7 @@ impl Word {
 
     /// Prints all words, with bars in between. A word whose number is `YIELDING` or more is
     /// left out if the robot has a gait of the same name.
-    ///
-    /// # Errors
-    /// Those of `out`.
-    pub(crate) fn print_all<W, const YIELDING: usize>(
-        out: &mut W,
-        robot: &Robot,
-    ) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
+    pub(crate) fn print_all<const YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
         let mut number = 0;
         let mut is_printed = true;
         for place in 0..LIST.len() - 1 {
@@ -158,10 +149,9 @@ impl Word {
                 is_printed = number < YIELDING || !is_gait(place + 1, robot);
             }
             if is_printed {
-                out.write_char(char::from(character & 0x7f))?;
+                out.byte(character);
             }
         }
-        Ok(())
     }
 }
 
@@ -214,7 +204,7 @@ mod tests {
         let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
-        let Ok(()) = Word::print_all::<_, YIELDING>(&mut list, robot);
+        Word::print_all::<YIELDING>(&mut list, robot);
         assert_eq!(list, words.join("|"));
     }
 

@@ -34,19 +34,6 @@ pub trait Cells {
     fn set(&self, at: usize, byte: u8);
 }
 
-/// The causes of the reset that the chip reports; none if a boot loader has cleared them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Flags {
-    /// Power was switched on.
-    pub power_on: bool,
-    /// The reset pin was pulled low.
-    pub external: bool,
-    /// The supply was too low for a moment.
-    pub brown_out: bool,
-    /// The watchdog was not fed.
-    pub watchdog: bool,
-}
-
 const MARK: usize = 0;
 const STATE: usize = 1;
 const COUNT: usize = 2;
@@ -70,25 +57,23 @@ const RESTING: u8 = 0x80;
 const NOTHING: u8 = 0x7f;
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
-/// running. To be called once, before the watchdog starts.
+/// running. `reported` is the cause that the chip reports, or None if a boot loader has
+/// cleared it. To be called once, before the watchdog starts.
 #[inline(never)]
-pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
+pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
     let (state, count) = (cells.get(STATE), cells.get(COUNT));
     let survived = cells.get(MARK) == ALIVE && matches!(state, RUNNING | HUNG);
-    let hidden = flags == Flags::default();
-    let cause = if flags.power_on || hidden && !survived {
-        Cause::Power
-    } else if flags.watchdog || hidden && state == HUNG {
-        Cause::Watchdog
-    } else if flags.brown_out {
-        Cause::BrownOut
-    } else {
-        Cause::External
+    let cause = match reported {
+        Some(cause) => cause,
+        None if !survived => Cause::Power,
+        None if state == HUNG => Cause::Watchdog,
+        None => Cause::External,
     };
+    let is_hidden = reported.is_none();
     let mut restart = Restart {
         cause,
         count: 0,
-        may_be_supply: cause == Cause::BrownOut || cause == Cause::External && hidden,
+        may_be_supply: cause == Cause::BrownOut || cause == Cause::External && is_hidden,
         brown_outs: 0,
         before: None,
     };

@@ -3,8 +3,8 @@
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
 
-use crate::memory::kept::{self, CELLS, Cells, Flags};
-use crate::memory::restart::{Restart, Stance};
+use crate::memory::kept::{self, CELLS, Cells};
+use crate::memory::restart::{Cause, Restart, Stance};
 
 /// The cells of [`crate::memory::kept`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,10 +14,7 @@ impl Default for Ram {
     /// The cells just after power-on.
     fn default() -> Self {
         let ram = Self(Cell::new([0; CELLS]));
-        ram.begin(Flags {
-            power_on: true,
-            ..Flags::default()
-        });
+        ram.begin(Some(Cause::Power));
         ram
     }
 }
@@ -43,13 +40,13 @@ impl Cells for Ram {
 impl Ram {
     /// The state that the program would find if it started now.
     #[must_use]
-    pub fn found(&self, flags: Flags) -> Restart {
-        kept::begin(&self.clone(), flags)
+    pub fn found(&self, reported: Option<Cause>) -> Restart {
+        kept::begin(&self.clone(), reported)
     }
 
     /// Starts the program.
-    pub fn begin(&self, flags: Flags) -> Restart {
-        kept::begin(self, flags)
+    pub fn begin(&self, reported: Option<Cause>) -> Restart {
+        kept::begin(self, reported)
     }
 
     /// Stores the servos' state.

@@ -1,10 +1,9 @@
 //! The transmitter: the robot's output, and a line that takes its time.
 
-use core::convert::Infallible;
 use core::hash::{Hash, Hasher};
 use std::string::String;
 
-use ufmt::uWrite;
+use crate::console::output::Output;
 
 /// CPU cycles of a millisecond.
 const MS: u64 = 16_000;
@@ -98,13 +97,9 @@ impl Transmitter {
     }
 }
 
-impl uWrite for Transmitter {
-    type Error = Infallible;
-
-    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
-        let bytes = text.len() as u64;
-        self.text.push_str(text);
-        self.free = self.free.max(self.now) + bytes * self.per_byte;
-        Ok(())
+impl Output for Transmitter {
+    fn byte(&mut self, byte: u8) {
+        self.text.byte(byte);
+        self.free = self.free.max(self.now) + self.per_byte;
     }
 }
