@@ -222,7 +222,7 @@ impl Description {
 /// The core's own.
 fn version() -> String {
     let mut version = String::new();
-    let Ok(()) = Text::Version.print(&mut version);
+    Text::Version.print(&mut version);
     version
 }
 
