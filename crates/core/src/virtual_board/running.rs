@@ -158,6 +158,28 @@ impl Running {
         last.clone()
     }
 
+    /// Sends a line, which must be accepted.
+    ///
+    /// # Panics
+    /// If the answer is not `ok` and the line.
+    #[track_caller]
+    pub fn accept(&mut self, line: &str) {
+        assert_eq!(self.say(line), std::format!("ok {line}"));
+    }
+
+    /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
+    ///
+    /// # Panics
+    /// If it is not.
+    #[track_caller]
+    pub fn refuse(&mut self, line: &str, reason: &str) {
+        let answer = self.say(line);
+        let refused = answer
+            .strip_prefix("err ")
+            .is_some_and(|text| text.starts_with(reason));
+        assert!(refused, "{line}: {answer}, not {reason}");
+    }
+
     /// Reads a value of the status line.
     ///
     /// # Panics
