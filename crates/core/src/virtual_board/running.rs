@@ -209,16 +209,16 @@ impl Running {
     /// Resets the processor with this cause.
     pub fn reset(&mut self, cause: Cause) {
         self.board.reset(cause);
-        self.begin_anew();
+        self.restart_main();
     }
 
     /// Turns the power off and on; see [`VirtualBoard::lose_power`].
     pub fn lose_power(&mut self, torn: Option<u8>) {
         self.board.lose_power(torn);
-        self.begin_anew();
+        self.restart_main();
     }
 
-    fn begin_anew(&mut self) {
+    fn restart_main(&mut self) {
         self.main = Main::new();
         self.main.begin(self.flash, &mut self.board);
     }

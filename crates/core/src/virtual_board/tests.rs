@@ -38,7 +38,7 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
 }
 
 #[test]
-fn a_stall_below_125_ms_is_borne_and_a_longer_one_begins_the_program_anew() {
+fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() {
     let mut short = standing();
     assert!(!short.stall(WATCHDOG_MS - 20));
     assert!(!short.board.is_hushed());

@@ -44,7 +44,7 @@ fn the_banner_names_version_and_tables_once() {
 }
 
 #[test]
-fn what_is_obeyed_is_answered_by_ok_and_the_line_as_it_was_understood() {
+fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
     let commands = [
         "stop",
         "rest",
@@ -126,7 +126,7 @@ fn guarded() -> Dialogue {
 }
 
 #[test]
-fn why_the_guard_holds_the_robot_is_told_once_and_status_goes_on_saying_so() {
+fn the_guards_reason_is_printed_once_and_stays_in_status() {
     let mut dialogue = guarded();
     let told = dialogue.lines();
     assert_eq!(told.len(), 1);
@@ -166,7 +166,7 @@ fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
 }
 
 #[test]
-fn what_waits_is_written_in_one_order_banner_answer_fault_reason_report() {
+fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
     // Room for a line at a time, until the first one of the help is written.

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
+fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
     let mut dialogue = standing();
     for boot in ["sway left", "rest"] {
         dialogue.say(&format!("boot {boot}"));
@@ -271,7 +271,7 @@ fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
 }
 
 #[test]
-fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_somebody_orders_a_motion() {
+fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_a_motion_is_ordered() {
     // A boot loader hides which of the two it was.
     for (boot_loader, cause) in [
         (false, Cause::BrownOut),
@@ -298,12 +298,16 @@ fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_somebody_ord
         dialogue.run(30);
         dialogue.reset(Cause::BrownOut);
         dialogue.run(30);
-        assert_ne!(dialogue.frame(), Pulses::default(), "the count began anew");
+        assert_ne!(
+            dialogue.frame(),
+            Pulses::default(),
+            "the count restarted at zero"
+        );
     }
 }
 
 #[test]
-fn who_opens_the_port_again_and_again_and_says_something_is_no_weak_supply() {
+fn opening_the_port_many_times_and_sending_a_line_does_not_count_as_a_weak_supply() {
     let mut dialogue = standing();
     dialogue.board.boot_loader = true;
     for _ in 0..20 {
